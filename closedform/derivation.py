@@ -1,0 +1,314 @@
+"""The vocabulary in which a derivation script is written.
+
+A script builds one :class:`Derivation`: it names the paper, the parameters and the joints, proceeds
+in steps, solves for the unknowns with named lemmas, exports functions and transcribes the claims of
+the paper.  Every later room (proof, lowering, emission, LaTeX, reference) reads this object and
+nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+import sympy as sp
+
+from closedform.functions import Array, Branches, Function, Number, Program, array, real
+
+if TYPE_CHECKING:
+    from closedform.claims import Check
+    from closedform.lemmas import Lemma
+
+Exact = sp.Expr | sp.MatrixBase
+
+
+@dataclass(frozen=True)
+class Paper:
+    """A published source."""
+
+    key: str
+    title: str
+    authors: tuple[str, ...]
+    reference: str = ""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A dimension of the mechanism, constant while it moves."""
+
+    symbol: sp.Symbol
+    unit: str
+    value: sp.Rational
+    meaning: str
+    source: str
+    nonnegative: bool
+
+    @property
+    def name(self) -> str:
+        return str(self.symbol.name)
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint variable.
+
+    A passive joint is moved by the others; a coupled joint is a function of the others.
+    """
+
+    symbol: sp.Symbol
+    kind: Literal["revolute", "prismatic"]
+    passive: bool = False
+    coupling: sp.Expr | None = None
+
+    @property
+    def name(self) -> str:
+        return str(self.symbol.name)
+
+
+@dataclass(frozen=True)
+class Published:
+    """An equation as the paper prints it: its label and the printed form, transcribed."""
+
+    label: str
+    printed: str
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: why, what was derived, and what must be zero for the step to hold."""
+
+    title: str
+    reason: str
+    shown: tuple[tuple[str, Any], ...]
+    published: tuple[str, ...] = ()
+    vanishes: tuple[Exact, ...] = ()
+    nonnegative: tuple[sp.Expr, ...] = ()
+
+
+@dataclass(frozen=True)
+class Solved:
+    """An unknown solved by a lemma from an equation that follows from the system."""
+
+    function: str
+    unknown: sp.Symbol
+    lemma: Lemma
+    equation: sp.Expr
+
+
+@dataclass(frozen=True)
+class Continuum:
+    """A flagged case: on ``locus`` a joint is free, and ``relation`` says what the others keep.
+
+    ``keeps`` is the invariant of the solution family: an expression in the unknowns that all members
+    share.
+    """
+
+    flag: sp.Symbol
+    locus: Mapping[sp.Symbol, sp.Expr]
+    free: sp.Symbol
+    relation: str
+
+
+@dataclass(frozen=True)
+class Inverse:
+    """What an inverse must satisfy: ``equations`` in ``unknowns`` vanish for given ``targets``.
+
+    ``parametrisation`` maps the targets to the forward map, where they are dependent (a rotation
+    matrix); ``system`` is the polynomial form that the solution count uses, if it differs.
+    """
+
+    function: str
+    unknowns: tuple[sp.Symbol, ...]
+    targets: tuple[sp.Symbol, ...]
+    forward: tuple[sp.Expr, ...]
+    continua: tuple[Continuum, ...] = ()
+    rotation: bool = False
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A statement of the paper, transcribed as printed, and the computation that judges it."""
+
+    label: str
+    printed: str
+    check: Check
+    where: str = ""
+
+
+@dataclass
+class Derivation:
+    """A mechanism, derived."""
+
+    name: str
+    title: str
+    paper: Paper
+    mechanism: str
+    parameters: list[Parameter] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
+    task: list[str] = field(default_factory=list)
+    branches: tuple[str, ...] = ()
+    assembly_modes: tuple[str, ...] = ()
+    singularities: tuple[str, ...] = ()
+    steps: list[Step] = field(default_factory=list)
+    solved: list[Solved] = field(default_factory=list)
+    inverses: list[Inverse] = field(default_factory=list)
+    functions: list[Function] = field(default_factory=list)
+    claims: list[Claim] = field(default_factory=list)
+
+    def parameter(
+        self,
+        name: str,
+        *,
+        value: Number,
+        unit: str,
+        meaning: str,
+        source: str = "the paper's example",
+        nonnegative: bool = True,
+    ) -> sp.Symbol:
+        """Declare a parameter; a length is ``nonnegative`` unless said otherwise.
+
+        Inside the algebra a nonnegative parameter counts as positive: what holds on the open set
+        holds on its closure, and a zero length is treated by the flags of the inverse.
+        """
+        self._check_new(name)
+        symbol = real(name, positive=True) if nonnegative else real(name)
+        exact = sp.sympify(value)
+        if not exact.is_Rational:
+            raise TypeError(f"{self.name}: the value of {name} must be an exact rational")
+        self.parameters.append(Parameter(symbol, unit, exact, meaning, source, nonnegative))
+        return symbol
+
+    def joint(
+        self,
+        name: str,
+        kind: Literal["revolute", "prismatic"] = "revolute",
+        *,
+        passive: bool = False,
+        coupling: sp.Expr | None = None,
+    ) -> sp.Symbol:
+        """Declare a joint variable.
+
+        ``coupling`` gives the joint as a function of earlier ones, as in
+        ``joint("theta4", coupling=-(theta2 + theta3))``; :meth:`couple` substitutes it.
+        """
+        self._check_new(name)
+        symbol = real(name)
+        self.joints.append(Joint(symbol, kind, passive, coupling))
+        return symbol
+
+    def couple(self, expr: Any) -> Any:
+        """``expr`` with every coupled joint replaced by its coupling."""
+        couplings = {j.symbol: j.coupling for j in self.joints if j.coupling is not None}
+        return expr.xreplace(couplings)
+
+    @property
+    def actuated(self) -> tuple[sp.Symbol, ...]:
+        return tuple(j.symbol for j in self.joints if not j.passive and j.coupling is None)
+
+    def step(
+        self,
+        title: str,
+        reason: str,
+        shown: Mapping[str, Any],
+        *,
+        published: Sequence[str] = (),
+        equal: Sequence[tuple[Any, Any]] = (),
+        nonnegative: Sequence[sp.Expr] = (),
+    ) -> None:
+        """Record a step.  ``shown`` maps a LaTeX left-hand side to the derived expression.
+
+        Each pair in ``equal`` is proved equal; the build fails where the proof does.
+        """
+        self.steps.append(
+            Step(
+                title,
+                reason,
+                tuple(shown.items()),
+                tuple(published),
+                tuple(a - b for a, b in equal),
+                tuple(nonnegative),
+            )
+        )
+
+    def function(
+        self,
+        name: str,
+        summary: str,
+        inputs: Mapping[str, Any],
+        outputs: Mapping[str, Any],
+        *,
+        program: Program | None = None,
+        branches: Branches | None = None,
+        result: str | None = None,
+        source: str = "",
+        notes: Sequence[str] = (),
+        boolean: bool = False,
+    ) -> Function:
+        """Export a function.  Inputs and outputs are named scalars, vectors, matrices or arrays."""
+        if any(f.name == name for f in self.functions):
+            raise ValueError(f"{self.name}: the function {name} is defined twice")
+        angles = [j.symbol for j in self.joints if j.kind == "revolute"]
+        function = Function(
+            name,
+            summary,
+            tuple(array(k, v, angles=angles) for k, v in inputs.items()),
+            tuple(_output(k, v) for k, v in outputs.items()),
+            tuple(program.body) if program else (),
+            branches,
+            result,
+            source,
+            tuple(notes),
+            boolean,
+        )
+        self._check_symbols(function)
+        self.functions.append(function)
+        return function
+
+    def claim(self, label: str, printed: str, check: Check, where: str = "") -> None:
+        """Transcribe a statement of the paper, with the check that will judge it."""
+        self.claims.append(Claim(label, printed, check, where))
+
+    def __getitem__(self, name: str) -> Function:
+        for function in self.functions:
+            if function.name == name:
+                return function
+        raise KeyError(f"{self.name} has no function {name}")
+
+    def _repr_latex_(self) -> str:
+        from closedform.emit.latex import notebook
+
+        return notebook(self)
+
+    def _check_new(self, name: str) -> None:
+        taken = {p.name for p in self.parameters} | {j.name for j in self.joints}
+        if name in taken:
+            raise ValueError(f"{self.name}: the name {name} is declared twice")
+
+    def _check_symbols(self, function: Function) -> None:
+        known: set[sp.Basic] = {p.symbol for p in self.parameters} | set(function.symbols)
+        if function.branches:
+            known |= {s for signs in function.branches.signs for s in signs}
+        for statement in function.body:
+            used = [getattr(statement, "value", None), *getattr(statement, "values", ())]
+            free = {s for e in used if e is not None for s in e.free_symbols}
+            self._require_known(function, free - known)
+            symbol = getattr(statement, "symbol", None)
+            if symbol is not None:
+                known.add(symbol)
+        free = {s for a in function.outputs for e in a.entries for s in e.free_symbols}
+        self._require_known(function, free - known)
+
+    def _require_known(self, function: Function, unknown: set[sp.Basic]) -> None:
+        if unknown:
+            name = sorted(map(str, unknown))[0]
+            raise ValueError(
+                f"{self.name}.{function.name}: the symbol {name} is neither a parameter nor an "
+                f"input nor defined by an earlier statement"
+            )
+
+
+def _output(name: str, value: Any) -> Array:
+    if isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], str):
+        return array(name, value[0], meaning=value[1])
+    return array(name, value)

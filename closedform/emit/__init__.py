@@ -1,0 +1,1 @@
+"""Prints lowered programs.  Python prepares plain strings; the templates lay them out."""

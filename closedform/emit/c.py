@@ -1,0 +1,364 @@
+"""Prints a derivation as C99: one header and one source a robot, and the table for Python.
+
+Each function has one kernel over scalars, without trigonometry: the sines and cosines of its angles
+are arguments.  The single call takes them in lanes of eight, the batch in blocks, and the compiler
+inlines the kernel into both.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+from closedform.derivation import Derivation
+from closedform.emit.code import Printer, Text
+from closedform.emit.text import WIDTH, banner, describe, interface
+from closedform.functions import Function
+from closedform.lower import Lowered
+from closedform.lower.graph import Node
+
+LANES = 8
+CALLS = {
+    "sqrt": "cf_sqrt",
+    "atan2": "cf_atan2",
+    "abs": "cf_abs",
+    "max": "cf_max",
+    "min": "cf_min",
+    "finite": "cf_is_finite",
+    "wrap": "cf_wrap",
+}
+RESERVED = frozenset(
+    "auto break case char const continue default do double else enum extern float for goto if "
+    "inline int long register restrict return short signed sizeof static struct switch typedef "
+    "union unsigned void volatile while params sines cosines n i m start".split()
+)
+
+
+class CPrinter(Printer):
+    """C code of a kernel over scalars."""
+
+    def constant(self, text: str) -> Text:
+        return Text(f"CLOSEDFORM_C({text})")
+
+    def call(self, op: str, args: list[str], node: Node) -> Text:
+        if op == "nan":
+            return Text("CLOSEDFORM_NAN")
+        if op in ("true", "false"):
+            return Text("1" if op == "true" else "0")
+        if op == "not":
+            return Text(f"!{self.text[node.args[0].id].at(6)}", 6)
+        if op == "tolerance":
+            return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
+        if op == "select":
+            condition, a, b = (self.text[n.id].at(2) for n in node.args)
+            return Text(f"{condition} ? {a} : {b}", 1)
+        return Text(f"{CALLS[op]}({', '.join(args)})")
+
+    def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
+        """Comparisons of calls get a name: clang warns of ``&`` between them, names are int."""
+        compares_calls = node.op in ("lt", "le", "eq") and "cf_" in text.code
+        return compares_calls or super().deserves_name(node, text, uses)
+
+
+@dataclass(frozen=True)
+class CArray:
+    """An argument or a result of a function."""
+
+    name: str
+    type: str
+    kind: str
+    ndim: int
+    dims: str
+    size: int
+    const: str
+
+    @property
+    def single(self) -> str:
+        return f"{self.const}{self.type} {self.name}[{self.size}]"
+
+    @property
+    def batch(self) -> str:
+        return f"{self.const}{self.type} *{self.name}, size_t {self.name}_stride"
+
+    def plane(self, k: int) -> str:
+        """The place of coordinate k of the posture ``start``, as an offset from the array."""
+        offset = {0: "", 1: f"{self.name}_stride + "}.get(k, f"{k} * {self.name}_stride + ")
+        return f"{offset}start"
+
+
+@dataclass(frozen=True)
+class CFunction:
+    """The plain strings of one function, for the templates."""
+
+    name: str
+    full: str
+    comment: str
+    doc_lines: tuple[str, ...]
+    result: str
+    n_params: int
+    unused_single: tuple[str, ...]
+    unused_batch: tuple[str, ...]
+    inputs: tuple[CArray, ...]
+    outputs: tuple[CArray, ...]
+    narrowed: tuple[CArray, ...]
+    single: str
+    batch: str
+    kernel: str
+    kernel_lines: tuple[str, ...]
+    kernel_call_single: str
+    kernel_call_batch: str
+    n_angles: int
+    n_lanes: int
+    lanes: tuple[str, ...]
+    angle_blocks: tuple[str, ...]
+    planes: tuple[str, ...]
+    loads: tuple[str, ...]
+    copies: tuple[str, ...]
+    narrow: tuple[str, ...]
+    table_single: str
+    table_batch: str
+
+
+def robot(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, Any]:
+    """The context of the header and the source of one robot."""
+    return {
+        "name": derivation.name,
+        "banner": banner(derivation, lowered, " *"),
+        "interface": interface(derivation),
+        "field_names": ", ".join(f'"{p.name}"' for p in derivation.parameters),
+        "functions": [
+            _Emission(derivation, f, lowered[f.name]).emit() for f in derivation.functions
+        ],
+    }
+
+
+def _array(name: str, shape: Sequence[int], kind: str, const: str = "") -> CArray:
+    kinds = {"real": "CF_REAL", "status": "CF_STATUS", "bool": "CF_BOOL"}
+    dims = "{ " + (", ".join(map(str, shape)) or "0") + " }"
+    ctype = "real_t" if kind == "real" else "uint8_t"
+    return CArray(name, ctype, kinds[kind], len(shape), dims, prod(shape), const)
+
+
+def _folded(arguments: Sequence[str]) -> str:
+    """An argument list, folded where a line would be too long for its function's name."""
+    return "\n    ".join(textwrap.wrap(", ".join(arguments), WIDTH - 44)) or "void"
+
+
+def _occurs(name: str, lines: Sequence[str]) -> bool:
+    return any(re.search(rf"\b{name}\b", line) for line in lines)
+
+
+class _Emission:
+    """Collects the strings of one function."""
+
+    def __init__(self, derivation: Derivation, function: Function, program: Lowered):
+        self.derivation, self.function, self.program = derivation, function, program
+        self.inputs = tuple(_array(a.name, a.shape, "real", "const ") for a in function.inputs)
+        self.outputs = tuple(_array(r.name, r.shape, r.kind) for r in program.results)
+        self.places = {
+            str(entry): (argument, k)
+            for argument, a in zip(self.inputs, function.inputs, strict=True)
+            for k, entry in enumerate(a.entries)
+        }
+        names = [a.name for a in (*self.inputs, *self.outputs)]
+        self.printer = CPrinter(program, reserved={*RESERVED, *names})
+        self.values = self.printer.run()
+        read = program.used_inputs(below_angles=False)
+        self.parameters = [p for p in program.parameters if p in read]
+        self.raw = [
+            argument
+            for argument, a in zip(self.inputs, function.inputs, strict=True)
+            if any(str(e) in read for e in a.entries)
+        ]
+        self.entries = [e for e in self.places if e in read]
+
+    def emit(self) -> CFunction:
+        f, arrays = self.function, (*self.inputs, *self.outputs)
+        params = f"const {self.derivation.name}_params *params"
+        n_angles = len(self.program.angles)
+        narrowed = tuple(o for o in self.outputs if o.kind != "CF_REAL")
+        shared = ["params"] * bool(self.parameters)
+        kernel_lines = self._kernel_lines()
+        trig = [name for name in ("sines", "cosines") if _occurs(name, kernel_lines)]
+        return CFunction(
+            name=f.name,
+            full=f"{self.derivation.name}_{f.name}",
+            comment=self._comment(),
+            doc_lines=tuple(json.dumps(line + "\n") for line in self._paragraphs(80)),
+            result=f.result or "",
+            n_params=len(self.derivation.parameters),
+            unused_single=tuple(
+                name
+                for name in ["params"] + [a.name for a in self.inputs]
+                if not _occurs(name, [*shared, *(a.name for a in self.raw), *self._lanes()])
+            ),
+            unused_batch=tuple(
+                name
+                for name in ["params"]
+                + [n for a in self.inputs for n in (a.name, f"{a.name}_stride")]
+                + [f"{a.name}_stride" for a in self.outputs]
+                if not _occurs(
+                    name,
+                    [
+                        *shared,
+                        *self._angle_blocks(),
+                        *self._planes(),
+                        *self._loads(trig),
+                        *self._narrow(),
+                    ],
+                )
+            ),
+            inputs=self.inputs,
+            outputs=self.outputs,
+            narrowed=narrowed,
+            single=_folded([params, *(a.single for a in arrays)]),
+            batch=_folded(["size_t n", params, *(a.batch for a in arrays)]),
+            kernel=_folded(
+                [params] * bool(self.parameters)
+                + [a.single for a in self.raw]
+                + [f"const real_t *{name}" for name in trig]
+                + [f"real_t {o.name}[{o.size}]" for o in self.outputs]
+            ),
+            kernel_lines=tuple(kernel_lines),
+            kernel_call_single=", ".join(
+                shared
+                + [a.name for a in self.raw]
+                + trig
+                + [f"{o.name}_real" if o in narrowed else o.name for o in self.outputs]
+            ),
+            kernel_call_batch=", ".join(
+                shared + [f"{a}_i" for a in [r.name for r in self.raw] + trig + self._names()]
+            ),
+            n_angles=n_angles,
+            n_lanes=-(-n_angles // LANES) * LANES,
+            lanes=tuple(self._lanes()),
+            angle_blocks=tuple(self._angle_blocks()),
+            planes=tuple(self._planes()),
+            loads=tuple(self._loads(trig)),
+            copies=tuple(
+                f"{o.name}_{k}[i] = {o.name}_i[{k}];" for o in self.outputs for k in range(o.size)
+            ),
+            narrow=tuple(self._narrow()),
+            table_single=self._table_call(
+                f"(const {self.derivation.name}_params *)params", "in[{k}]", "out[{k}]"
+            ),
+            table_batch=self._table_call(
+                f"n, (const {self.derivation.name}_params *)params",
+                "in[{k}], in_stride[{k}]",
+                "out[{k}], out_stride[{k}]",
+            ),
+        )
+
+    def _names(self) -> list[str]:
+        return [o.name for o in self.outputs]
+
+    def _paragraphs(self, width: int) -> list[str]:
+        return [
+            line
+            for paragraph in describe(self.derivation, self.function)
+            for line in textwrap.wrap(paragraph, width, subsequent_indent="    ")
+        ]
+
+    def _comment(self) -> str:
+        return "\n".join(f" * {line}" for line in self._paragraphs(WIDTH - 3))
+
+    def _kernel_lines(self) -> list[str]:
+        lines = [
+            f"const real_t {self.printer.inputs[p]} = params->{p};" for p in self.parameters
+        ]
+        for entry in self.entries:
+            argument, k = self.places[entry]
+            lines.append(f"const real_t {self.printer.inputs[entry]} = {argument.name}[{k}];")
+        needed = {(n.op, n.args[0].id) for n in self.program.schedule() if n.op in ("sin", "cos")}
+        for k, (angle, sine, cosine) in enumerate(self.printer.trig):
+            for op, name, array in (("sin", sine, "sines"), ("cos", cosine, "cosines")):
+                if (op, angle.id) in needed:
+                    lines.append(f"const real_t {name} = {array}[{k}];")
+        for line in self.printer.lines:
+            ctype = "int" if line.boolean else "real_t"
+            lines.append(f"const {ctype} {line.name} = {line.code};")
+        for result, values in zip(self.program.results, self.values, strict=True):
+            for k, value in enumerate(values):
+                if result.kind == "bool":
+                    value = f"({value}) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0)"
+                lines.append(f"{result.name}[{k}] = {value};")
+        return lines
+
+    def _angle(self, node: Node) -> tuple[str, CArray | None, int, int]:
+        """The input, its place and the divisor of an angle."""
+        divisor = 1
+        if node.op == "div":
+            node, divisor = node.args[0], int(str(node.args[1].payload))
+        name = str(node.payload)
+        argument, k = self.places.get(name, (None, 0))
+        return name, argument, k, divisor
+
+    def _lanes(self) -> list[str]:
+        lines = []
+        angles = []
+        for node in self.program.angles:
+            name, argument, k, divisor = self._angle(node)
+            text = f"{argument.name}[{k}]" if argument else f"params->{name}"
+            angles.append(text if divisor == 1 else f"{text} / CLOSEDFORM_C({divisor}.0)")
+        for group, first in enumerate(range(0, len(angles), LANES)):
+            listed = ", ".join(angles[first : first + LANES])
+            lines.append(f"const real_t angles_{group}[{LANES}] = {{ {listed} }};")
+        for group, first in enumerate(range(0, len(angles), LANES)):
+            lines.append(f"cf_sincos8(angles_{group}, sines + {first}, cosines + {first});")
+        return lines
+
+    def _angle_blocks(self) -> list[str]:
+        lines = []
+        for j, node in enumerate(self.program.angles):
+            name, argument, k, divisor = self._angle(node)
+            if argument and divisor == 1:
+                source = f"{argument.name} + {argument.plane(k)}"
+            else:
+                place = f"{argument.name}[{argument.plane(k)} + i]" if argument else f"params->{name}"
+                source = f"angle_{j}"
+                lines.append(f"real_t {source}[CLOSEDFORM_BLOCK];")
+                lines.append("for (size_t i = 0; i < m; ++i)")
+                lines.append(f"    {source}[i] = {place} / CLOSEDFORM_C({divisor}.0);")
+            lines.append(f"cf_sincos_block(m, {source}, sines[{j}], cosines[{j}]);")
+        return lines
+
+    def _planes(self) -> list[str]:
+        lines = []
+        for o in self.outputs:
+            for k in range(o.size):
+                if o.kind == "CF_REAL":
+                    place = f"{o.name} + {o.plane(k)}"
+                    lines.append(f"real_t *CF_RESTRICT const {o.name}_{k} = {place};")
+                else:
+                    lines.append(f"real_t {o.name}_{k}[CLOSEDFORM_BLOCK];")
+        return lines
+
+    def _narrow(self) -> list[str]:
+        return [
+            f"{o.name}[{o.plane(k)} + i] = ({o.type}){o.name}_{k}[i];"
+            for o in self.outputs
+            if o.kind != "CF_REAL"
+            for k in range(o.size)
+        ]
+
+    def _loads(self, trig: Sequence[str]) -> list[str]:
+        lines = []
+        for a in self.raw:
+            listed = ", ".join(f"{a.name}[{a.plane(k)} + i]" for k in range(a.size))
+            lines.append(f"const real_t {a.name}_i[{a.size}] = {{ {listed} }};")
+        n = len(self.program.angles)
+        for array in trig:
+            listed = ", ".join(f"{array}[{k}][i]" for k in range(n))
+            lines.append(f"const real_t {array}_i[{n}] = {{ {listed} }};")
+        lines += [f"real_t {o.name}_i[{o.size}];" for o in self.outputs]
+        return lines
+
+    def _table_call(self, first: str, source: str, target: str) -> str:
+        inputs = [source.format(k=k) for k in range(len(self.inputs))]
+        outputs = [target.format(k=k) for k in range(len(self.outputs))]
+        return ", ".join([first, *inputs, *outputs])

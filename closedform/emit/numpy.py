@@ -1,0 +1,126 @@
+"""Prints a derivation as a NumPy module."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from closedform.derivation import Derivation
+from closedform.emit.code import Printer, Text
+from closedform.emit.text import WIDTH, banner, call_signature, docstring, interface
+from closedform.functions import Function
+from closedform.lower import Lowered
+from closedform.lower.graph import Node
+
+CALLS = {
+    "sqrt": "np.sqrt",
+    "atan2": "np.arctan2",
+    "abs": "np.abs",
+    "max": "np.maximum",
+    "min": "np.minimum",
+    "select": "np.where",
+    "not": "np.logical_not",
+    "finite": "np.isfinite",
+    "wrap": "_runtime.wrap",
+}
+DTYPES = {"real": "np.float64", "status": "np.uint8", "bool": "np.bool_"}
+
+
+class NumpyPrinter(Printer):
+    """NumPy code of a kernel over planes."""
+
+    def constant(self, text: str) -> Text:
+        return Text(text)
+
+    def call(self, op: str, args: list[str], node: Node) -> Text:
+        if op == "nan":
+            return Text("np.nan")
+        if op in ("true", "false"):
+            return Text(f"np.{op.capitalize()}_")
+        if op == "tolerance":
+            return Text(f"_runtime.{str(node.payload).upper()}")
+        return Text(f"{CALLS[op]}({', '.join(args)})")
+
+
+@dataclass(frozen=True)
+class NumpyFunction:
+    """The plain strings of one function, for the template."""
+
+    name: str
+    signature: str
+    arguments: str
+    returns: str
+    wrap: str
+    docstring: str
+    kernel_arguments: str
+    lines: tuple[str, ...]
+    values: tuple[str, ...]
+    inputs: str
+    outputs: str
+    used: str
+
+
+def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, Any]:
+    """The context of ``numpy/module.py.jinja``."""
+    return {
+        "banner": banner(derivation, lowered, "#"),
+        "interface": interface(derivation),
+        "functions": [_function(derivation, f, lowered[f.name]) for f in derivation.functions],
+    }
+
+
+def _function(derivation: Derivation, function: Function, program: Lowered) -> NumpyFunction:
+    printer = NumpyPrinter(program, reserved=("np",))
+    results = printer.run()
+    used = program.used_inputs()
+    lines = []
+    needed = {(n.op, n.args[0].id) for n in program.schedule() if n.op in ("sin", "cos")}
+    for angle, sine, cosine in printer.trig:
+        for op, name in (("sin", sine), ("cos", cosine)):
+            if (op, angle.id) in needed:
+                lines.append(f"{name} = np.{op}({printer.text[angle.id].code})")
+    lines += [f"{line.name} = {line.code}" for line in printer.lines]
+    entries = [str(e) for a in function.inputs for e in a.entries]
+    parameters = list(program.parameters)
+    names = [e if e in used else f"_{e}" for e in entries] + parameters
+    if function.result:
+        returns = f"_runtime.{function.result}"
+    else:
+        returns = "Any"
+    return NumpyFunction(
+        function.name,
+        call_signature(function),
+        tuple_code(a.name for a in function.inputs),
+        returns,
+        f"_runtime.{function.result}(*result)" if function.result else "result",
+        docstring(derivation, function),
+        _wrapped(", ".join(names), f"def _{function.name}():"),
+        tuple(lines),
+        tuple(v for result in results for v in result),
+        _arrays((a.name, a.shape, "real") for a in function.inputs),
+        _arrays((r.name, r.shape, r.kind) for r in program.results),
+        repr(program.parameters),
+    )
+
+
+def _wrapped(arguments: str, around: str) -> str:
+    """An argument list, on lines of its own where it would be too long."""
+    if len(arguments) + len(around) <= WIDTH:
+        return arguments
+    return "\n" + textwrap.indent(textwrap.fill(arguments, WIDTH - 4), "    ") + "\n"
+
+
+def _arrays(specs: Any) -> str:
+    items = []
+    for name, shape, kind in specs:
+        dtype = "" if kind == "real" else f", {DTYPES[kind]}"
+        items.append(f'_runtime.Array("{name}", {shape!r}{dtype})')
+    return tuple_code(items)
+
+
+def tuple_code(items: Iterable[str]) -> str:
+    """A tuple as Python writes it, on one line."""
+    listed = list(items)
+    return f"({listed[0]},)" if len(listed) == 1 else f"({', '.join(listed)})"

@@ -1,0 +1,179 @@
+"""The lemmas that solve for a joint, with the names of the field.
+
+Each is a function that adds its statements to a :class:`~closedform.functions.Program` and returns a
+:class:`Lemma`: the equations, the unknowns and the closed form of each.  The closed forms are chosen
+for the boundary of the workspace: differences of lengths under the roots instead of
+``1 - cos(x)**2``, and ``atan2`` of half angles instead of ``acos``.
+
+:func:`closedform.prove.prove_lemma` proves a lemma once, for symbolic coefficients: its solutions
+satisfy the equations, and the equations have no others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from closedform.functions import Program, choose
+
+
+@dataclass(frozen=True)
+class Lemma:
+    """A lemma applied: ``equations`` vanish at ``solution`` (unknown -> closed form).
+
+    ``pairs`` has the sine and the cosine of an unknown where they are known without trigonometry.
+    """
+
+    name: str
+    statement: str
+    equations: tuple[sp.Expr, ...]
+    solution: Mapping[sp.Symbol, sp.Expr]
+    branches: int
+    pairs: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
+
+    def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
+        return self.solution[unknown]
+
+
+def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:
+    """``cos x : sin x = cosine : sine``, both known up to a common positive factor.
+
+    One solution; x is free where both vanish.
+    """
+    return Lemma(
+        "atan2 of a linear pair",
+        r"\sin x\,B - \cos x\,A = 0,\ A\sin x + B\cos x > 0 \;\Rightarrow\; "
+        r"x = \operatorname{atan2}(A, B)",
+        (sp.sin(x) * cosine - sp.cos(x) * sine,),
+        {x: sp.atan2(sine, cosine)},
+        1,
+    )
+
+
+def sine_cosine(
+    program: Program,
+    x: sp.Symbol,
+    a: sp.Expr,
+    b: sp.Expr,
+    c: sp.Expr,
+    sigma: sp.Symbol,
+    *,
+    suffix: str = "",
+) -> Lemma:
+    """``a sin x + b cos x = c``: two solutions where ``a^2 + b^2 >= c^2``.
+
+    With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``, and the half angle
+    of ``x - atan2(a, b)`` has the tangent ``sqrt(h - c) / sqrt(h + c)``.  x is free where
+    ``a = b = c = 0``.
+    """
+    h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
+    below = program.bound(f"below{suffix}", h - c, h, "the amplitude is not smaller than c")
+    above = program.bound(f"above{suffix}", h + c, h, "the amplitude is not smaller than -c")
+    half = sp.atan2(sp.sqrt(below), sp.sqrt(above))
+    return Lemma(
+        "a sin x + b cos x = c",
+        r"a\sin x + b\cos x = c \;\Rightarrow\; x = \operatorname{atan2}(a, b) + "
+        r"2\sigma\operatorname{atan2}(\sqrt{h-c}, \sqrt{h+c}),\ h = \sqrt{a^2+b^2}",
+        (a * sp.sin(x) + b * sp.cos(x) - c,),
+        {x: sp.atan2(a, b) + 2 * sigma * half},
+        2,
+    )
+
+
+def two_link_triangle(
+    program: Program,
+    first: sp.Expr,
+    second: sp.Expr,
+    reach: sp.Expr,
+    elbow: sp.Symbol,
+    base: sp.Symbol,
+    sigma: sp.Symbol,
+    *,
+    suffix: str = "",
+) -> Lemma:
+    """The triangle of two links of lengths ``first``, ``second`` whose ends are ``reach`` apart.
+
+    ``elbow`` is the joint angle between the links (zero when stretched), ``base`` the angle from the
+    first link to the line of the ends, so that a link at ``theta`` reaches the direction
+    ``theta + base``.  Two mirror solutions.  With the four factors of Heron's formula, S, A, B, C,
+
+        tan(elbow / 2) = sqrt(S A) / sqrt(B C),   tan(base / 2) = sqrt(A C) / sqrt(S B).
+
+    The elbow is free where a link has no length, and the base where the reach is zero.
+    """
+    scale = first + second
+    S = program.let(f"S{suffix}", first + second + reach, nonnegative=True)
+    A = program.bound(f"A{suffix}", first + second - reach, scale, "nearer than full stretch")
+    B = program.bound(f"B{suffix}", reach + first - second, scale, "farther than the fold")
+    C = program.bound(f"C{suffix}", reach - first + second, scale, "farther than the fold")
+    rS, rA, rB, rC = (
+        program.let(f"r{name}{suffix}", sp.sqrt(value), nonnegative=True)
+        for name, value in (("S", S), ("A", A), ("B", B), ("C", C))
+    )
+    return Lemma(
+        "two-link triangle",
+        r"\tan\frac{\theta}{2} = \sigma\frac{\sqrt{S A}}{\sqrt{B C}},\quad "
+        r"\tan\frac{\alpha}{2} = \sigma\frac{\sqrt{A C}}{\sqrt{S B}}",
+        (
+            first + second * sp.cos(elbow) - reach * sp.cos(base),
+            second * sp.sin(elbow) - reach * sp.sin(base),
+        ),
+        {
+            elbow: 2 * sigma * sp.atan2(rS * rA, rB * rC),
+            base: 2 * sigma * sp.atan2(rA * rC, rS * rB),
+        },
+        2,
+    )
+
+
+def zyz_angles(
+    program: Program,
+    R: sp.Matrix,
+    first: sp.Symbol,
+    middle: sp.Symbol,
+    last: sp.Symbol,
+    sigma: sp.Symbol,
+    *,
+    suffix: str = "",
+) -> Lemma:
+    """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, one for each sign of sin(middle).
+
+    The third column of R gives the first two angles.  The last is *not* read from the third row, as
+    the textbooks do: near ``middle = 0`` that row knows nothing of it.  It follows from the rotation
+    that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row is
+    ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
+
+    Where ``sin(middle) = 0`` only ``first + last`` (or ``first - last``) is determined; the
+    convention is ``first = 0``.
+    """
+    h = program.let(f"h{suffix}", sp.sqrt(R[0, 2] ** 2 + R[1, 2] ** 2), nonnegative=True)
+    aligned = program.vanishes(
+        f"aligned{suffix}", h, 1, "the first and the last axis coincide", free=(first,)
+    )
+    c_first = program.let(f"c_{first}", choose(aligned, 1, sigma * R[0, 2] / h))
+    s_first = program.let(f"s_{first}", choose(aligned, 0, sigma * R[1, 2] / h))
+    s_middle = c_first * R[0, 2] + s_first * R[1, 2]
+    s_last = c_first * R[1, 0] - s_first * R[0, 0]
+    c_last = c_first * R[1, 1] - s_first * R[0, 1]
+    return Lemma(
+        "ZYZ angles",
+        r"c_1 = \sigma R_{13}/h,\ s_1 = \sigma R_{23}/h,\ h = \sqrt{R_{13}^2 + R_{23}^2};\quad "
+        r"\theta_2 = \operatorname{atan2}(c_1 R_{13} + s_1 R_{23}, R_{33});\quad "
+        r"\theta_3 = \operatorname{atan2}(c_1 R_{21} - s_1 R_{11}, c_1 R_{22} - s_1 R_{12})",
+        (
+            sp.cos(first) * sp.sin(middle) - R[0, 2],
+            sp.sin(first) * sp.sin(middle) - R[1, 2],
+            sp.cos(middle) - R[2, 2],
+            sp.sin(last) - (sp.cos(first) * R[1, 0] - sp.sin(first) * R[0, 0]),
+            sp.cos(last) - (sp.cos(first) * R[1, 1] - sp.sin(first) * R[0, 1]),
+        ),
+        {
+            first: sp.atan2(s_first, c_first),
+            middle: sp.atan2(s_middle, R[2, 2]),
+            last: sp.atan2(s_last, c_last),
+        },
+        2,
+        {first: (s_first, c_first)},
+    )

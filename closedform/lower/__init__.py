@@ -1,0 +1,5 @@
+"""From exact expressions to a short straight-line program that any language can print."""
+
+from closedform.lower.program import Lowered, lower
+
+__all__ = ["Lowered", "lower"]

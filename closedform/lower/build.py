@@ -1,0 +1,173 @@
+"""From SymPy to the graph.
+
+Sines and cosines are taken of single joint angles only; those of sums and multiples follow by the
+addition theorem.  That costs four multiplications where one addition would do, and buys an error
+that does not grow with the angle: the double nearest to ``theta1 + theta2`` is off by an ulp of the
+sum, which for a joint that has turned a million times is far more than an ulp of the sine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import reduce
+
+import sympy as sp
+
+from closedform.functions import reject_floats
+from closedform.lower.graph import Graph, Node
+
+RELATIONS = {
+    sp.StrictLessThan: ("lt", False, False),
+    sp.LessThan: ("le", False, False),
+    sp.StrictGreaterThan: ("lt", True, False),
+    sp.GreaterThan: ("le", True, False),
+    sp.Equality: ("eq", False, False),
+    sp.Unequality: ("eq", False, True),
+}
+
+
+class Builder:
+    """Translates expressions over ``known`` symbols into nodes of one graph."""
+
+    def __init__(self, graph: Graph, known: Mapping[sp.Basic, Node], divisors: Mapping[sp.Basic, int]):
+        self.graph = graph
+        self.known = dict(known)
+        self.divisors = divisors
+        self.memo: dict[sp.Basic, Node] = {}
+        self.names: dict[int, str] = {}
+
+    def define(self, symbol: sp.Basic, node: Node) -> None:
+        self.known[symbol] = node
+
+    def __call__(self, expr: sp.Basic) -> Node:
+        if expr in self.known:
+            return self.known[expr]
+        if expr not in self.memo:
+            self.memo[expr] = self._translate(expr)
+        return self.memo[expr]
+
+    def _translate(self, expr: sp.Basic) -> Node:
+        graph = self.graph
+        if isinstance(expr, sp.logic.boolalg.Boolean):
+            return self._condition(expr)
+        if expr is sp.nan:
+            return graph.node("nan")
+        if expr.is_number:
+            reject_floats(expr, "lowering")
+            return graph.const(expr)
+        if isinstance(expr, sp.Add):
+            return graph.sum(self(t) for t in expr.as_ordered_terms())
+        if isinstance(expr, sp.Mul):
+            return self._product(expr)
+        if isinstance(expr, sp.Pow):
+            return self._power(expr)
+        if isinstance(expr, (sp.sin, sp.cos)):
+            sine, cosine = self._sine_cosine(expr.args[0])
+            return sine if isinstance(expr, sp.sin) else cosine
+        if isinstance(expr, sp.atan2):
+            return graph.atan2(*map(self, expr.args))
+        if isinstance(expr, sp.Abs):
+            return graph.even("abs", self(expr.args[0]))
+        if isinstance(expr, (sp.Max, sp.Min)):
+            op = "max" if isinstance(expr, sp.Max) else "min"
+            ordered = sorted(expr.args, key=sp.default_sort_key)
+            return reduce(lambda a, b: graph.node(op, a, b), map(self, ordered))
+        if isinstance(expr, sp.Piecewise):
+            *cases, (last, _) = expr.args
+            result = self(last)
+            for value, condition in reversed(cases):
+                result = graph.select(self(condition), self(value), result)
+            return result
+        raise TypeError(f"no lowering for {type(expr).__name__}: {expr}")
+
+    def _condition(self, expr: sp.Basic) -> Node:
+        graph = self.graph
+        if expr in (sp.true, sp.false):
+            return graph.node("true" if expr == sp.true else "false")
+        if isinstance(expr, sp.And):
+            return graph.every([self(a) for a in sorted(expr.args, key=sp.default_sort_key)])
+        if isinstance(expr, sp.Or):
+            return graph.any([self(a) for a in sorted(expr.args, key=sp.default_sort_key)])
+        if isinstance(expr, sp.Not):
+            return graph.negate(self(expr.args[0]))
+        op, swapped, negated = RELATIONS[type(expr)]
+        a, b = map(self, reversed(expr.args) if swapped else expr.args)
+        node = graph.node(op, a, b)
+        return graph.negate(node) if negated else node
+
+    def _product(self, expr: sp.Mul) -> Node:
+        numerator, denominator = [], []
+        for factor in expr.as_ordered_factors():
+            base, exponent = factor.as_base_exp()
+            if exponent.is_Rational and exponent.is_negative and not base.is_number:
+                denominator.append(self(sp.Pow(base, -exponent)))
+            elif factor.is_Rational and factor.q != 1 and abs(factor.p) == 1:
+                denominator.append(self.graph.const(factor.q))
+                numerator.append(self.graph.const(factor.p))
+            else:
+                numerator.append(self(factor))
+        top = self.graph.product(numerator)
+        return self.graph.div(top, self.graph.product(denominator)) if denominator else top
+
+    def _power(self, expr: sp.Pow) -> Node:
+        base, exponent = expr.args
+        if not (exponent.is_Rational and exponent.q in (1, 2)):
+            raise TypeError(f"no lowering for the power {expr}")
+        if exponent.is_negative:
+            return self.graph.div(self.graph.const(1), self(sp.Pow(base, -exponent)))
+        whole, half = divmod(exponent.p, exponent.q) if exponent.q == 2 else (exponent.p, 0)
+        factors = [self(base)] * whole
+        if half:
+            factors.append(self.graph.node("sqrt", self(base)))
+        return self.graph.product(factors)
+
+    def _sine_cosine(self, angle: sp.Expr) -> tuple[Node, Node]:
+        graph = self.graph
+        if isinstance(angle, sp.Add):
+            first, *rest = angle.as_ordered_terms()
+            s1, c1 = self._sine_cosine(first)
+            s2, c2 = self._sine_cosine(sp.Add(*rest))
+            sine = graph.sum([graph.product([s1, c2]), graph.product([c1, s2])])
+            cosine = graph.sum([graph.product([c1, c2]), graph.neg(graph.product([s1, s2]))])
+            self._suggest_names(angle, sine, cosine)
+            return sine, cosine
+        if angle.is_number:
+            return self(sp.sin(angle)), self(sp.cos(angle))
+        coefficient, symbol = angle.as_coeff_Mul()
+        if symbol not in self.known:
+            raise TypeError(f"the sine of {angle} is not one of a multiple of an input")
+        divisor = self.divisors.get(symbol, 1)
+        node = self.known[symbol]
+        unit = node if divisor == 1 else graph.div(node, graph.const(divisor))
+        multiple = coefficient * divisor
+        if not multiple.is_Integer:
+            raise TypeError(f"the sine of {angle} is not one of a rational multiple of an input")
+        sine, cosine = graph.odd("sin", unit), graph.even("cos", unit)
+        result = (graph.const(0), graph.const(1))
+        for _ in range(abs(int(multiple))):
+            s, c = result
+            result = (
+                graph.sum([graph.product([s, cosine]), graph.product([c, sine])]),
+                graph.sum([graph.product([c, cosine]), graph.neg(graph.product([s, sine]))]),
+            )
+        return (result[0] if multiple > 0 else graph.neg(result[0])), result[1]
+
+    def _suggest_names(self, angle: sp.Add, sine: Node, cosine: Node) -> None:
+        """``s12`` and ``c12`` for the sine and the cosine of theta1 + theta2."""
+        terms = [str(t) for t in angle.as_ordered_terms()]
+        if all(t.startswith("theta") for t in terms):
+            label = "".join(t.removeprefix("theta") for t in terms)
+            self.names.setdefault(sine.id, f"s{label}")
+            self.names.setdefault(cosine.id, f"c{label}")
+
+
+def angle_divisors(expressions: Iterable[sp.Basic]) -> dict[sp.Basic, int]:
+    """The common denominator of each angle's multiples: 2 where ``theta / 2`` occurs, else 1."""
+    divisors: dict[sp.Basic, int] = {}
+    for expr in expressions:
+        for function in expr.atoms(sp.sin, sp.cos):
+            for term in sp.Add.make_args(function.args[0]):
+                coefficient, symbol = term.as_coeff_Mul()
+                if not symbol.is_number:
+                    divisors[symbol] = int(sp.ilcm(divisors.get(symbol, 1), coefficient.q))
+    return divisors

@@ -1,0 +1,191 @@
+"""The expression graph: hash-consed nodes with their local identities applied.
+
+A node knows its operator and its operands and nothing of any language.  Negation is kept outside of
+products and sums, so that a value and its negative share one node ("sign twins").  Sums and products
+are n-ary until :mod:`closedform.lower.share` has looked for common parts in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Hashable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """An operator applied to operands.  ``payload`` is the constant, or the name of an input."""
+
+    id: int
+    op: str
+    args: tuple[Node, ...] = ()
+    payload: Hashable = None
+
+    def __repr__(self) -> str:
+        return f"{self.op}#{self.id}"
+
+
+BOOLEAN = frozenset({"lt", "le", "eq", "and", "or", "not", "finite", "true", "false"})
+
+
+@dataclass
+class Graph:
+    """Makes nodes; equal nodes are one."""
+
+    _nodes: dict[Hashable, Node] = field(default_factory=dict)
+
+    def node(self, op: str, *args: Node, payload: Hashable = None) -> Node:
+        key = (op, tuple(a.id for a in args), payload)
+        if key not in self._nodes:
+            self._nodes[key] = Node(len(self._nodes), op, args, payload)
+        return self._nodes[key]
+
+    def const(self, value: sp.Expr | int) -> Node:
+        value = sp.sympify(value)
+        if value.is_negative:
+            return self.neg(self.const(-value))
+        return self.node("const", payload=value)
+
+    def input(self, name: str) -> Node:
+        return self.node("input", payload=name)
+
+    def neg(self, a: Node) -> Node:
+        if a.op == "neg":
+            return a.args[0]
+        if is_const(a, 0) or a.op == "nan":
+            return a
+        return self.node("neg", a)
+
+    def sum(self, terms: Iterable[Node]) -> Node:
+        """An n-ary sum; its first term is positive, the sign of the whole stands outside."""
+        kept: list[Node] = []
+        for term in terms:
+            opposite = self.neg(term)
+            if opposite in kept:
+                kept.remove(opposite)
+            elif not is_const(term, 0):
+                kept.append(term)
+        if not kept:
+            return self.const(0)
+        kept.sort(key=lambda t: strip_sign(t).id)
+        if len(kept) == 1:
+            return kept[0]
+        if kept[0].op == "neg":
+            return self.neg(self.node("sum", *(self.neg(t) for t in kept)))
+        return self.node("sum", *kept)
+
+    def product(self, factors: Iterable[Node]) -> Node:
+        """An n-ary product of unsigned factors; the sign of the whole stands outside."""
+        negative = False
+        kept: list[Node] = []
+        for factor in factors:
+            if factor.op == "neg":
+                negative, factor = not negative, factor.args[0]
+            if is_const(factor, 0):
+                return factor
+            if not is_const(factor, 1):
+                kept.append(factor)
+        kept.sort(key=lambda f: f.id)
+        if not kept:
+            result = self.const(1)
+        elif len(kept) == 1:
+            result = kept[0]
+        else:
+            result = self.node("product", *kept)
+        return self.neg(result) if negative else result
+
+    def div(self, a: Node, b: Node) -> Node:
+        if is_const(b, 1) or is_const(a, 0):
+            return a
+        if a.op == "neg":
+            return self.neg(self.div(a.args[0], b))
+        if b.op == "neg":
+            return self.neg(self.div(a, b.args[0]))
+        return self.node("div", a, b)
+
+    def select(self, condition: Node, a: Node, b: Node) -> Node:
+        if condition.op == "true" or a is b:
+            return a
+        if condition.op == "false":
+            return b
+        if a.op == "neg" and b.op == "neg":
+            return self.neg(self.select(condition, a.args[0], b.args[0]))
+        if b.op == "neg" and is_const(a, 0):
+            return self.neg(self.select(condition, a, b.args[0]))
+        return self.node("select", condition, a, b)
+
+    def every(self, conditions: Sequence[Node]) -> Node:
+        return self._fold("and", conditions, "true", "false")
+
+    def any(self, conditions: Sequence[Node]) -> Node:
+        return self._fold("or", conditions, "false", "true")
+
+    def negate(self, condition: Node) -> Node:
+        opposite = {"true": "false", "false": "true"}.get(condition.op)
+        if opposite:
+            return self.node(opposite)
+        return condition.args[0] if condition.op == "not" else self.node("not", condition)
+
+    def atan2(self, y: Node, x: Node) -> Node:
+        """``atan2`` is odd in y, but for the cut: the callers wrap the result."""
+        if y.op == "neg":
+            return self.neg(self.node("atan2", y.args[0], x))
+        return self.node("atan2", y, x)
+
+    def odd(self, op: str, a: Node) -> Node:
+        """An odd function: the sign goes outside."""
+        return self.neg(self.node(op, a.args[0])) if a.op == "neg" else self.node(op, a)
+
+    def even(self, op: str, a: Node) -> Node:
+        """An even function: the sign goes away."""
+        return self.node(op, strip_sign(a))
+
+    def _fold(self, op: str, conditions: Sequence[Node], neutral: str, absorbing: str) -> Node:
+        kept: list[Node] = []
+        for condition in conditions:
+            if condition.op == absorbing:
+                return condition
+            if condition.op != neutral and condition not in kept:
+                kept.append(condition)
+        if not kept:
+            return self.node(neutral)
+        result = kept[0]
+        for condition in kept[1:]:
+            result = self.node(op, result, condition)
+        return result
+
+
+def is_const(node: Node, value: int) -> bool:
+    return node.op == "const" and node.payload == value
+
+
+def strip_sign(node: Node) -> Node:
+    return node.args[0] if node.op == "neg" else node
+
+
+def reachable(roots: Iterable[Node], stop: Container[str] = ()) -> Iterator[Node]:
+    """Every node below ``roots`` once, operands before operators, without recursion.
+
+    The operands of the operators in ``stop`` are not visited.
+    """
+    seen: set[int] = set()
+    stack: list[tuple[Node, bool]] = [(root, False) for root in reversed(list(roots))]
+    while stack:
+        node, expanded = stack.pop()
+        if expanded:
+            yield node
+        elif node.id not in seen:
+            seen.add(node.id)
+            stack.append((node, True))
+            if node.op in stop:
+                continue
+            stack.extend((a, False) for a in reversed(node.args) if a.id not in seen)
+
+
+def rebuild(roots: Sequence[Node], change: Callable[[Node, tuple[Node, ...]], Node]) -> list[Node]:
+    """The images of ``roots`` when every node is replaced, operands first, by ``change``."""
+    image: dict[int, Node] = {}
+    for node in reachable(roots):
+        image[node.id] = change(node, tuple(image[a.id] for a in node.args))
+    return [image[root.id] for root in roots]

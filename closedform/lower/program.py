@@ -1,0 +1,235 @@
+"""A Function lowered: inputs, the sines and cosines it needs, and a list of named values."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.derivation import Derivation
+from closedform.functions import Array, Bound, Function, Let, Match, Require, Vanishes
+from closedform.lower.build import Builder, angle_divisors
+from closedform.lower.graph import Graph, Node, reachable
+from closedform.lower.share import share
+
+STATUS = {"OK": 0, "UNREACHABLE": 1, "SINGULAR": 2, "INVALID": 3}
+LEAVES = frozenset({"const", "input", "nan", "tolerance", "true", "false", "sin", "cos"})
+
+
+@dataclass(frozen=True)
+class Result:
+    """An output array with its leading branch axis, entry by entry."""
+
+    name: str
+    shape: tuple[int, ...]
+    kind: str
+    nodes: tuple[Node, ...]
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """A straight-line program.
+
+    ``angles`` are the nodes whose sine and cosine are taken, in the order of first use; they depend
+    on the inputs alone.  ``names`` gives preferred names (from the derivation) to nodes.
+    """
+
+    name: str
+    inputs: tuple[Array, ...]
+    parameters: tuple[str, ...]
+    angles: tuple[Node, ...]
+    results: tuple[Result, ...]
+    names: Mapping[int, str]
+
+    @property
+    def roots(self) -> list[Node]:
+        return [n for r in self.results for n in r.nodes]
+
+    def schedule(self) -> list[Node]:
+        """Every node of the body, operands before operators."""
+        return list(reachable(self.roots))
+
+    def used_inputs(self, *, below_angles: bool = True) -> frozenset[str]:
+        """The inputs and parameters that are read; with ``below_angles`` off, by the body alone."""
+        nodes = self.schedule() if below_angles else reachable(self.roots, LEAVES)
+        return frozenset(str(n.payload) for n in nodes if n.op == "input")
+
+    def operations(self) -> dict[str, int]:
+        """How many operators of each kind one evaluation costs (a sincos counts once)."""
+        counts: Counter[str] = Counter()
+        for node in self.schedule():
+            if node.op not in LEAVES and node.op != "neg":
+                counts[node.op] += 1
+        counts["sincos"] = len(self.angles)
+        return {k: counts[k] for k in sorted(counts) if counts[k]}
+
+
+def lower(function: Function, derivation: Derivation) -> Lowered:
+    """Lower one function of a derivation."""
+    graph = Graph()
+    parameters = [p.symbol for p in derivation.parameters]
+    leaves = {s: graph.input(s.name) for s in (*function.symbols, *parameters)}
+    divisors = angle_divisors(_expressions(function))
+    names: dict[int, str] = {}
+    rows = []
+    for label, signs in function.cases():
+        rows.append(_Branch(function, derivation, graph, leaves, divisors, signs).run(names, label))
+    results = []
+    for k, output in enumerate(function.outputs):
+        nodes = tuple(n for row in rows for n in row[0][k])
+        lead = (len(rows),) if function.branches else ()
+        kind = "bool" if function.boolean else "real"
+        results.append(Result(output.name, (*lead, *output.shape), kind, nodes))
+    if function.has_status:
+        lead = (len(rows),) if function.branches else ()
+        results.append(Result("status", lead, "status", tuple(row[1] for row in rows)))
+
+    flat = [n for r in results for n in r.nodes]
+    renamed, names = _share_named(graph, flat, names)
+    lowered_results = []
+    position = 0
+    for result in results:
+        part = tuple(renamed[position : position + len(result.nodes)])
+        lowered_results.append(Result(result.name, result.shape, result.kind, part))
+        position += len(result.nodes)
+    angles = tuple(
+        dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op in ("sin", "cos"))
+    )
+    used = {str(n.payload) for n in reachable(renamed) if n.op == "input"}
+    return Lowered(
+        function.name,
+        function.inputs,
+        tuple(p.name for p in parameters if p.name in used),
+        angles,
+        tuple(lowered_results),
+        names,
+    )
+
+
+def _share_named(
+    graph: Graph, roots: Sequence[Node], names: Mapping[int, str]
+) -> tuple[list[Node], dict[int, str]]:
+    """Share common parts; names of the derivation follow their nodes."""
+    live = {n.id: n for n in reachable(roots) if n.id in names}
+    shared = share(graph, [*roots, *live.values()])
+    body = shared[: len(roots)]
+    alive = {n.id for n in reachable(body)}
+    images = dict(zip(live, shared[len(roots) :], strict=True))
+    return body, {images[i].id: names[i] for i in live if images[i].id in alive}
+
+
+def _expressions(function: Function) -> Iterable[sp.Basic]:
+    for statement in function.body:
+        if isinstance(statement, Require):
+            yield from statement.values
+        else:
+            yield statement.value
+    for output in function.outputs:
+        yield from output.entries
+
+
+@dataclass
+class _Branch:
+    """Lowers one branch: statements first, then outputs and the status."""
+
+    function: Function
+    derivation: Derivation
+    graph: Graph
+    leaves: Mapping[sp.Basic, Node]
+    divisors: Mapping[sp.Basic, int]
+    signs: Mapping[sp.Symbol, int]
+
+    def run(self, names: dict[int, str], label: str) -> tuple[list[list[Node]], Node]:
+        graph = self.graph
+        build = Builder(graph, self.leaves, self.divisors)
+        for symbol, sign in self.signs.items():
+            build.define(symbol, graph.const(sign))
+        build.names = names
+        invalid, unreachable, singular = [self._invalid_input()], [], []
+
+        def limit(name: str, scale: sp.Expr) -> Node:
+            return graph.product([graph.node("tolerance", payload=name), build(scale)])
+
+        for statement in self.function.body:
+            if isinstance(statement, Let):
+                self._name(names, build, statement.symbol, build(statement.value), label)
+            elif isinstance(statement, Bound):
+                raw = build(statement.value)
+                allowed = graph.neg(limit("feasibility", statement.scale))
+                unreachable.append(graph.node("lt", raw, allowed))
+                clamped = graph.node("max", raw, graph.const(0))
+                self._name(names, build, statement.symbol, clamped, label)
+            elif isinstance(statement, Match):
+                size = graph.even("abs", build(statement.value))
+                unreachable.append(graph.node("lt", limit("feasibility", statement.scale), size))
+            elif isinstance(statement, Vanishes):
+                flag = graph.node("le", build(statement.value), limit("vanishing", statement.scale))
+                build.define(statement.symbol, flag)
+                if statement.free:
+                    singular.append(flag)
+            else:
+                sizes = [graph.even("abs", build(v)) for v in statement.values]
+                worst = sizes[0]
+                for size in sizes[1:]:
+                    worst = graph.node("max", worst, size)
+                invalid.append(graph.node("lt", limit("rotation", statement.scale), worst))
+
+        bad_input, out_of_reach = graph.any(invalid), graph.any(unreachable)
+        failed = graph.any([bad_input, out_of_reach]) if self._guarded else graph.node("false")
+        for node, name in (
+            (bad_input, "invalid"),
+            (out_of_reach, "unreachable"),
+            (failed, "failed"),
+        ):
+            names.setdefault(node.id, name)
+        outputs = [
+            [self._output(build, failed, e) for e in output.entries]
+            for output in self.function.outputs
+        ]
+        return outputs, self._status(bad_input, out_of_reach, graph.any(singular))
+
+    @property
+    def _guarded(self) -> bool:
+        """Whether a failure is to be marked: by a status, or by NaN for a missing branch."""
+        return self.function.has_status or any(
+            isinstance(s, (Bound, Match)) for s in self.function.body
+        )
+
+    def _output(self, build: Builder, failed: Node, entry: sp.Basic) -> Node:
+        node = build(entry)
+        if self.function.boolean:
+            return self.graph.every([self.graph.negate(failed), node])
+        if entry.has(sp.atan2):
+            node = self.graph.node("wrap", node)
+        return self.graph.select(failed, self.graph.node("nan"), node)
+
+    def _status(self, invalid: Node, unreachable: Node, singular: Node) -> Node:
+        graph = self.graph
+        result = graph.select(singular, graph.const(STATUS["SINGULAR"]), graph.const(STATUS["OK"]))
+        result = graph.select(unreachable, graph.const(STATUS["UNREACHABLE"]), result)
+        return graph.select(invalid, graph.const(STATUS["INVALID"]), result)
+
+    def _invalid_input(self) -> Node:
+        """An input or a parameter that is not finite, or a length that is negative."""
+        graph = self.graph
+        used = {s for e in _expressions(self.function) for s in e.free_symbols}
+        parameters = [p for p in self.derivation.parameters if p.symbol in used]
+        entries = [*self.function.symbols, *(p.symbol for p in parameters)]
+        finite = [graph.node("finite", self.leaves[s]) for s in entries]
+        lengths = [
+            graph.node("le", graph.const(0), self.leaves[p.symbol])
+            for p in parameters
+            if p.nonnegative
+        ]
+        return graph.negate(graph.every([*finite, *lengths]))
+
+    def _name(
+        self, names: dict[int, str], build: Builder, symbol: sp.Symbol, node: Node, label: str
+    ) -> None:
+        build.define(symbol, node)
+        depends = self.function.branches and len(self.function.branches) > 1
+        if node.op not in LEAVES and node.id not in names:
+            taken = symbol.name in names.values() and depends
+            names[node.id] = f"{symbol.name}_{label}" if taken else symbol.name

@@ -1,0 +1,432 @@
+"""Rigorous evaluation of symbolic expressions in ball arithmetic (Arb).
+
+`Evaluator` compiles expressions once to steps over numbered registers, one step for each distinct
+sub-expression, and runs them at as many points as wanted. A float counts as the binary number it
+is. The precision doubles until every enclosure is tight relative to the terms it was added up
+from, so that a sum that cancels to zero is tight as well.
+
+Multiples of `pi` given as values stay exact in sines and cosines: `sin(theta)` at `pi` is 0, and
+`atan2(sin(theta), -1)` is `pi`, not a ball across the branch cut. A comparison with an undefined
+value is false, as in IEEE arithmetic.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
+from functools import reduce
+from typing import TypeAlias
+
+import flint
+import sympy as sp
+from flint import arb, fmpq
+from sympy import Expr, Symbol
+from sympy.core.relational import Relational
+from sympy.logic.boolalg import Boolean
+
+Value: TypeAlias = "int | Fraction | float | Expr"
+Registers: TypeAlias = "list[arb]"
+Step: TypeAlias = "tuple[int, Callable[..., arb], tuple[int, ...] | None]"
+Test: TypeAlias = "Callable[[Registers], bool | None]"
+
+_SPARE_BITS = 40
+_UNDEFINED = arb("nan")  # told from the nan of a too wide ball by identity
+
+
+class Undetermined(ArithmeticError):
+    """A comparison, a branch or a value stayed open at the highest precision."""
+
+
+class _Undefined(Exception):
+    """The value provably does not exist."""
+
+
+class _Open(Exception):
+    """A comparison is open at this precision."""
+
+
+def evaluate(
+    exprs: Sequence[Expr] | sp.MatrixBase,
+    values: Mapping[Symbol, Value],
+    rel_bits: int = 80,
+    max_bits: int = 4000,
+) -> list[arb]:
+    """Enclosures of the expressions at one point; see `Evaluator`."""
+    return Evaluator(tuple(values), exprs, rel_bits, max_bits)(values)
+
+
+class Evaluator:
+    """Enclosures of fixed expressions at many points.
+
+    Every returned ball has radius at most `2**-rel_bits` times the larger of its midpoint and its
+    natural scale (the sum of the moduli of the terms, where the expression is a sum). An entry
+    that is provably undefined at a point (a square root of a negative number, a division by zero,
+    `atan2(0, 0)`) is the ball `nan`; `Undetermined` is raised if `max_bits` do not settle the point.
+    A radicand that cannot be told from zero is taken to be nonnegative.
+    """
+
+    def __init__(
+        self,
+        symbols: Iterable[Symbol],
+        exprs: Sequence[Expr] | sp.MatrixBase,
+        rel_bits: int = 80,
+        max_bits: int = 4000,
+    ) -> None:
+        self.symbols = tuple(symbols)
+        self.exprs = tuple(sp.sympify(e) for e in exprs)
+        self.rel_bits, self.max_bits = rel_bits, max_bits
+        missing = {s for e in self.exprs for s in e.free_symbols} - set(self.symbols)
+        if missing:
+            raise KeyError(f"no value for {', '.join(sorted(map(str, missing)))}")
+        self._program = _Program(self.symbols, self.exprs)
+
+    def __call__(self, values: Mapping[Symbol, Value] | Sequence[Value]) -> list[arb]:
+        """Enclosures at a point, given by symbol or in the order of `symbols`."""
+        if isinstance(values, Mapping):
+            values = [values[s] for s in self.symbols]
+        if len(values) != len(self.symbols):
+            raise ValueError(f"{len(self.symbols)} values expected, {len(values)} given")
+        point = [_Point(v) for v in values]
+        bits = min(self.rel_bits + _SPARE_BITS, self.max_bits)
+        while True:
+            with flint.ctx.workprec(bits):
+                try:
+                    registers = self._program.run(point)
+                    balls = [registers[i] for i in self._program.outputs]
+                    if all(map(self._is_tight, self.exprs, balls, [registers] * len(balls))):
+                        return balls
+                    obstacle = "a value stays wide"
+                except _Open as reason:
+                    obstacle = str(reason)
+            if bits == self.max_bits:
+                break
+            bits = min(2 * bits, self.max_bits)
+        at = ", ".join(f"{s} = {v}" for s, v in zip(self.symbols, values, strict=True))
+        raise Undetermined(f"{obstacle} at {self.max_bits} bits; the point is {at}")
+
+    def _is_tight(self, e: Expr, ball: arb, registers: Registers) -> bool:
+        if ball is _UNDEFINED or ball.rel_accuracy_bits() >= self.rel_bits:
+            return True
+        if not ball.is_finite():
+            return False
+        tolerance = self._program.scale(e, registers) * arb(2) ** -self.rel_bits
+        return bool(ball.rad() <= tolerance)
+
+
+def to_float(ball: arb) -> float:
+    """The double nearest to the midpoint."""
+    if not ball.is_finite():
+        return math.nan
+    mantissa, exponent = ball.mid().man_exp()
+    try:
+        return float(Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
+    except OverflowError:
+        return math.copysign(math.inf, int(mantissa))
+
+
+def ulp_error(computed: float, enclosure: arb, scale: float) -> float:
+    """Upper bound of `|computed - exact|` in units in the last place of `scale`."""
+    if not (math.isfinite(computed) and enclosure.is_finite()):
+        return 0.0 if math.isnan(computed) and enclosure.is_nan() else math.inf
+    error = abs(arb(computed) - enclosure) / arb(math.ulp(scale))
+    return math.nextafter(to_float(error.abs_upper()), math.inf) if not error.is_zero() else 0.0
+
+
+class _Point:
+    """One exact value: its ball at the current precision, and its turns if a multiple of pi."""
+
+    def __init__(self, value: Value) -> None:
+        self.turns: fmpq | None = None
+        self._program: _Program | None = None
+        if isinstance(value, Expr) and not value.is_Float and not value.is_Rational:
+            self._program = _Program((), (value,))
+            multiple = value / sp.pi
+            if multiple.is_Rational:
+                self.turns = fmpq(int(multiple.p), int(multiple.q))
+            return
+        exact = _fraction(value)
+        self._value = fmpq(exact.numerator, exact.denominator)
+        if not exact:
+            self.turns = fmpq(0)
+
+    def ball(self) -> arb:
+        if self._program is None:
+            return arb(self._value)
+        return self._program.run([])[self._program.outputs[0]]
+
+
+def _fraction(value: Value) -> Fraction:
+    if isinstance(value, Expr):
+        if value.is_Rational:
+            return Fraction(int(value.p), int(value.q))
+        sign, mantissa, exponent, _ = value._mpf_
+        return Fraction(int(mantissa) * (-1) ** sign) * Fraction(2) ** int(exponent)
+    return Fraction(value)
+
+
+class _Program:
+    """Straight-line code; a branch of a `Piecewise` is a block that runs only if it is chosen."""
+
+    def __init__(self, symbols: Sequence[Symbol], exprs: Sequence[Expr]) -> None:
+        self._symbols = {s: i for i, s in enumerate(symbols)}
+        self._size = len(symbols)
+        self._turns: list[fmpq | None] | None = None
+        self._block: list[Step] = []
+        self._register: dict[Expr, int] = dict(self._symbols)
+        self._constants: list[Step] = []
+        self._initial: dict[int, Registers] = {}
+        self.outputs = tuple(map(self._compile, exprs))
+
+    def run(self, point: Sequence[_Point]) -> Registers:
+        """All registers at a point, at the precision that is set."""
+        bits = flint.ctx.prec
+        if bits not in self._initial:
+            self._initial[bits] = [arb(0)] * self._size
+            _execute(self._constants, self._initial[bits])
+        registers = self._initial[bits].copy()
+        registers[: len(point)] = [p.ball() for p in point]
+        turned = any(p.turns for p in point)
+        self._turns = [p.turns for p in point] if turned else None
+        _execute(self._block, registers)
+        return registers
+
+    def scale(self, e: Expr, registers: Registers) -> arb:
+        """Size of what was added up to `e`: the measure for the width of its enclosure."""
+        if e.is_Add:
+            return reduce(operator.add, (self.scale(a, registers) for a in e.args))
+        if e.is_Mul:
+            return reduce(operator.mul, (self.scale(a, registers) for a in e.args))
+        value = registers[self._register[e]].abs_upper()
+        if e.is_Pow and e.exp.is_positive:
+            return self.scale(e.base, registers) ** fmpq(int(e.exp.p), int(e.exp.q))
+        return value if e.is_Atom or e.is_Pow else value.max(arb(1))
+
+    # Compilation
+
+    def _compile(self, e: Expr) -> int:
+        known = self._register.get(e)
+        if known is None:
+            known = self._register[e] = self._emit(e)
+        return known
+
+    def _step(self, function: Callable[..., arb], args: Iterable[int] | None) -> int:
+        self._size += 1
+        operands = None if args is None else tuple(args)
+        self._block.append((self._size - 1, function, operands))
+        return self._size - 1
+
+    def _emit(self, e: Expr) -> int:
+        if e.is_Rational:
+            return self._constant(lambda: arb(fmpq(int(e.p), int(e.q))))
+        if e is sp.pi:
+            return self._constant(arb.pi)
+        if e.is_Pow:
+            return self._step(_power(e), [self._compile(e.base)])
+        if isinstance(e, sp.sin | sp.cos | sp.tan):
+            return self._trigonometric(e)
+        if isinstance(e, sp.cot | sp.sec | sp.csc):
+            return self._compile(1 / _RECIPROCAL[e.func](e.args[0]))
+        if isinstance(e, sp.Piecewise):
+            return self._piecewise(e)
+        function = next((f for kind, f in _FUNCTIONS.items() if isinstance(e, kind)), None)
+        if function is None:
+            kind = "a float" if e.is_Float else f"of type {type(e).__name__}"
+            raise TypeError(f"cannot evaluate {e}: it is {kind}")
+        return self._step(function, [self._compile(a) for a in e.args])
+
+    def _constant(self, function: Callable[[], arb]) -> int:
+        self._size += 1
+        self._constants.append((self._size - 1, function, ()))
+        return self._size - 1
+
+    def _trigonometric(self, e: Expr) -> int:
+        plain, of_turns = _TRIGONOMETRIC[e.func]
+        register = self._compile(e.args[0])
+        terms = e.args[0].as_coefficients_dict()
+        if not all(atom in self._symbols or atom is sp.pi for atom in terms):
+            return self._step(plain, [register])
+        multiples = {atom: fmpq(int(q.p), int(q.q)) for atom, q in terms.items()}
+        half_turn = multiples.pop(sp.pi, fmpq(0))
+        angles = [(self._symbols[atom], q) for atom, q in multiples.items()]
+
+        def exact_or_plain(registers: Registers) -> arb:
+            if self._turns is None:
+                return plain(registers[register])
+            turns = [self._turns[i] for i, _ in angles]
+            if any(t is None for t in turns):
+                return plain(registers[register])
+            products = (q * t for (_, q), t in zip(angles, turns, strict=True))
+            return of_turns(sum(products, half_turn))
+
+        return self._step(exact_or_plain, None)
+
+    def _piecewise(self, e: Expr) -> int:
+        arms = [(self._test(condition), *self._branch(value)) for value, condition in e.args]
+
+        def choose(registers: Registers) -> arb:
+            for test, block, result in arms:
+                holds = test(registers)
+                if holds is None:
+                    raise _Open(f"a condition of {e} stays open")
+                if holds:
+                    _execute(block, registers)
+                    return registers[result]
+            raise _Undefined
+
+        return self._step(choose, None)
+
+    def _branch(self, e: Expr) -> tuple[list[Step], int]:
+        """The steps that only this branch needs; what they compute is not known outside."""
+        outer, known = self._block, self._register.copy()
+        self._block = []
+        result = self._compile(e)
+        block, self._block, self._register = self._block, outer, known
+        return block, result
+
+    def _test(self, condition: Boolean) -> Test:
+        if isinstance(condition, Relational):
+            left, right = self._compile(condition.lhs), self._compile(condition.rhs)
+            compare = _COMPARISONS[condition.rel_op]
+            return lambda registers: compare(registers[left], registers[right])
+        if condition in (sp.true, sp.false):
+            truth = bool(condition)
+            return lambda registers: truth
+        parts = [self._test(part) for part in condition.args]
+        if isinstance(condition, sp.Not):
+            return lambda registers: _not(parts[0](registers))
+        if isinstance(condition, sp.And | sp.Or):
+            decisive = isinstance(condition, sp.Or)
+            return lambda registers: _combine(decisive, [part(registers) for part in parts])
+        raise TypeError(f"cannot evaluate the condition {condition}")
+
+
+def _execute(block: Sequence[Step], registers: Registers) -> None:
+    for target, function, args in block:
+        if args is None:
+            operands = [registers]
+        else:
+            operands = [registers[i] for i in args]
+            if any(x is _UNDEFINED for x in operands):
+                registers[target] = _UNDEFINED
+                continue
+        try:
+            registers[target] = function(*operands)
+        except _Undefined:
+            registers[target] = _UNDEFINED
+
+
+def _not(truth: bool | None) -> bool | None:
+    return None if truth is None else not truth
+
+
+def _combine(decisive: bool, truths: Sequence[bool | None]) -> bool | None:
+    """`Or` is decided by one True, `And` by one False."""
+    if decisive in truths:
+        return decisive
+    return None if None in truths else not decisive
+
+
+def _less(a: arb, b: arb) -> bool | None:
+    if a < b:
+        return True
+    # Only exact balls can be told to be equal.
+    return False if a is _UNDEFINED or b is _UNDEFINED or a >= b else None
+
+
+def _less_equal(a: arb, b: arb) -> bool | None:
+    if a <= b:
+        return True
+    return False if a is _UNDEFINED or b is _UNDEFINED or a > b else None
+
+
+def _same(a: arb, b: arb) -> bool | None:
+    if a == b:
+        return True
+    return False if a is _UNDEFINED or b is _UNDEFINED or a != b else None
+
+
+_COMPARISONS: dict[str, Callable[[arb, arb], bool | None]] = {
+    "<": _less,
+    "<=": _less_equal,
+    ">": lambda a, b: _less(b, a),
+    ">=": lambda a, b: _less_equal(b, a),
+    "==": _same,
+    "!=": lambda a, b: _not(_same(a, b)),
+}
+
+
+def _inverse(x: arb) -> arb:
+    if x.is_zero():
+        raise _Undefined
+    return 1 / x
+
+
+def _monotone(function: Callable[[arb], arb], low: int, high: int | None) -> Callable[[arb], arb]:
+    """A monotone function on its domain; a ball that reaches beyond the domain is cut."""
+
+    def restricted(x: arb) -> arb:
+        below, above = not x >= low, high is not None and not x <= high
+        if not (below or above) or not x.is_finite():
+            return function(x)
+        if x < low or (above and x > high):
+            raise _Undefined
+        ends = x.lower().max(arb(low)), x.upper() if high is None else x.upper().min(arb(high))
+        return function(ends[0]).union(function(ends[1]))
+
+    return restricted
+
+
+_sqrt = _monotone(arb.sqrt, 0, None)
+
+
+def _atan2(y: arb, x: arb) -> arb:
+    if y.is_zero() and x.is_zero():
+        raise _Undefined
+    return arb.atan2(y, x)
+
+
+def _sign(x: arb) -> arb:
+    sign = x.sgn()
+    if not sign.is_exact():
+        raise _Open("a sign stays open")
+    return sign
+
+
+def _tan_turns(q: fmpq) -> arb:
+    return arb.sin_pi_fmpq(q) * _inverse(arb.cos_pi_fmpq(q))
+
+
+def _power(e: Expr) -> Callable[[arb], arb]:
+    """The power with the constant exponent of `e`."""
+    exponent = e.exp
+    if exponent.is_Integer and exponent > 0:
+        return lambda x, n=int(exponent): x**n
+    if exponent.is_Integer:
+        return lambda x, n=int(-exponent): _inverse(x) ** n
+    if exponent.is_Rational and exponent.q == 2:
+        if exponent > 0:
+            return lambda x, n=int(exponent.p): _sqrt(x) ** n
+        return lambda x, n=int(-exponent.p): _inverse(_sqrt(x)) ** n
+    raise TypeError(f"cannot evaluate the power {e}")
+
+
+_FUNCTIONS: dict[type, Callable[..., arb]] = {
+    sp.Add: lambda *terms: reduce(operator.add, terms),
+    sp.Mul: lambda *factors: reduce(operator.mul, factors),
+    sp.atan2: _atan2,
+    sp.acos: _monotone(arb.acos, -1, 1),
+    sp.asin: _monotone(arb.asin, -1, 1),
+    sp.atan: arb.atan,
+    sp.Abs: abs,
+    sp.sign: _sign,
+    sp.Max: lambda *xs: reduce(arb.max, xs),
+    sp.Min: lambda *xs: reduce(arb.min, xs),
+}
+_TRIGONOMETRIC: dict[type, tuple[Callable[[arb], arb], Callable[[fmpq], arb]]] = {
+    sp.sin: (arb.sin, arb.sin_pi_fmpq),
+    sp.cos: (arb.cos, arb.cos_pi_fmpq),
+    sp.tan: (arb.tan, _tan_turns),
+}
+_RECIPROCAL = {sp.cot: sp.tan, sp.sec: sp.cos, sp.csc: sp.sin}

@@ -1,0 +1,241 @@
+"""How many solutions a kinematic system has: the measure of whether an inverse is complete.
+
+The unknown angles become pairs `s, c` on the unit circle, which turns the forward equations into
+polynomials over the field of rational functions in parameters and targets. The number of solutions
+of a zero-dimensional system, over the complex numbers and with multiplicity, is the number of
+monomials that no leading monomial of a Groebner basis divides. Targets that obey relations (the
+entries of a rotation) are first written in free parameters.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any, Literal
+
+import sympy as sp
+from flint import fmpq, fmpq_mat
+from sympy import QQ, Expr, Rational, Symbol
+from sympy.polys.groebnertools import groebner
+from sympy.polys.orderings import grevlex
+from sympy.polys.rings import PolyElement, PolyRing
+
+Monomial = tuple[int, ...]
+Method = Literal["generic", "specialised"]
+
+
+class InfinitelyManyError(ValueError):
+    """The system has a continuum of solutions for generic parameters."""
+
+
+@dataclass(frozen=True)
+class SolutionCount:
+    """The number of solutions for generic values of the parameters."""
+
+    count: int
+    """Solutions over the complex numbers, with multiplicity."""
+    distinct: bool
+    """Whether all of them are provably different from each other."""
+    method: Method
+    """`generic`: proved over the function field; `specialised`: the same at all `points`."""
+    points: tuple[dict[Symbol, Expr], ...] = ()
+
+    def __int__(self) -> int:
+        return self.count
+
+
+def count_solutions(
+    equations: Sequence[Expr] | sp.MatrixBase,
+    unknowns: Sequence[Symbol],
+    *,
+    target_substitution: Mapping[Symbol, Expr] | None = None,
+    saturate: Iterable[Expr] = (),
+    method: Method = "generic",
+    specialisations: int = 3,
+    seed: int = 0,
+) -> SolutionCount:
+    """Count the solutions of `equations = 0`.
+
+    An unknown that occurs in a sine or cosine is an angle, counted modulo a full turn. Every other
+    symbol is a parameter. `target_substitution` replaces target symbols that are not independent
+    by rational functions of free parameters (see `rotation_parametrisation`); `saturate` lists
+    expressions that must not vanish. Denominators that hold unknowns are saturated as well.
+
+    Raises `InfinitelyManyError` at a continuum of solutions.
+    """
+    system = _System(equations, unknowns, target_substitution or {}, list(saturate))
+    draw = random.Random(seed)
+    if method == "generic":
+        ring = PolyRing(system.variables, _function_field(system.parameters), grevlex)
+        basis = groebner([_element(ring, p) for p in system.polynomials], ring)
+        monomials = _standard_monomials(basis, ring)
+        distinct = _are_distinct(_specialised(basis, system.parameters, draw), monomials)
+        return SolutionCount(len(monomials), distinct, "generic")
+
+    ring = PolyRing(system.variables, QQ, grevlex)
+    points, counts, distinct = [], set(), True
+    for _ in range(specialisations):
+        point = {p: _random_rational(draw) for p in system.parameters}
+        basis = groebner([_element(ring, p.subs(point)) for p in system.polynomials], ring)
+        monomials = _standard_monomials(basis, ring)
+        distinct = distinct and _are_distinct(basis, monomials)
+        counts.add(len(monomials))
+        points.append(point)
+    if len(counts) != 1:
+        raise ValueError(f"the count differs between parameters ({sorted(counts)}): change `seed`")
+    return SolutionCount(counts.pop(), distinct, "specialised", tuple(points))
+
+
+def rotation_parametrisation(
+    parameters: tuple[Symbol, Symbol, Symbol] | None = None,
+) -> sp.ImmutableMatrix:
+    """Every rotation but the half turns, by the quaternion `(1, a, b, c)` (Euler-Rodrigues).
+
+    `(1 + |v|**2) R = (1 - |v|**2) I + 2 [v] + 2 v v^T` with `v = (a, b, c)`.
+    """
+    a, b, c = parameters or sp.symbols("rho1:4", real=True)
+    v = sp.Matrix([a, b, c])
+    cross = sp.Matrix([[0, -c, b], [c, 0, -a], [-b, a, 0]])
+    square = v.dot(v)
+    numerator = (1 - square) * sp.eye(3) + 2 * cross + 2 * v * v.T
+    return sp.ImmutableMatrix(numerator / (1 + square))
+
+
+class _System:
+    """Polynomials in `variables` with coefficients rational in `parameters`."""
+
+    def __init__(
+        self,
+        equations: Sequence[Expr] | sp.MatrixBase,
+        unknowns: Sequence[Symbol],
+        substitution: Mapping[Symbol, Expr],
+        saturate: Sequence[Expr],
+    ) -> None:
+        self._unknowns = set(unknowns)
+        self._circles: dict[Symbol, tuple[Symbol, Symbol]] = {}
+        given = [sp.sympify(e).subs(substitution) for e in [*equations, *saturate]]
+        algebraic = [self._without_angles(e) for e in given]
+        fractions = [sp.fraction(sp.together(e)) for e in algebraic]
+        plain = [u for u in unknowns if any(u in e.free_symbols for e in algebraic)]
+        self.variables = [v for pair in self._circles.values() for v in pair] + plain
+        missing = self._unknowns - set(plain) - set(self._circles)
+        if missing:
+            raise InfinitelyManyError(f"{sorted(missing, key=str)} not in the equations: free")
+        self.polynomials = [numerator for numerator, _ in fractions[: len(equations)]]
+        self.polynomials += [s**2 + c**2 - 1 for s, c in self._circles.values()]
+        nonzero = [numerator for numerator, _ in fractions[len(equations) :]]
+        nonzero += [d for _, d in fractions if d.has(*self.variables)]
+        for factor in dict.fromkeys(nonzero):
+            inverse = sp.Dummy(f"inverse{len(self.variables)}")
+            self.variables.append(inverse)
+            self.polynomials.append(inverse * factor - 1)
+        free = {s for p in self.polynomials for s in p.free_symbols}
+        self.parameters = sorted(free - set(self.variables), key=str)
+
+    def _without_angles(self, e: Expr) -> Expr:
+        """Unknown angles by sine and cosine, known ones by the tangent of their half."""
+        e = sp.expand_trig(e.rewrite([sp.tan, sp.cot, sp.sec, sp.csc], sp.cos))
+        replaced = {f: self._algebraic(f) for f in e.atoms(sp.sin, sp.cos)}
+        return e.xreplace(replaced)
+
+    def _algebraic(self, f: Expr) -> Expr:
+        angle = f.args[0]
+        if not angle.is_Symbol:
+            raise ValueError(f"{f}: take an angle of which all others are integer multiples")
+        if angle in self._unknowns:
+            if angle not in self._circles:
+                self._circles[angle] = (sp.Dummy(f"s_{angle}"), sp.Dummy(f"c_{angle}"))
+            return self._circles[angle][isinstance(f, sp.cos)]
+        half = Symbol(f"tan({angle}/2)")
+        numerator = 1 - half**2 if isinstance(f, sp.cos) else 2 * half
+        return numerator / (1 + half**2)
+
+
+def _function_field(parameters: Sequence[Symbol]) -> Any:
+    return QQ.frac_field(*parameters) if parameters else QQ
+
+
+def _element(ring: PolyRing, e: Expr) -> PolyElement:
+    try:
+        polynomial = sp.Poly(e, *ring.symbols, domain=ring.domain)
+    except sp.PolynomialError as reason:
+        raise ValueError(f"not rational: {e}; name each root as an unknown with its square") from (
+            reason
+        )
+    return ring.from_dict(polynomial.rep.to_dict())
+
+
+def _standard_monomials(basis: Sequence[PolyElement], ring: PolyRing) -> list[Monomial]:
+    """The monomials that no leading monomial divides; finitely many, or an error."""
+    leading = [g.LM for g in basis]
+    bounds = [
+        min((m[i] for m in leading if not any(m[:i] + m[i + 1 :])), default=None)
+        for i in range(ring.ngens)
+    ]
+    if None in bounds:
+        free = ring.symbols[bounds.index(None)]
+        raise InfinitelyManyError(f"the basis has no pure power of {free}")
+    candidates = product(*(range(bound) for bound in bounds if bound is not None))
+    return [m for m in candidates if not any(_divides(lead, m) for lead in leading)]
+
+
+def _divides(a: Monomial, b: Monomial) -> bool:
+    return all(i <= j for i, j in zip(a, b, strict=True))
+
+
+def _are_distinct(basis: Sequence[PolyElement], monomials: Sequence[Monomial]) -> bool:
+    """Whether the trace form of the quotient algebra over QQ is regular (Hermite).
+
+    The entries of the form are polynomials in the coefficients of the basis; so if the form is
+    regular at one specialisation, it is regular for generic parameters.
+    """
+    if not monomials:
+        return True
+    ring, size = basis[0].ring, len(monomials)
+    table = [
+        [_remainder(ring, basis, a, b) for b in monomials]  # products of basis elements
+        for a in monomials
+    ]
+    traces = [sum(row[j].get(m, QQ(0)) for j, m in enumerate(monomials)) for row in table]
+    form = [
+        sum(value * traces[monomials.index(m)] for m, value in entry.items())
+        for row in table
+        for entry in row
+    ]
+    matrix = fmpq_mat(size, size, [fmpq(int(v.numerator), int(v.denominator)) for v in form])
+    return matrix.det() != 0
+
+
+def _remainder(
+    ring: PolyRing, basis: Sequence[PolyElement], a: Monomial, b: Monomial
+) -> PolyElement:
+    return ring.from_dict({tuple(i + j for i, j in zip(a, b, strict=True)): QQ(1)}).rem(basis)
+
+
+def _specialised(
+    basis: Sequence[PolyElement], parameters: Sequence[Symbol], draw: random.Random
+) -> list[PolyElement]:
+    """A basis with numbers for its parameters, where no denominator vanishes."""
+    if not parameters:
+        return list(basis)
+    ring = basis[0].ring.clone(domain=QQ)
+    for point in _generic_points(len(parameters), draw):
+        try:
+            return [
+                ring.from_dict({m: c.evaluate(point) for m, c in g.terms()})
+                for g in (g.monic() for g in basis)
+            ]
+        except ZeroDivisionError:
+            continue
+    raise AssertionError("unreachable: the points do not end")
+
+
+def _generic_points(size: int, draw: random.Random) -> Iterator[list[tuple[int, Any]]]:
+    while True:
+        yield [(i, QQ(draw.randint(-99, 99), draw.randint(1, 20))) for i in range(size)]
+
+
+def _random_rational(draw: random.Random) -> Rational:
+    return Rational(draw.choice([-1, 1]) * draw.randint(1, 99), draw.randint(1, 20))

@@ -1,0 +1,46 @@
+"""Every tolerance of the project, once, with its reason.
+
+The generated code repeats these numbers; ``tests/test_tolerances.py`` asserts that it honours them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Tolerances of one floating-point type.
+
+    feasibility
+        A bound (a distance that must not be negative) may be violated by this fraction of its
+        natural scale, and then counts as zero: a target that is on the boundary up to the rounding
+        of whoever computed it is a target on the boundary.
+    vanishing
+        A quantity below this fraction of its scale counts as zero, and its joint as free.  It is
+        four units in the last place: ``sin`` of the double nearest to pi is 1.2e-16, so a smaller
+        value would not recognise a wrist turned by pi; a larger one would declare 1e-12 singular.
+    rotation
+        A matrix whose columns miss orthonormality (and right-handedness) by less is a rotation.
+        It admits matrices that went through single precision, and nothing that a person would
+        call a different matrix.
+    round_trip
+        ``|fk(ik(x)) - x|`` in units of the sum of the lengths.
+    ulps
+        The error of a function that is no inverse, in units in the last place of its natural
+        scale, against the Arb reference.
+    """
+
+    feasibility: float
+    vanishing: float
+    rotation: float
+    round_trip: float
+    ulps: float
+
+
+DOUBLE = Tolerances(
+    feasibility=1e-12, vanishing=2.0**-50, rotation=1e-6, round_trip=1.1e-12, ulps=8.0
+)
+FLOAT = Tolerances(
+    feasibility=1e-6, vanishing=2.0**-21, rotation=1e-4, round_trip=4e-6, ulps=8.0
+)

@@ -1,0 +1,264 @@
+"""The planar 2R arm of Reddy and Babu, by geometry and by Denavit-Hartenberg."""
+
+import sympy as sp
+from sympy import atan2, cos, sin, sqrt
+
+from closedform.derivation import Continuum, Derivation, Inverse, Solved
+from closedform.derivations.papers import REDDY_BABU
+from closedform.frames import chain, denavit_hartenberg, jacobian, merge_angles, rotation
+from closedform.functions import SINGLE, Program, branches, choose, real
+from closedform.lemmas import linear_pair, two_link_triangle
+
+d = Derivation(
+    "planar_2r",
+    "Planar 2R arm",
+    REDDY_BABU,
+    "Two links of lengths l1 and l2 move in the plane of x and y.  theta1 turns the first link "
+    "against the x axis, theta2 the second against the first, both counter-clockwise.",
+    task=["x", "y"],
+    singularities=("elbow",),
+)
+l1 = d.parameter("l1", value=10, unit="cm", meaning="length of the first link")
+l2 = d.parameter("l2", value=8, unit="cm", meaning="length of the second link")
+theta1 = d.joint("theta1")
+theta2 = d.joint("theta2")
+q = (theta1, theta2)
+
+# Forward kinematics by geometry
+
+link1 = rotation("z", theta1) * sp.Matrix([l1, 0, 0])
+link2 = rotation("z", theta1 + theta2) * sp.Matrix([l2, 0, 0])
+position = (link1 + link2)[:2, 0]
+d.step(
+    "Position by geometry",
+    "Each link is its length along the x axis, turned by its absolute angle; the links add up.",
+    {"x": position[0], "y": position[1]},
+    published=("(1)", "(2)"),
+)
+
+# Forward kinematics by Denavit-Hartenberg
+
+A1 = denavit_hartenberg(l1, 0, 0, theta1)
+A2 = denavit_hartenberg(l2, 0, 0, theta2)
+pose = chain([A1, A2])
+d.step(
+    "Pose by Denavit-Hartenberg",
+    "Table I has a = l1, l2 and no twist or offset.  The product of the two matrices has, in its "
+    "last column, the position found by geometry.",
+    {"A_1": A1, "A_2": A2, "T = A_1 A_2": pose},
+    published=("(6)", "(7)", "(8)", "Table I"),
+    equal=[(pose[:2, 3], position), (A1 * A2, pose)],
+)
+
+phi = theta1 + theta2
+d.step(
+    "Orientation",
+    "The first column of the pose is the direction of the last link, at the angle phi.",
+    {r"\phi": phi},
+    published=("(5)",),
+    equal=[(pose[:2, 0], sp.Matrix([cos(phi), sin(phi)]))],
+)
+
+d.function(
+    "fk",
+    "Position of the hand.",
+    {"q": q},
+    {"x": position},
+    source="eqs. (1) and (2)",
+)
+d.function("pose", "Pose of the hand frame in the base frame.", {"q": q}, {"T": pose}, source="eq. (8)")
+d.function(
+    "orientation",
+    "Angle phi of the last link against the x axis, the plain sum of the joint angles.",
+    {"q": q},
+    {"phi": phi},
+    source="eq. (5)",
+)
+
+# Velocity
+
+J = jacobian(sp.Matrix([*position, phi]), q)
+det = merge_angles(J[:2, :].det())
+manipulability = l1 * l2 * sp.Abs(sin(theta2))
+d.step(
+    "Jacobian and its determinant",
+    "The rows are the rates of x, y and phi.  The determinant of the rows of x and y does not "
+    "depend on theta1, because turning the whole arm changes nothing inside it.",
+    {"J": J, r"\det J_{xy}": det},
+    equal=[(J[:2, :].det(), det)],
+)
+d.step(
+    "Manipulability and singular set",
+    "Yoshikawa's measure sqrt(det(J J^T)) of the square Jacobian is the modulus of the determinant. "
+    "It vanishes exactly where sin(theta2) does (for links that have a length): the arm is "
+    "stretched or folded, and the hand cannot move along the arm.",
+    {"w": manipulability, r"w^2": sp.factor(det**2)},
+    equal=[((J[:2, :] * J[:2, :].T).det(), det**2)],
+)
+d.function(
+    "jacobian",
+    "Derivative of (x, y, phi) with respect to (theta1, theta2).",
+    {"q": q},
+    {"J": J},
+    source="derivative of eqs. (1), (2) and (5)",
+)
+d.function(
+    "determinant",
+    "Determinant of the rows of x and y of the Jacobian.",
+    {"q": q},
+    {"det": det},
+)
+d.function(
+    "manipulability",
+    "Yoshikawa's manipulability of the position, the modulus of the determinant.",
+    {"q": q},
+    {"w": manipulability},
+)
+d.function(
+    "singularities",
+    "The factor that vanishes exactly where the arm is stretched or folded.",
+    {"q": q},
+    {"factors": [sin(theta2)]},
+)
+
+# Inverse kinematics
+
+px, py = real("px"), real("py")
+sigma = real("sigma_elbow")
+alpha = real("alpha")
+elbow = branches((sigma, {+1: "elbow_down", -1: "elbow_up"}))
+d.branches = elbow.labels
+
+p = Program()
+r = p.let("r", sqrt(px**2 + py**2), nonnegative=True)
+triangle = two_link_triangle(p, l1, l2, r, theta2, alpha, sigma)
+at_base = p.vanishes("at_base", r, l1 + l2, "the hand is on the base axis", free=(theta1,))
+p.vanishes("no_link", l1 * l2, (l1 + l2) ** 2, "a link has no length", free=(theta2,))
+bearing = linear_pair(theta1, py, px)
+solution = {
+    theta1: choose(at_base, 0, bearing[theta1] - triangle[alpha]),
+    theta2: triangle[theta2],
+}
+d.solved += [
+    Solved("ik", theta2, triangle, px**2 + py**2 - l1**2 - l2**2 - 2 * l1 * l2 * cos(theta2)),
+    Solved(
+        "ik",
+        theta1,
+        bearing,
+        sin(theta1) * (px * (l1 + l2 * cos(theta2)) + py * l2 * sin(theta2))
+        - cos(theta1) * (py * (l1 + l2 * cos(theta2)) - px * l2 * sin(theta2)),
+    ),
+]
+d.step(
+    "Inverse: the elbow",
+    "The links and the line from the base to the hand form a triangle with the sides l1, l2 and r. "
+    "Half-angle formulas with the four factors of Heron's formula keep full accuracy at both "
+    "boundaries of the workspace, where the textbook's sqrt(1 - D^2) loses half the digits.",
+    {r"r": sqrt(px**2 + py**2), r"\theta_2": triangle[theta2], r"\alpha": triangle[alpha]},
+    published=("(3)",),
+)
+d.step(
+    "Inverse: the shoulder",
+    "The first link leaves the bearing of the hand by the angle alpha at the base of the triangle. "
+    "If the hand is on the base axis, which takes l1 = l2, every theta1 serves; we return 0.",
+    {r"\theta_1": bearing[theta1] - alpha},
+    published=("(4)",),
+)
+d.function(
+    "ik",
+    "Both elbow configurations that reach a position.",
+    {"x": (px, py)},
+    {"q": [solution[theta1], solution[theta2]]},
+    program=p,
+    branches=elbow,
+    result="Solutions",
+    source="eqs. (3) and (4), in half-angle form",
+    notes=(
+        "SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a "
+        "link without length, whose angle is free.",
+        "Ill-conditioned near full stretch and full fold: the angles lose half the digits there, "
+        "the position does not.",
+    ),
+)
+d.inverses.append(
+    Inverse(
+        "ik",
+        q,
+        (px, py),
+        tuple(position),
+        (
+            Continuum(
+                at_base,
+                {px: sp.Integer(0), py: sp.Integer(0), l2: l1},
+                theta1,
+                r"\theta_2 = \pi, \theta_1 any",
+            ),
+        ),
+    )
+)
+
+# Inverse kinematics from the full pose
+
+T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
+n, o, a, origin = (T[:3, j] for j in range(4))
+f = Program()
+f.require(
+    [
+        *(n.cross(o) - a),
+        n.dot(n) - 1,
+        o.dot(o) - 1,
+        n.dot(o),
+        T[3, 0],
+        T[3, 1],
+        T[3, 2],
+        T[3, 3] - 1,
+    ],
+    1,
+    "a homogeneous transform with a proper rotation",
+)
+elbow_x = f.let("elbow_x", origin[0] - l2 * n[0])
+elbow_y = f.let("elbow_y", origin[1] - l2 * n[1])
+f.match(sqrt(elbow_x**2 + elbow_y**2) - l1, l1 + l2, "the elbow is one link away from the base")
+f.match(origin[2], l1 + l2, "the hand is in the plane")
+for entry in (T[0, 2], T[1, 2], T[2, 2] - 1):
+    f.match(entry, sp.Integer(1), "the hand turns about z alone")
+no_first = f.vanishes("no_first_link", l1, l1 + l2, "the first link has no length", free=(theta1,))
+c1 = f.let("c1", choose(no_first, 1, elbow_x / l1))
+s1 = f.let("s1", choose(no_first, 0, elbow_y / l1))
+full = linear_pair(theta2, n[1] * c1 - n[0] * s1, n[0] * c1 + n[1] * s1)
+d.step(
+    "Inverse from the full pose",
+    "The pose tells where the elbow is, p - l2 n, and so theta1; then the first column of "
+    "A_1^{-1} T = A_2 gives theta2.  The other entries of eq. (9) are conditions on the pose.",
+    {
+        r"\theta_1": atan2(origin[1] - l2 * n[1], origin[0] - l2 * n[0]),
+        r"\theta_2": full[theta2],
+    },
+    published=("(9)", "(10)"),
+)
+d.function(
+    "ik_pose",
+    "The joint angles of a full pose; there is at most one.",
+    {"T": T},
+    {"q": [atan2(s1, c1), full[theta2]]},
+    program=f,
+    branches=SINGLE,
+    result="Solutions",
+    source="eq. (10)",
+    notes=("UNREACHABLE where the pose is not one of the arm, be it ever so little.",),
+)
+
+# Workspace
+
+d.step(
+    "Workspace",
+    "The bounds of the triangle are |l1 - l2| <= r <= l1 + l2: an annulus.",
+    {"r_{min}": sp.Abs(l1 - l2), "r_{max}": l1 + l2, "area": sp.pi * 4 * l1 * l2},
+    equal=[(sp.pi * ((l1 + l2) ** 2 - (l1 - l2) ** 2), 4 * sp.pi * l1 * l2)],
+)
+d.function(
+    "workspace_radii",
+    "Inner and outer radius of the annulus that the hand can reach.",
+    {},
+    {"radii": [sp.Abs(l1 - l2), l1 + l2]},
+)

@@ -1,0 +1,281 @@
+/* closedform.h: what every generated C module shares.
+ *
+ * C99 (and C++), header only, no state. real_t is double, or float if CLOSEDFORM_FLOAT is defined.
+ * Ship with -O3 -fno-math-errno -fno-trapping-math: without these two a compiler may not turn the
+ * selects below into vector code. Never with -ffast-math: the argument reduction depends on the
+ * order of its operations. Whether the compiler contracts a*b + c to an FMA makes no difference
+ * to the error bounds.
+ */
+#ifndef CLOSEDFORM_H
+#define CLOSEDFORM_H
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "closedform.h needs IEEE arithmetic: compile without -ffast-math and -ffinite-math-only"
+#endif
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD == 2
+#error "closedform.h needs arithmetic in the declared type: on x87, compile with -msse2 -mfpmath=sse"
+#endif
+
+#if defined(__GNUC__)
+#define CF_INLINE static inline __attribute__((always_inline))
+#define CF_RARE static __attribute__((cold, noinline, unused))
+#define CF_RESTRICT __restrict
+#else
+#define CF_INLINE static inline
+#define CF_RARE static inline
+#define CF_RESTRICT
+#endif
+
+/* Before the definition of a batch function: with CLOSEDFORM_DISPATCH the compiler builds it for
+ * AVX-512, AVX2 and the baseline, and the loader picks one. Elsewhere it means nothing. */
+#if defined(CLOSEDFORM_DISPATCH) && defined(__x86_64__) && defined(__GLIBC__) && \
+    !defined(__clang__) && defined(__GNUC__) && __GNUC__ >= 12
+#define CLOSEDFORM_BATCH \
+    __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define CLOSEDFORM_BATCH
+#endif
+
+/* Postures per block of a batch loop: the scratch of a block stays in the first-level cache. */
+#define CLOSEDFORM_BLOCK 256
+
+/* Status of one solution, stored as uint8_t. */
+enum closedform_status {
+    CLOSEDFORM_OK = 0,
+    CLOSEDFORM_UNREACHABLE = 1, /* no solution; the joints are NaN */
+    CLOSEDFORM_SINGULAR = 2,    /* a joint is free; it has its convention value, and fk(q) = x holds */
+    CLOSEDFORM_INVALID = 3      /* non-finite input or impossible parameter; the joints are NaN */
+};
+
+#ifdef CLOSEDFORM_FLOAT
+typedef float real_t;
+typedef uint32_t cf_word; /* the bits of a real_t */
+#define CF_REAL_MAX FLT_MAX
+#define CF_LIBM(name) name##f
+#else
+typedef double real_t;
+typedef uint64_t cf_word;
+#define CF_REAL_MAX DBL_MAX
+#define CF_LIBM(name) name
+#endif
+
+/* A decimal literal as real_t, without an implicit conversion. */
+#define CLOSEDFORM_C(x) ((real_t)(x))
+#define CLOSEDFORM_NAN CLOSEDFORM_C(NAN)
+/* The real_t nearest to pi: the largest angle returned. */
+#define CF_PI CLOSEDFORM_C(3.141592653589793)
+
+#define CF_TOP_BIT (8u * sizeof(cf_word) - 1u)
+#define CF_SIGN ((cf_word)((cf_word)1 << CF_TOP_BIT))
+
+CF_INLINE cf_word cf_to_word(real_t x)
+{
+    cf_word w;
+    memcpy(&w, &x, sizeof w);
+    return w;
+}
+
+CF_INLINE real_t cf_from_word(cf_word w)
+{
+    real_t x;
+    memcpy(&x, &w, sizeof x);
+    return x;
+}
+
+CF_INLINE real_t cf_sqrt(real_t x) { return CF_LIBM(sqrt)(x); }
+CF_INLINE real_t cf_abs(real_t x) { return CF_LIBM(fabs)(x); }
+CF_INLINE real_t cf_copysign(real_t size, real_t sign) { return CF_LIBM(copysign)(size, sign); }
+
+/* Unlike fmax and fmin these are one instruction: if either argument is NaN, the result is b. */
+CF_INLINE real_t cf_max(real_t a, real_t b) { return a > b ? a : b; }
+CF_INLINE real_t cf_min(real_t a, real_t b) { return a < b ? a : b; }
+
+CF_INLINE int cf_is_finite(real_t x) { return cf_abs(x) <= CF_REAL_MAX; }
+
+/* The constants of the two types. Polynomials: Remez in 260 bits, relative error of the function
+ * as the weight, coefficients then rounded in turn. Odd or even in the argument, with z its square:
+ *   sin r = r + r z S(z),  cos r = 1 + z (-1/2 + z C(z))  on |r| <= pi/4;
+ *   atan t = t + t z A(z)  on 0 <= t <= 1.
+ * Cody-Waite: pi/2 = CF_PIO2_1 + _2 + _3, all positive. With |n| <= 2^K, the first two have
+ * p - K bits (p the precision), so their products with n are exact; the third rounds, which costs
+ * n 2^(2K-3p) against a remainder that is 2^-60.5 (float: 2^-26.3) at its smallest. Over all n
+ * below the limit that error is at most 0.04 ulp for K = 18 (float: 0.02 for K = 7); one bit more
+ * would make it 2.1 (0.35) ulp. */
+#ifdef CLOSEDFORM_FLOAT
+
+#define CF_TRIG_LIMIT CLOSEDFORM_C(200.0)
+#define CF_PIO2_1 CLOSEDFORM_C(1.5707855224609375)
+#define CF_PIO2_2 CLOSEDFORM_C(1.0804273188114166e-05)
+#define CF_PIO2_3 CLOSEDFORM_C(6.07710062827671e-11)
+#define CF_ROUND CLOSEDFORM_C(8388608.0) /* 2^23 */
+#define CF_PIO2_LO CLOSEDFORM_C(-4.371139e-8)
+#define CF_TWO_PI_LO CLOSEDFORM_C(-1.7484555e-7)
+
+/* relative error of sin 2^-27.9, of cos 2^-33.0, of atan 2^-27.2 */
+CF_INLINE real_t cf_sin_poly(real_t z)
+{
+    return -0.166666552f + z * (0.00833218731f + z * -0.00019517896f);
+}
+
+CF_INLINE real_t cf_cos_poly(real_t z)
+{
+    return 0.0416666456f + z * (-0.00138873095f + z * 2.44323292e-5f);
+}
+
+CF_INLINE real_t cf_atan_poly(real_t z)
+{
+    const real_t z2 = z * z, z4 = z2 * z2;
+    const real_t low = (-0.333332986f + z * 0.199985296f) + z2 * (-0.142640144f + z * 0.109508604f);
+    const real_t high = (-0.0839920342f + z * 0.0578787364f) + z2 * (-0.031093346f + z * 0.0108661409f);
+    return low + z4 * (high + z4 * -0.00178210891f);
+}
+
+#else
+
+#define CF_TRIG_LIMIT CLOSEDFORM_C(400000.0)
+#define CF_PIO2_1 CLOSEDFORM_C(1.5707963267923333)
+#define CF_PIO2_2 CLOSEDFORM_C(2.5633441515839558e-12)
+#define CF_PIO2_3 CLOSEDFORM_C(1.0562999066987428e-23)
+#define CF_ROUND CLOSEDFORM_C(4503599627370496.0) /* 2^52 */
+#define CF_PIO2_LO CLOSEDFORM_C(6.123233995736766e-17)
+#define CF_TWO_PI_LO CLOSEDFORM_C(2.4492935982947064e-16)
+
+/* relative error of sin 2^-57.8, of cos 2^-63.9, of atan 2^-56.7 */
+CF_INLINE real_t cf_sin_poly(real_t z)
+{
+    const real_t z2 = z * z;
+    return (-0.1666666666666663 + z * 0.0083333333333218424) +
+           z2 * ((-0.00019841269829360994 + z * 2.7557313539658054e-6) +
+                 z2 * (-2.5050734577586117e-8 + z * 1.5895442710921173e-10));
+}
+
+CF_INLINE real_t cf_cos_poly(real_t z)
+{
+    const real_t z2 = z * z;
+    return (0.041666666666666595 + z * -0.0013888888888873342) +
+           z2 * ((2.4801587289002127e-5 + z * -2.7557314217063467e-7) +
+                 z2 * (2.087570540007036e-9 + z * -1.1358749458908495e-11));
+}
+
+CF_INLINE real_t cf_atan_poly(real_t z)
+{
+    const real_t z2 = z * z, z4 = z2 * z2;
+    const real_t a0 = (-0.33333333333333071 + z * 0.19999999999951748) +
+                      z2 * (-0.14285714282587961 + z * 0.11111111007337657);
+    const real_t a4 = (-0.090909070077165921 + z * 0.076922798879409296) +
+                      z2 * (-0.066664044155228114 + z * 0.058805297635777999);
+    const real_t a8 = (-0.052535265964409404 + z * 0.047223477926983198) +
+                      z2 * (-0.042192422592310305 + z * 0.036643136902368242);
+    const real_t a12 = (-0.029905716796308757 + z * 0.021987046853392127) +
+                       z2 * (-0.013902553426051959 + z * 0.0071978698112242813);
+    const real_t a16 = (-0.0028856017598414704 + z * 0.00083155685524330175) +
+                       z2 * (-0.00015221055130022849 + z * 1.3229941982294489e-5);
+    return a0 + z4 * (a4 + z4 * (a8 + z4 * (a12 + z4 * a16)));
+}
+
+#endif
+
+/* Sine and cosine for |x| <= CF_TRIG_LIMIT, without a branch. Beyond it, and for NaN, the values
+ * are unspecified: use cf_sincos8 or cf_sincos_block, or test with cf_trig_excess. */
+CF_INLINE void cf_sincos(real_t x, real_t *s, real_t *c)
+{
+    const real_t ax = cf_abs(x);
+    /* Adding CF_ROUND rounds to an integer, and leaves its low bits at the end of the word. */
+    const real_t shifted = ax * CLOSEDFORM_C(0.6366197723675814) + CF_ROUND;
+    const real_t n = shifted - CF_ROUND;
+    const cf_word quadrant = cf_to_word(shifted);
+
+    /* ax - n pi/2 = r + tail; r1 is exact, and so is what rounding it to r leaves over. */
+    const real_t r1 = ax - n * CF_PIO2_1;
+    const real_t r = r1 - n * CF_PIO2_2;
+    const real_t tail = ((r1 - r) - n * CF_PIO2_2) - n * CF_PIO2_3;
+
+    const real_t z = r * r;
+    const real_t half = CLOSEDFORM_C(0.5);
+    const real_t sin_r = r + ((r * z) * cf_sin_poly(z) + tail * (1 - half * z));
+    const real_t cos_r = 1 + (z * (z * cf_cos_poly(z) - half) - r * tail);
+
+    const cf_word sw = cf_to_word(sin_r), cw = cf_to_word(cos_r);
+    const cf_word swap = (sw ^ cw) & ((cf_word)0 - (quadrant & 1u));
+    const cf_word s_sign = (quadrant & 2u) << (CF_TOP_BIT - 1u);
+    const cf_word c_sign = ((quadrant + 1u) & 2u) << (CF_TOP_BIT - 1u);
+    *s = cf_from_word(sw ^ swap ^ s_sign ^ (cf_to_word(x) & CF_SIGN));
+    *c = cf_from_word(cw ^ swap ^ c_sign);
+}
+
+/* Has its sign bit set if |x| > CF_TRIG_LIMIT or x is NaN; a loop ORs the words of its lanes. */
+CF_INLINE cf_word cf_trig_excess(real_t x)
+{
+    return cf_to_word(CF_TRIG_LIMIT) - (cf_to_word(x) & ~CF_SIGN);
+}
+
+/* Redoes with libm the lanes that cf_sincos does not cover. */
+CF_RARE void cf_sincos_fixup(size_t n, const real_t *x, real_t *s, real_t *c)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (cf_trig_excess(x[i]) & CF_SIGN) {
+            s[i] = CF_LIBM(sin)(x[i]);
+            c[i] = CF_LIBM(cos)(x[i]);
+        }
+    }
+}
+
+/* Sine and cosine of any n angles; the arrays must not overlap. */
+CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
+                               real_t *CF_RESTRICT c)
+{
+    cf_word excess = 0;
+    for (size_t i = 0; i < n; ++i) {
+        cf_sincos(x[i], &s[i], &c[i]);
+        excess |= cf_trig_excess(x[i]);
+    }
+    if (excess & CF_SIGN) cf_sincos_fixup(n, x, s, c);
+}
+
+/* The same for the angles of one call, padded to 8: as vectors they cost little more than one. */
+CF_INLINE void cf_sincos8(const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
+                          real_t *CF_RESTRICT c)
+{
+    cf_sincos_block(8, x, s, c);
+}
+
+/* C99 atan2, with its signed zeros, infinities and NaN, in [-CF_PI, CF_PI]; one division, no
+ * branch. The quotient never exceeds 1, so no argument is too large or too small. */
+CF_INLINE real_t cf_atan2(real_t y, real_t x)
+{
+    const real_t ax = cf_abs(x), ay = cf_abs(y);
+    const real_t num = ay > ax ? ax : ay;
+    const real_t den = ay > ax ? ay : ax;
+    /* Equal arguments include 0/0, which counts as 0, and inf/inf, which counts as 1. */
+    const real_t same = den > 0 ? CLOSEDFORM_C(1) : CLOSEDFORM_C(0);
+    const real_t t = num == den ? same : num / den;
+    const real_t z = t * t;
+    const real_t a = t + t * (z * cf_atan_poly(z));
+
+    /* The angle is 0, pi/2 or pi, plus or minus a. */
+    const real_t side = cf_copysign(1, x);
+    const real_t right_angles = ay > ax ? CLOSEDFORM_C(1) : 1 - side;
+    const real_t offset = ay > ax ? -side * a : side * a;
+    const real_t high = right_angles * (CF_PI / 2);
+    return cf_copysign(high + (offset + right_angles * CF_PIO2_LO), y);
+}
+
+/* The sum or difference of two angles, in [-2 pi, 2 pi], brought to (-CF_PI, CF_PI]. */
+CF_INLINE real_t cf_wrap(real_t angle)
+{
+    const real_t down = (angle - 2 * CF_PI) - CF_TWO_PI_LO;
+    const real_t a = angle > CF_PI ? down : angle;
+    const real_t up = (a + 2 * CF_PI) + CF_TWO_PI_LO;
+    return a <= -CF_PI ? cf_min(up, CF_PI) : a;
+}
+
+#define CLOSEDFORM_FEASIBILITY CLOSEDFORM_C(1e-12)
+#define CLOSEDFORM_VANISHING CLOSEDFORM_C(8.881784197001252e-16)
+#define CLOSEDFORM_ROTATION CLOSEDFORM_C(1e-06)
+#endif

@@ -1,0 +1,194 @@
+"""What the generated NumPy modules share: statuses, result types and the evaluation of kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+FEASIBILITY = 1e-12
+VANISHING = 2.0**-50
+ROTATION = 1e-06
+
+BLOCK = 4096
+"""Postures that a kernel treats at once: its intermediate arrays then stay in the cache."""
+
+
+class Status(IntEnum):
+    """What an inverse says of each branch."""
+
+    OK = 0
+    UNREACHABLE = 1
+    SINGULAR = 2
+    INVALID = 3
+
+
+class Solutions(NamedTuple):
+    """Joint values ``q`` of shape (..., branches, joints) and ``status`` (..., branches)."""
+
+    q: NDArray[np.float64]
+    status: NDArray[np.uint8]
+
+
+class Positions(NamedTuple):
+    """Task values ``p`` of shape (..., assembly modes, coordinates) and their ``status``."""
+
+    p: NDArray[np.float64]
+    status: NDArray[np.uint8]
+
+
+class Array(NamedTuple):
+    """An argument or a result of a kernel: its name, core shape and dtype."""
+
+    name: str
+    shape: tuple[int, ...]
+    dtype: type = np.float64
+
+    @property
+    def size(self) -> int:
+        size = 1
+        for n in self.shape:
+            size *= n
+        return size
+
+
+class Kernel(NamedTuple):
+    """A function of planes (one array a coordinate), and what it takes and gives."""
+
+    name: str
+    compute: Callable[..., tuple[Any, ...]]
+    inputs: tuple[Array, ...]
+    outputs: tuple[Array, ...]
+    fields: tuple[str, ...]
+    used: tuple[str, ...]
+
+
+def wrap(angle: Any) -> Any:
+    """An angle of [-2 pi, 2 pi] in (-pi, pi]."""
+    angle = np.where(angle > np.pi, angle - 2 * np.pi, angle)
+    return np.where(angle <= -np.pi, angle + 2 * np.pi, angle)
+
+
+def evaluate(kernel: Kernel, args: Sequence[ArrayLike], params: Sequence[ArrayLike], out: Any) -> Any:
+    """Apply a kernel to arrays whose leading axes broadcast; returns an array or a tuple."""
+    arrays = [_core(kernel, spec, arg) for spec, arg in zip(kernel.inputs, args, strict=True)]
+    fields = _parameters(kernel, params)
+    lead = _leading_axes(kernel, arrays, fields)
+    results = _results(kernel, lead, out)
+    targets = results
+    if out is not None and any(np.may_share_memory(r, a) for r in results for a in arrays):
+        targets = [np.empty_like(r) for r in results]
+    with np.errstate(all="ignore"):
+        _fill(kernel, arrays, fields, lead, targets)
+    if targets is not results:
+        for result, target in zip(results, targets, strict=True):
+            result[...] = target
+    if out is not None:
+        return out
+    results = [r[()] if r.ndim == 0 else r for r in results]
+    return results[0] if len(results) == 1 else tuple(results)
+
+
+def _core(kernel: Kernel, spec: Array, arg: ArrayLike) -> NDArray[np.float64]:
+    """The argument with its core axes flattened to one."""
+    array = np.asarray(arg, dtype=np.float64)
+    split = array.ndim - len(spec.shape)
+    if split < 0 or array.shape[split:] != spec.shape:
+        expected = ", ".join(["...", *map(str, spec.shape)])
+        raise ValueError(
+            f"{kernel.name}: {spec.name} has shape {array.shape}, expected ({expected})"
+        )
+    return array.reshape((*array.shape[:split], spec.size))
+
+
+def _parameters(kernel: Kernel, params: Sequence[ArrayLike]) -> list[NDArray[np.float64]]:
+    if len(params) != len(kernel.fields):
+        raise ValueError(
+            f"{kernel.name}: params has {len(params)} fields, expected {len(kernel.fields)}"
+        )
+    given = dict(zip(kernel.fields, params, strict=True))
+    return [np.asarray(given[name], dtype=np.float64) for name in kernel.fields]
+
+
+def _leading_axes(
+    kernel: Kernel, arrays: Sequence[NDArray[np.float64]], fields: Sequence[NDArray[np.float64]]
+) -> tuple[int, ...]:
+    shapes = [a.shape[:-1] for a in arrays] + [f.shape for f in fields]
+    try:
+        return np.broadcast_shapes(*shapes)
+    except ValueError:
+        names = [spec.name for spec in kernel.inputs] + [f"params.{n}" for n in kernel.fields]
+        listed = ", ".join(f"{n} {s}" for n, s in zip(names, shapes, strict=True) if s)
+        raise ValueError(f"{kernel.name}: leading axes do not broadcast: {listed}") from None
+
+
+def _results(kernel: Kernel, lead: tuple[int, ...], out: Any) -> list[NDArray[Any]]:
+    if out is None:
+        return [np.empty((*lead, *spec.shape), spec.dtype) for spec in kernel.outputs]
+    given = list(out) if len(kernel.outputs) > 1 else [out]
+    if len(given) != len(kernel.outputs):
+        raise ValueError(f"{kernel.name}: out needs {len(kernel.outputs)} arrays, got {len(given)}")
+    for spec, array in zip(kernel.outputs, given, strict=True):
+        expected = (*lead, *spec.shape)
+        if not isinstance(array, np.ndarray) or array.dtype != spec.dtype:
+            raise ValueError(
+                f"{kernel.name}: out for {spec.name} must be an array of {np.dtype(spec.dtype)}"
+            )
+        if array.shape != expected:
+            raise ValueError(
+                f"{kernel.name}: out for {spec.name} has shape {array.shape}, expected {expected}"
+            )
+        if not array.flags.writeable:
+            raise ValueError(f"{kernel.name}: out for {spec.name} is read-only")
+    return given
+
+
+def _fill(
+    kernel: Kernel,
+    arrays: Sequence[NDArray[np.float64]],
+    fields: Sequence[NDArray[np.float64]],
+    lead: tuple[int, ...],
+    results: Sequence[NDArray[Any]],
+) -> None:
+    used = [f for name, f in zip(kernel.fields, fields, strict=True) if name in kernel.used]
+    total = 1
+    for n in lead:
+        total *= n
+    if total <= BLOCK:
+        planes = [a[..., k] for a in arrays for k in range(a.shape[-1])]
+        _store(kernel.outputs, results, kernel.compute(*planes, *(f[()] for f in used)))
+        return
+    arrays = [a if a.ndim == 1 else _rows(a, lead) for a in arrays]
+    used = [f if f.ndim == 0 else _rows(f[..., None], lead)[:, 0] for f in used]
+    flat = [
+        r if len(lead) == 1 else r.reshape((-1, *spec.shape))
+        for r, spec in zip(results, kernel.outputs, strict=True)
+    ]
+    for start in range(0, total, BLOCK):
+        block = slice(start, start + BLOCK)
+        planes = []
+        for a in arrays:
+            planes += list(a) if a.ndim == 1 else list(np.ascontiguousarray(a[block].T))
+        constants = [f[()] if f.ndim == 0 else f[block] for f in used]
+        _store(kernel.outputs, [r[block] for r in flat], kernel.compute(*planes, *constants))
+    for result, rows in zip(results, flat, strict=True):
+        if not np.may_share_memory(result, rows):
+            result[...] = rows.reshape(result.shape)
+
+
+def _rows(array: NDArray[Any], lead: tuple[int, ...]) -> NDArray[Any]:
+    """``array`` broadcast to the leading axes, which become one; a view where that is possible."""
+    return np.broadcast_to(array, (*lead, array.shape[-1])).reshape((-1, array.shape[-1]))
+
+
+def _store(
+    outputs: Sequence[Array], results: Sequence[NDArray[Any]], planes: tuple[Any, ...]
+) -> None:
+    """Write the planes of all results, in order, where they belong."""
+    remaining = iter(planes)
+    for spec, result in zip(outputs, results, strict=True):
+        for index in np.ndindex(*spec.shape):
+            result[(..., *index)] = next(remaining)

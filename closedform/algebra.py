@@ -19,6 +19,9 @@ Every symbol stands for a real number, and every square root for a real one: poi
 radicand is negative are outside the domain of the identity.
 """
 
+# mypy: allow-untyped-calls
+# SymPy is only partly annotated.
+
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -28,12 +31,13 @@ from math import gcd, lcm
 from typing import Any, NamedTuple, TypeAlias
 
 import sympy as sp
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
-from sympy import Expr, Integer, Rational, S
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from sympy import Rational
 from sympy.core.function import AppliedUndef
 
 from closedform.refute import Counterexample, find_counterexample
 
+Expr: TypeAlias = Any  # SymPy's annotations are partial
 Problem: TypeAlias = "Expr | sp.MatrixBase | Sequence[Expr]"
 
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc)
@@ -41,7 +45,7 @@ _INVERSE = (sp.atan2, sp.acos, sp.asin, sp.atan)
 _OPAQUE = (sp.Symbol, sp.NumberSymbol, AppliedUndef, sp.Derivative, *_INVERSE)
 
 
-class Undecided(ValueError):
+class Undecided(ValueError):  # noqa: N818
     """The normal form neither proves nor can express the claim; the message says what to do."""
 
 
@@ -63,7 +67,7 @@ class Rotation(NamedTuple):
     sin: Fraction
 
 
-class _Full(Exception):
+class _Full(Exception):  # noqa: N818
     """More generators are needed than the ring has."""
 
 
@@ -330,7 +334,7 @@ class Tower:
     def _rational_root(self, value: fmpq) -> Fraction:
         result = self._constant(fmpq(1, value.q))
         for prime, power in (value.p * value.q).factor():
-            result = self._mul(result, self._constant(prime ** (power // 2)))
+            result = self._mul(result, self._constant(int(prime) ** (power // 2)))
             if power % 2:
                 result = self._mul(result, self._root(self._ctx.constant(prime)))
         return result
@@ -570,11 +574,12 @@ def decide(problem: Problem, nonnegative: Iterable[Expr] = (), seed: int = 0) ->
     if result:
         verdict = "proved under assumption" if result.assumptions else "proved"
         return Decision(True, verdict, result.assumptions, result, None)
-    entries = sp.Matrix(_entries(problem))
-    witness = find_counterexample(entries, conditions=[g >= 0 for g in guards], seed=seed)
+    witness = find_counterexample(
+        sp.Matrix(_entries(problem)), conditions=[g >= 0 for g in guards], seed=seed
+    )
     if witness:
         return Decision(False, "refuted", tuple(guards), result, witness)
-    if result:
+    if result is not None:
         entry = result.nonzero[0]
         obstacle = f"entry {entry} leaves {_shortened(result.remainders[entry])}"
     raise Undecided(
@@ -603,8 +608,8 @@ def _guard(g: Expr) -> Expr:
 
 
 def _entries(problem: Problem) -> list[Expr]:
-    many = isinstance(problem, sp.MatrixBase | Sequence)
-    return [sp.sympify(e) for e in (problem if many else [problem])]
+    entries: list[Expr] = sp.Matrix([problem]).flat()
+    return entries
 
 
 def _shortened(e: object, length: int = 200) -> str:

@@ -98,11 +98,7 @@ class Solved:
 
 @dataclass(frozen=True)
 class Continuum:
-    """A flagged case: on ``locus`` a joint is free, and ``relation`` says what the others keep.
-
-    ``keeps`` is the invariant of the solution family: an expression in the unknowns that all members
-    share.
-    """
+    """A flagged case: on ``locus`` a joint is free, and ``relation`` says what the others keep."""
 
     flag: sp.Symbol
     locus: Mapping[sp.Symbol, sp.Expr]
@@ -112,10 +108,10 @@ class Continuum:
 
 @dataclass(frozen=True)
 class Inverse:
-    """What an inverse must satisfy: ``equations`` in ``unknowns`` vanish for given ``targets``.
+    """What an inverse must satisfy: ``forward`` in the ``unknowns`` equals the ``targets``.
 
-    ``parametrisation`` maps the targets to the forward map, where they are dependent (a rotation
-    matrix); ``system`` is the polynomial form that the solution count uses, if it differs.
+    Targets that depend on each other (the entries of a rotation) have a ``parametrisation``: the
+    same number of expressions in free symbols.
     """
 
     function: str
@@ -123,7 +119,7 @@ class Inverse:
     targets: tuple[sp.Symbol, ...]
     forward: tuple[sp.Expr, ...]
     continua: tuple[Continuum, ...] = ()
-    rotation: bool = False
+    parametrisation: tuple[sp.Expr, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,8 @@ from functools import reduce
 
 import sympy as sp
 
+from closedform.algebra import normal
+
 
 def rotation(axis: str, angle: sp.Expr) -> sp.Matrix:
     """The 3x3 rotation about a coordinate axis ``"x"``, ``"y"`` or ``"z"``."""
@@ -103,13 +105,17 @@ def angular_velocity_matrix(R: sp.Matrix, joints: Sequence[sp.Symbol], frame: st
 
 def reduce_circle(value: sp.Matrix) -> sp.Matrix:
     """Rewrite even powers of sines and cosines by ``s^2 + c^2 = 1`` where that shortens."""
-    from closedform.algebra import normal
 
     def shorter(entry: sp.Expr) -> sp.Expr:
-        reduced = normal(entry)
-        return reduced if sp.count_ops(reduced) < sp.count_ops(entry) else entry
+        return min((entry, normal(entry)), key=sp.count_ops)
 
     return value.applyfunc(shorter)
+
+
+def determinant(J: sp.Matrix) -> sp.Expr:
+    """The determinant of a Jacobian, factored, with the angles of parallel axes added."""
+    reduced = normal(J.det(method="berkowitz"))
+    return min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
 
 
 def merge_angles(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:

@@ -12,7 +12,7 @@ satisfy the equations, and the equations have no others.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import sympy as sp
 
@@ -23,7 +23,7 @@ from closedform.functions import Program, choose
 class Lemma:
     """A lemma applied: ``equations`` vanish at ``solution`` (unknown -> closed form).
 
-    ``pairs`` has the sine and the cosine of an unknown where they are known without trigonometry.
+    ``excluded`` solutions of the equations violate the inequality that ``statement`` names.
     """
 
     name: str
@@ -31,7 +31,7 @@ class Lemma:
     equations: tuple[sp.Expr, ...]
     solution: Mapping[sp.Symbol, sp.Expr]
     branches: int
-    pairs: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]] = field(default_factory=dict)
+    excluded: int = 0
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]
@@ -40,7 +40,7 @@ class Lemma:
 def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:
     """``cos x : sin x = cosine : sine``, both known up to a common positive factor.
 
-    One solution; x is free where both vanish.
+    Of the two directions of the line only one has the right sign; x is free where both vanish.
     """
     return Lemma(
         "atan2 of a linear pair",
@@ -49,6 +49,7 @@ def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:
         (sp.sin(x) * cosine - sp.cos(x) * sine,),
         {x: sp.atan2(sine, cosine)},
         1,
+        excluded=1,
     )
 
 
@@ -152,8 +153,9 @@ def zyz_angles(
     aligned = program.vanishes(
         f"aligned{suffix}", h, 1, "the first and the last axis coincide", free=(first,)
     )
-    c_first = program.let(f"c_{first}", choose(aligned, 1, sigma * R[0, 2] / h))
-    s_first = program.let(f"s_{first}", choose(aligned, 0, sigma * R[1, 2] / h))
+    label = first.name.removeprefix("theta")
+    c_first = program.let(f"c{label}", choose(aligned, 1, sigma * R[0, 2] / h))
+    s_first = program.let(f"s{label}", choose(aligned, 0, sigma * R[1, 2] / h))
     s_middle = c_first * R[0, 2] + s_first * R[1, 2]
     s_last = c_first * R[1, 0] - s_first * R[0, 0]
     c_last = c_first * R[1, 1] - s_first * R[0, 1]
@@ -175,5 +177,4 @@ def zyz_angles(
             last: sp.atan2(s_last, c_last),
         },
         2,
-        {first: (s_first, c_first)},
     )

@@ -17,16 +17,15 @@ import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import flint
 import sympy as sp
 from flint import arb, fmpq
-from sympy import Expr, Symbol
-from sympy.core.relational import Relational
-from sympy.logic.boolalg import Boolean
+from sympy import Symbol
 
-Value: TypeAlias = "int | Fraction | float | Expr"
+Expr: TypeAlias = Any  # SymPy's annotations are partial
+Value: TypeAlias = Any  # int, Fraction, float, or an exact SymPy number such as pi/3
 Registers: TypeAlias = "list[arb]"
 Step: TypeAlias = "tuple[int, Callable[..., arb], tuple[int, ...] | None]"
 Test: TypeAlias = "Callable[[Registers], bool | None]"
@@ -35,20 +34,20 @@ _SPARE_BITS = 40
 _UNDEFINED = arb("nan")  # told from the nan of a too wide ball by identity
 
 
-class Undetermined(ArithmeticError):
+class Undetermined(ArithmeticError):  # noqa: N818
     """A comparison, a branch or a value stayed open at the highest precision."""
 
 
-class _Undefined(Exception):
+class _Undefined(Exception):  # noqa: N818
     """The value provably does not exist."""
 
 
-class _Open(Exception):
+class _Open(Exception):  # noqa: N818
     """A comparison is open at this precision."""
 
 
 def evaluate(
-    exprs: Sequence[Expr] | sp.MatrixBase,
+    exprs: Iterable[Expr],
     values: Mapping[Symbol, Value],
     rel_bits: int = 80,
     max_bits: int = 4000,
@@ -63,14 +62,14 @@ class Evaluator:
     Every returned ball has radius at most `2**-rel_bits` times the larger of its midpoint and its
     natural scale (the sum of the moduli of the terms, where the expression is a sum). An entry
     that is provably undefined at a point (a square root of a negative number, a division by zero,
-    `atan2(0, 0)`) is the ball `nan`; `Undetermined` is raised if `max_bits` do not settle the point.
-    A radicand that cannot be told from zero is taken to be nonnegative.
+    `atan2(0, 0)`) is the ball `nan`; `Undetermined` is raised if `max_bits` do not settle the
+    point. A radicand that cannot be told from zero is taken to be nonnegative.
     """
 
     def __init__(
         self,
         symbols: Iterable[Symbol],
-        exprs: Sequence[Expr] | sp.MatrixBase,
+        exprs: Iterable[Expr],
         rel_bits: int = 80,
         max_bits: int = 4000,
     ) -> None:
@@ -140,7 +139,7 @@ class _Point:
     def __init__(self, value: Value) -> None:
         self.turns: fmpq | None = None
         self._program: _Program | None = None
-        if isinstance(value, Expr) and not value.is_Float and not value.is_Rational:
+        if isinstance(value, sp.Expr) and not value.is_Float and not value.is_Rational:
             self._program = _Program((), (value,))
             multiple = value / sp.pi
             if multiple.is_Rational:
@@ -158,12 +157,8 @@ class _Point:
 
 
 def _fraction(value: Value) -> Fraction:
-    if isinstance(value, Expr):
-        if value.is_Rational:
-            return Fraction(int(value.p), int(value.q))
-        sign, mantissa, exponent, _ = value._mpf_
-        return Fraction(int(mantissa) * (-1) ** sign) * Fraction(2) ** int(exponent)
-    return Fraction(value)
+    exact = sp.Rational(value) if isinstance(value, sp.Expr) else Fraction(value)
+    return Fraction(int(exact.numerator), int(exact.denominator))
 
 
 class _Program:
@@ -254,10 +249,9 @@ class _Program:
         def exact_or_plain(registers: Registers) -> arb:
             if self._turns is None:
                 return plain(registers[register])
-            turns = [self._turns[i] for i, _ in angles]
-            if any(t is None for t in turns):
+            products = [q * t for i, q in angles if (t := self._turns[i]) is not None]
+            if len(products) < len(angles):
                 return plain(registers[register])
-            products = (q * t for (_, q), t in zip(angles, turns, strict=True))
             return of_turns(sum(products, half_turn))
 
         return self._step(exact_or_plain, None)
@@ -285,8 +279,8 @@ class _Program:
         block, self._block, self._register = self._block, outer, known
         return block, result
 
-    def _test(self, condition: Boolean) -> Test:
-        if isinstance(condition, Relational):
+    def _test(self, condition: Any) -> Test:
+        if condition.is_Relational:
             left, right = self._compile(condition.lhs), self._compile(condition.rhs)
             compare = _COMPARISONS[condition.rel_op]
             return lambda registers: compare(registers[left], registers[right])
@@ -304,15 +298,13 @@ class _Program:
 
 def _execute(block: Sequence[Step], registers: Registers) -> None:
     for target, function, args in block:
-        if args is None:
-            operands = [registers]
-        else:
-            operands = [registers[i] for i in args]
-            if any(x is _UNDEFINED for x in operands):
-                registers[target] = _UNDEFINED
-                continue
         try:
-            registers[target] = function(*operands)
+            if args is None:
+                registers[target] = function(registers)
+                continue
+            operands = [registers[i] for i in args]
+            undefined = any(x is _UNDEFINED for x in operands)
+            registers[target] = _UNDEFINED if undefined else function(*operands)
         except _Undefined:
             registers[target] = _UNDEFINED
 
@@ -363,22 +355,20 @@ def _inverse(x: arb) -> arb:
     return 1 / x
 
 
-def _monotone(function: Callable[[arb], arb], low: int, high: int | None) -> Callable[[arb], arb]:
+def _monotone(function: Callable[[arb], arb], low: int, high: float) -> Callable[[arb], arb]:
     """A monotone function on its domain; a ball that reaches beyond the domain is cut."""
 
     def restricted(x: arb) -> arb:
-        below, above = not x >= low, high is not None and not x <= high
-        if not (below or above) or not x.is_finite():
+        if (x >= low and x <= high) or not x.is_finite():
             return function(x)
-        if x < low or (above and x > high):
+        if x < low or x > high:
             raise _Undefined
-        ends = x.lower().max(arb(low)), x.upper() if high is None else x.upper().min(arb(high))
-        return function(ends[0]).union(function(ends[1]))
+        return function(x.lower().max(arb(low))).union(function(x.upper().min(arb(high))))
 
     return restricted
 
 
-_sqrt = _monotone(arb.sqrt, 0, None)
+_sqrt = _monotone(arb.sqrt, 0, math.inf)
 
 
 def _atan2(y: arb, x: arb) -> arb:
@@ -400,16 +390,15 @@ def _tan_turns(q: fmpq) -> arb:
 
 def _power(e: Expr) -> Callable[[arb], arb]:
     """The power with the constant exponent of `e`."""
-    exponent = e.exp
-    if exponent.is_Integer and exponent > 0:
-        return lambda x, n=int(exponent): x**n
-    if exponent.is_Integer:
-        return lambda x, n=int(-exponent): _inverse(x) ** n
-    if exponent.is_Rational and exponent.q == 2:
-        if exponent > 0:
-            return lambda x, n=int(exponent.p): _sqrt(x) ** n
-        return lambda x, n=int(-exponent.p): _inverse(_sqrt(x)) ** n
-    raise TypeError(f"cannot evaluate the power {e}")
+    if not (e.exp.is_Rational and e.exp.q in (1, 2)):
+        raise TypeError(f"cannot evaluate the power {e}")
+    n, root, inverted = abs(int(e.exp.p)), e.exp.q == 2, e.exp < 0
+
+    def power(x: arb) -> arb:
+        base = _sqrt(x) if root else x
+        return (_inverse(base) if inverted else base) ** n
+
+    return power
 
 
 _FUNCTIONS: dict[type, Callable[..., arb]] = {

@@ -1,18 +1,24 @@
 """Counterexamples that a person can check: simple exact points where a difference is not zero."""
 
+# mypy: allow-untyped-calls
+# SymPy is only partly annotated.
+
 from __future__ import annotations
 
 import itertools
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import sympy as sp
 from flint import arb
-from sympy import Expr, Rational, Symbol
+from sympy import Rational, Symbol
 from sympy.core.relational import Relational
 
 from closedform.reference import Evaluator, Undetermined
+
+Expr: TypeAlias = Any  # SymPy's annotations are partial
 
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc)
 _LENGTHS = tuple(map(Rational, (1, 2, 3)))
@@ -53,8 +59,7 @@ def find_counterexample(
     symbols, the usual fractions of `pi` for angles; then random rationals, the same on every run.
     Every condition must provably hold at the point. None if no point serves, which proves nothing.
     """
-    entries = list(difference) if isinstance(difference, sp.MatrixBase) else [difference]
-    entries = [sp.sympify(e) for e in entries]
+    entries: list[Expr] = sp.Matrix([difference]).flat()
     gaps = [_gap(c) for c in conditions]
     free = {s for e in [*entries, *(g for g, _ in gaps)] for s in e.free_symbols}
     names = sorted(free | set(symbols or ()), key=str) if symbols is None else list(symbols)

@@ -7,21 +7,25 @@ monomials that no leading monomial of a Groebner basis divides. Targets that obe
 entries of a rotation) are first written in free parameters.
 """
 
+# mypy: allow-untyped-calls
+# SymPy is only partly annotated.
+
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
-from typing import Any, Literal
+from itertools import combinations, product
+from typing import Any, Literal, TypeAlias
 
 import sympy as sp
 from flint import fmpq, fmpq_mat
-from sympy import QQ, Expr, Rational, Symbol
+from sympy import QQ, Rational, Symbol
 from sympy.polys.groebnertools import groebner
 from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
+Expr: TypeAlias = Any  # SymPy's annotations are partial
 Monomial = tuple[int, ...]
 Method = Literal["generic", "specialised"]
 
@@ -47,7 +51,7 @@ class SolutionCount:
 
 
 def count_solutions(
-    equations: Sequence[Expr] | sp.MatrixBase,
+    equations: Iterable[Expr],
     unknowns: Sequence[Symbol],
     *,
     target_substitution: Mapping[Symbol, Expr] | None = None,
@@ -65,7 +69,7 @@ def count_solutions(
 
     Raises `InfinitelyManyError` at a continuum of solutions.
     """
-    system = _System(equations, unknowns, target_substitution or {}, list(saturate))
+    system = _System(list(equations), unknowns, target_substitution or {}, list(saturate))
     draw = random.Random(seed)
     if method == "generic":
         ring = PolyRing(system.variables, _function_field(system.parameters), grevlex)
@@ -108,14 +112,15 @@ class _System:
 
     def __init__(
         self,
-        equations: Sequence[Expr] | sp.MatrixBase,
+        equations: Sequence[Expr],
         unknowns: Sequence[Symbol],
         substitution: Mapping[Symbol, Expr],
         saturate: Sequence[Expr],
     ) -> None:
-        self._unknowns = set(unknowns)
         self._circles: dict[Symbol, tuple[Symbol, Symbol]] = {}
         given = [sp.sympify(e).subs(substitution) for e in [*equations, *saturate]]
+        unknowns, given = _absolute_angles(unknowns, given)
+        self._unknowns = set(unknowns)
         algebraic = [self._without_angles(e) for e in given]
         fractions = [sp.fraction(sp.together(e)) for e in algebraic]
         plain = [u for u in unknowns if any(u in e.free_symbols for e in algebraic)]
@@ -153,6 +158,35 @@ class _System:
         return numerator / (1 + half**2)
 
 
+def _absolute_angles(
+    unknowns: Sequence[Symbol], equations: Sequence[Expr]
+) -> tuple[list[Symbol], list[Expr]]:
+    """New unknown angles, such as `theta1 + theta2` for `theta2`, where that lowers the degree.
+
+    The change is invertible over the integers, so it keeps the number of solutions; it is sought
+    among the arguments of the sines and cosines, for the smallest sum of all multiples.
+    """
+    functions = {f for e in equations for f in e.atoms(sp.sin, sp.cos, sp.tan)}
+    terms = [sp.expand(f.args[0]).as_coefficients_dict() for f in functions]
+    angles = [u for u in unknowns if any(u in t for t in terms)]
+    if any(t[u] % 1 for t in terms for u in angles):
+        raise ValueError("an unknown angle occurs divided: take its fraction as the unknown")
+    rows = {tuple(int(t[u]) for u in angles) for t in terms}
+    units = {tuple(int(i == j) for j in range(len(angles))) for i in range(len(angles))}
+    best, least = sp.eye(len(angles)), sum(abs(k) for row in rows for k in row)
+    for choice in combinations(sorted(rows | units, reverse=True), len(angles)):
+        change = sp.Matrix(choice)
+        if abs(change.det()) == 1:
+            inverse = change.inv()
+            size = sum(abs(k) for row in rows for k in sp.Matrix([row]) * inverse)
+            if size < least:
+                best, least = inverse, size
+    fresh = [sp.Dummy(f"angle{i}", real=True) for i in range(len(angles))]
+    known = dict(zip(angles, best * sp.Matrix(fresh), strict=True)) if angles else {}
+    rest = [u for u in unknowns if u not in angles]
+    return fresh + rest, [e.xreplace(known) for e in equations]
+
+
 def _function_field(parameters: Sequence[Symbol]) -> Any:
     return QQ.frac_field(*parameters) if parameters else QQ
 
@@ -164,7 +198,8 @@ def _element(ring: PolyRing, e: Expr) -> PolyElement:
         raise ValueError(f"not rational: {e}; name each root as an unknown with its square") from (
             reason
         )
-    return ring.from_dict(polynomial.rep.to_dict())
+    element: PolyElement = ring.from_dict(polynomial.rep.to_dict())
+    return element
 
 
 def _standard_monomials(basis: Sequence[PolyElement], ring: PolyRing) -> list[Monomial]:
@@ -211,7 +246,9 @@ def _are_distinct(basis: Sequence[PolyElement], monomials: Sequence[Monomial]) -
 def _remainder(
     ring: PolyRing, basis: Sequence[PolyElement], a: Monomial, b: Monomial
 ) -> PolyElement:
-    return ring.from_dict({tuple(i + j for i, j in zip(a, b, strict=True)): QQ(1)}).rem(basis)
+    product = ring.from_dict({tuple(i + j for i, j in zip(a, b, strict=True)): QQ(1)})
+    remainder: PolyElement = product.rem(basis)
+    return remainder
 
 
 def _specialised(
@@ -221,21 +258,16 @@ def _specialised(
     if not parameters:
         return list(basis)
     ring = basis[0].ring.clone(domain=QQ)
-    for point in _generic_points(len(parameters), draw):
+    while True:
+        point = [QQ(draw.randint(-99, 99), draw.randint(1, 20)) for _ in parameters]
         try:
             return [
-                ring.from_dict({m: c.evaluate(point) for m, c in g.terms()})
+                ring.from_dict({m: c.numer(*point) / c.denom(*point) for m, c in g.terms()})
                 for g in (g.monic() for g in basis)
             ]
         except ZeroDivisionError:
             continue
-    raise AssertionError("unreachable: the points do not end")
 
 
-def _generic_points(size: int, draw: random.Random) -> Iterator[list[tuple[int, Any]]]:
-    while True:
-        yield [(i, QQ(draw.randint(-99, 99), draw.randint(1, 20))) for i in range(size)]
-
-
-def _random_rational(draw: random.Random) -> Rational:
+def _random_rational(draw: random.Random) -> Expr:
     return Rational(draw.choice([-1, 1]) * draw.randint(1, 99), draw.randint(1, 20))

@@ -5,7 +5,7 @@ from sympy import atan2, cos, sin, sqrt
 
 from closedform.derivation import Continuum, Derivation, Inverse, Solved
 from closedform.derivations.papers import REDDY_BABU
-from closedform.frames import chain, denavit_hartenberg, jacobian, merge_angles, rotation
+from closedform.frames import chain, denavit_hartenberg, determinant, jacobian, rotation
 from closedform.functions import SINGLE, Program, branches, choose, real
 from closedform.lemmas import linear_pair, two_link_triangle
 
@@ -78,7 +78,7 @@ d.function(
 # Velocity
 
 J = jacobian(sp.Matrix([*position, phi]), q)
-det = merge_angles(J[:2, :].det())
+det = determinant(J[:2, :])
 manipulability = l1 * l2 * sp.Abs(sin(theta2))
 d.step(
     "Jacobian and its determinant",
@@ -247,6 +247,21 @@ d.function(
     source="eq. (10)",
     notes=("UNREACHABLE where the pose is not one of the arm, be it ever so little.",),
 )
+
+a1, a2 = real("a1"), real("a2")
+d.inverses.append(
+    Inverse(
+        "ik_pose",
+        q,
+        tuple(T),
+        tuple(pose),
+        parametrisation=tuple(pose.subs({theta1: a1, theta2: a2}, simultaneous=True)),
+    )
+)
+d.solved += [
+    Solved("ik_pose", theta1, linear_pair(theta1, elbow_y, elbow_x), l1 * sin(theta1) - T[1, 3] + l2 * T[1, 0]),
+    Solved("ik_pose", theta2, full, T[0, 0] * cos(theta1) + T[1, 0] * sin(theta1) - cos(theta2)),
+]
 
 # Workspace
 

@@ -15,12 +15,14 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any
 
+from closedform import __version__
 from closedform.derivation import Derivation
 from closedform.emit.code import Printer, Text
 from closedform.emit.text import WIDTH, banner, describe, interface
 from closedform.functions import Function
-from closedform.lower import Lowered
+from closedform.lower import Lowered, lower
 from closedform.lower.graph import Node
+from closedform.tolerances import DOUBLE, FLOAT
 
 LANES = 8
 CALLS = {
@@ -31,6 +33,7 @@ CALLS = {
     "min": "cf_min",
     "finite": "cf_is_finite",
     "wrap": "cf_wrap",
+    "select": "cf_select",
 }
 RESERVED = frozenset(
     "auto break case char const continue default do double else enum extern float for goto if "
@@ -54,9 +57,6 @@ class CPrinter(Printer):
             return Text(f"!{self.text[node.args[0].id].at(6)}", 6)
         if op == "tolerance":
             return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
-        if op == "select":
-            condition, a, b = (self.text[n.id].at(2) for n in node.args)
-            return Text(f"{condition} ? {a} : {b}", 1)
         return Text(f"{CALLS[op]}({', '.join(args)})")
 
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
@@ -134,6 +134,20 @@ def robot(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, A
         "functions": [
             _Emission(derivation, f, lowered[f.name]).emit() for f in derivation.functions
         ],
+    }
+
+
+def shared(derivations: Sequence[Derivation]) -> dict[str, Any]:
+    """The context of the files that all robots share."""
+    return {
+        "robots": [
+            robot(d, {f.name: lower(f, d) for f in d.functions}) for d in derivations
+        ],
+        "tolerances": [
+            (name.upper(), repr(getattr(DOUBLE, name)), repr(getattr(FLOAT, name)))
+            for name in ("feasibility", "vanishing", "rotation")
+        ],
+        "version": __version__,
     }
 
 

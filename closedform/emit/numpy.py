@@ -13,6 +13,7 @@ from closedform.emit.text import WIDTH, banner, call_signature, docstring, inter
 from closedform.functions import Function
 from closedform.lower import Lowered
 from closedform.lower.graph import Node
+from closedform.tolerances import DOUBLE
 
 CALLS = {
     "sqrt": "np.sqrt",
@@ -69,6 +70,11 @@ def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, 
         "interface": interface(derivation),
         "functions": [_function(derivation, f, lowered[f.name]) for f in derivation.functions],
     }
+
+
+def runtime() -> dict[str, Any]:
+    """The context of ``numpy/_runtime.py.jinja``."""
+    return {name: repr(getattr(DOUBLE, name)) for name in ("feasibility", "vanishing", "rotation")}
 
 
 def _function(derivation: Derivation, function: Function, program: Lowered) -> NumpyFunction:

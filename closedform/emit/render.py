@@ -1,4 +1,4 @@
-"""The one Jinja environment, and the list of files that a derivation turns into."""
+"""The one Jinja environment, and the list of files that derivations turn into."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import Any
 import jinja2
 
 from closedform.derivation import Derivation
-from closedform.emit import c, numpy
+from closedform.emit import c, latex, numpy
 from closedform.lower import lower
-from closedform.tolerances import DOUBLE, FLOAT
+from closedform.prove import Proof
 
 BACKENDS = ("numpy", "c", "latex")
 
@@ -33,10 +33,12 @@ def render(template: str, context: Mapping[str, Any]) -> str:
     return environment().get_template(template).render(context)
 
 
-def robot_files(derivation: Derivation, backends: Sequence[str] = BACKENDS) -> dict[Path, str]:
-    """Every file of one mechanism: path below ``generated/`` and contents."""
-    lowered = {f.name: lower(f, derivation) for f in derivation.functions}
+def robot_files(
+    derivation: Derivation, proof: Proof, backends: Sequence[str] = BACKENDS
+) -> dict[Path, str]:
+    """Every file of one mechanism: the path below ``generated/`` and the contents."""
     name = derivation.name
+    lowered = {f.name: lower(f, derivation) for f in derivation.functions}
     printed: dict[Path, str] = {}
     if "numpy" in backends:
         context = numpy.module(derivation, lowered)
@@ -46,24 +48,28 @@ def robot_files(derivation: Derivation, backends: Sequence[str] = BACKENDS) -> d
         printed[Path("c", f"{name}.h")] = render("c/robot.h.jinja", context)
         printed[Path("c", f"{name}.c")] = render("c/robot.c.jinja", context)
         printed[Path("c", f"{name}.py")] = render("c/module.py.jinja", context)
+    if "latex" in backends:
+        context = latex.document(derivation, proof)
+        printed[Path("latex", f"{name}.tex")] = render("latex/robot.tex.jinja", context)
     return printed
 
 
-def shared_files(derivations: Sequence[Derivation], backends: Sequence[str] = BACKENDS) -> dict[Path, str]:
+def shared_files(
+    derivations: Sequence[Derivation],
+    proofs: Sequence[Proof],
+    backends: Sequence[str] = BACKENDS,
+) -> dict[Path, str]:
     """The files that all mechanisms share."""
     printed: dict[Path, str] = {}
     if "numpy" in backends:
-        context = {
-            "feasibility": repr(DOUBLE.feasibility),
-            "vanishing": f"2.0**{int(round(__import__('math').log2(DOUBLE.vanishing)))}",
-            "rotation": repr(DOUBLE.rotation),
-        }
+        context = numpy.runtime()
         printed[Path("numpy", "_runtime.py")] = render("numpy/_runtime.py.jinja", context)
     if "c" in backends:
-        robots = [
-            c.robot(d, {f.name: lower(f, d) for f in d.functions}) for d in derivations
-        ]
-        printed[Path("c", "extension.c")] = render("c/extension.c.jinja", {"robots": robots})
-        tol="".join(f"#define CLOSEDFORM_{n} CLOSEDFORM_C({v!r})\n" for n,v in (("FEASIBILITY",DOUBLE.feasibility),("VANISHING",DOUBLE.vanishing),("ROTATION",DOUBLE.rotation)))
-        printed[Path("c", "closedform.h")] = render("c/closedform.h", {}).rstrip().removesuffix("#endif")+tol+"#endif\n"
+        context = c.shared(derivations)
+        for name in ("closedform.h", "extension.c", "CMakeLists.txt", "closedform-config.cmake.in"):
+            printed[Path("c", name)] = render(f"c/{name}.jinja", context)
+    if "latex" in backends:
+        printed[Path("errata.md")] = render(
+            "errata.md.jinja", latex.errata(derivations, proofs)
+        )
     return printed

@@ -1,0 +1,273 @@
+"""Proves a derivation: its steps, its inverses, the lemmas they use, and the paper's claims.
+
+Everything here ends in the exact zero test of :mod:`closedform.algebra` or in a count of solutions
+by a Groebner basis.  A step or an inverse that does not hold raises :class:`ProofError`; a claim
+that does not hold gets its verdict.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra import Decision, Undecided, decide
+from closedform.claims import VERDICTS
+from closedform.derivation import Continuum, Derivation, Inverse
+from closedform.functions import Array, Bound, Function, Let, Program, substitute
+from closedform.lemmas import Lemma
+from closedform.refute import Counterexample
+from closedform.solutions import InfinitelyManyError, count_solutions
+
+Progress = Callable[[str], None]
+
+
+class ProofError(ValueError):
+    """A step or an inverse of a derivation is wrong, and how."""
+
+
+@dataclass(frozen=True)
+class ClaimResult:
+    """A claim with its verdict, as plain text."""
+
+    label: str
+    where: str
+    printed: str
+    kind: str
+    evidence: str
+    corrected: str
+
+
+@dataclass(frozen=True)
+class InverseResult:
+    """What was proved of an inverse."""
+
+    function: str
+    branches: int
+    continua: int
+    solutions: int
+    method: str
+    assumptions: tuple[str, ...]
+    lemmas: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Proof:
+    """Everything that was proved of one derivation; plain data, so that it can be stored."""
+
+    name: str
+    paper: str
+    steps: tuple[str, ...]
+    identities: int
+    inverses: tuple[InverseResult, ...]
+    claims: tuple[ClaimResult, ...] = field(default=())
+
+    def verdicts(self) -> dict[str, int]:
+        """How many claims got each verdict, in the order of :data:`VERDICTS`."""
+        counts = Counter(c.kind for c in self.claims)
+        return {kind: counts[kind] for kind in VERDICTS if counts[kind]}
+
+    def summary(self) -> str:
+        """One line: what was proved."""
+        inverses = ", ".join(
+            f"{i.function} {i.branches} branch{'es' if i.branches > 1 else ''} sound and complete"
+            for i in self.inverses
+        )
+        claims = ", ".join(f"{n} {kind}" for kind, n in self.verdicts().items())
+        parts = [f"{len(self.steps)} steps ({self.identities} identities)", inverses]
+        return "; ".join(p for p in [*parts, f"claims: {claims}" if claims else ""] if p)
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Proof:
+        return cls(
+            data["name"],
+            data["paper"],
+            tuple(data["steps"]),
+            data["identities"],
+            tuple(
+                InverseResult(**{**i, "assumptions": tuple(i["assumptions"]), "lemmas": tuple(i["lemmas"])})
+                for i in data["inverses"]
+            ),
+            tuple(ClaimResult(**c) for c in data["claims"]),
+        )
+
+
+def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
+    """Prove every step and inverse of a derivation, and judge its claims."""
+    identities = 0
+    for step in derivation.steps:
+        progress(f"step: {step.title}")
+        for difference in step.vanishes:
+            _require(difference, step.nonnegative, f"{derivation.name}, step {step.title!r}")
+            identities += 1
+    inverses = []
+    for inverse in derivation.inverses:
+        progress(f"inverse: {inverse.function}")
+        inverses.append(prove_inverse(derivation, inverse))
+    claims = []
+    for claim in derivation.claims:
+        progress(f"claim: {claim.label}")
+        try:
+            verdict = claim.check.judge()
+        except (Undecided, ValueError) as error:
+            raise ProofError(f"{derivation.name}, claim {claim.label}: {error}") from error
+        claims.append(
+            ClaimResult(
+                claim.label,
+                claim.where,
+                claim.printed,
+                verdict.kind,
+                verdict.evidence,
+                verdict.corrected,
+            )
+        )
+    return Proof(
+        derivation.name,
+        derivation.paper.key,
+        tuple(s.title for s in derivation.steps),
+        identities,
+        tuple(inverses),
+        tuple(claims),
+    )
+
+
+def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
+    """Sound: each branch satisfies the equations.  Complete: there are no other solutions."""
+    function = derivation[inverse.function]
+    assumptions = _prove_sound(derivation, function, inverse)
+    for continuum in inverse.continua:
+        _prove_continuum(derivation, function, inverse, continuum)
+    lemmas = _prove_steps_follow(derivation, inverse)
+    count, method = _count(inverse)
+    branches = len(function.branches) if function.branches else 1
+    if count != branches:
+        raise ProofError(
+            f"{derivation.name}.{function.name}: the system has {count} solutions, "
+            f"but {branches} branches are given"
+        )
+    return InverseResult(
+        function.name,
+        branches,
+        len(inverse.continua),
+        count,
+        method,
+        tuple(str(a) for a in assumptions),
+        lemmas,
+    )
+
+
+def _targets(inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:
+    """Dependent targets in free parameters; empty where the targets are independent."""
+    if not inverse.parametrisation:
+        return {}
+    return dict(zip(inverse.targets, inverse.parametrisation, strict=True))
+
+
+def _prove_sound(
+    derivation: Derivation, function: Function, inverse: Inverse
+) -> tuple[sp.Expr, ...]:
+    used: list[sp.Expr] = []
+    given = _targets(inverse)
+    for label, signs in function.cases():
+        solution = dict(zip(inverse.unknowns, function.values(signs), strict=True))
+        difference = sp.Matrix(
+            [
+                substitute(substitute(f, solution) - x, given)
+                for f, x in zip(inverse.forward, inverse.targets, strict=True)
+            ]
+        )
+        bounds = tuple(substitute(b, given) for b in function.bounds(signs))
+        where = f"{derivation.name}.{function.name}, branch {label or 'only'}, put into the forward map"
+        used += [a for a in _require(difference, bounds, where).assumptions if a not in used]
+    return tuple(used)
+
+
+def _prove_continuum(
+    derivation: Derivation, function: Function, inverse: Inverse, continuum: Continuum
+) -> None:
+    """On its locus the flagged case returns a solution, whatever the convention."""
+    for label, signs in function.cases():
+        values = function.at(signs, {continuum.flag: True}, continuum.locus)
+        solution = dict(zip(inverse.unknowns, values, strict=True))
+        difference = sp.Matrix(
+            [
+                substitute(substitute(f, solution) - x, continuum.locus)
+                for f, x in zip(inverse.forward, inverse.targets, strict=True)
+            ]
+        )
+        where = f"{derivation.name}.{function.name}, {continuum.flag}, branch {label}"
+        _require(difference, (), where)
+
+
+def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, ...]:
+    """The equation that each lemma solves vanishes on the graph of the forward map."""
+    graph = dict(zip(inverse.targets, inverse.forward, strict=True))
+    lemmas = []
+    for solved in derivation.solved:
+        if solved.function != inverse.function:
+            continue
+        where = (
+            f"{derivation.name}.{inverse.function}: the equation solved for {solved.unknown} by the "
+            f"lemma {solved.lemma.name!r} must follow from the forward map"
+        )
+        _require(substitute(solved.equation, graph), (), where)
+        lemmas.append(solved.lemma.name)
+    return tuple(dict.fromkeys(lemmas))
+
+
+def _count(inverse: Inverse) -> tuple[int, str]:
+    given = _targets(inverse)
+    equations = []
+    for f, x in zip(inverse.forward, inverse.targets, strict=True):
+        equation = substitute(f - x, given)
+        if equation.has(*inverse.unknowns):
+            equations.append(equation)
+        else:
+            _require(equation, (), f"{inverse.function}: a target that no joint moves")
+    try:
+        counted = count_solutions(equations, inverse.unknowns)
+    except InfinitelyManyError as error:
+        raise ProofError(f"{inverse.function}: {error}") from error
+    return counted.count, counted.method
+
+
+def prove_lemma(
+    lemma: Lemma, program: Program, given: Mapping[sp.Symbol, sp.Expr] | None = None
+) -> None:
+    """Prove a lemma for the coefficients it was applied to: symbols, so for all.
+
+    Its solutions satisfy its equations for either sign, and the equations have no others.  ``given``
+    writes dependent coefficients in free parameters.
+    """
+    given = dict(given or {})
+    outputs = tuple(lemma.solution.values())
+    steps = [s.value for s in program.body if isinstance(s, (Let, Bound))]
+    free = {s for e in (*outputs, *steps) for s in e.free_symbols}
+    sign = next((s for s in free if s.name.startswith("sigma")), None)
+    function = Function("lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(program.body))
+    for value in (1, -1) if sign else (1,):
+        signs = {sign: value} if sign else {}
+        solution = dict(zip(lemma.solution, function.values(signs), strict=True))
+        vanishing = sp.Matrix([substitute(e, solution) for e in lemma.equations])
+        bounds = tuple(substitute(b, given) for b in function.bounds(signs))
+        _require(substitute(vanishing, given), bounds, f"the lemma {lemma.name!r}")
+    count = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given).count
+    if count != lemma.branches + lemma.excluded:
+        raise ProofError(f"the lemma {lemma.name!r} has {count} solutions")
+
+
+def _require(difference: Any, nonnegative: tuple[sp.Expr, ...], where: str) -> Decision:
+    try:
+        decision = decide(difference, nonnegative)
+    except Undecided as error:
+        raise ProofError(f"{where}: {error}") from error
+    if not decision.holds:
+        assert isinstance(decision.counterexample, Counterexample)
+        raise ProofError(f"{where}: does not vanish. {decision.counterexample.describe()}")
+    return decision

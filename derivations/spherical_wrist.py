@@ -1,0 +1,173 @@
+"""The spherical wrist of Reddy and Babu, by ZYZ Euler angles and by Denavit-Hartenberg."""
+
+import sympy as sp
+from sympy import cos, sin
+
+from closedform.derivation import Continuum, Derivation, Inverse, Solved
+from closedform.derivations.papers import REDDY_BABU
+from closedform.frames import (
+    angular_velocity_matrix,
+    chain,
+    denavit_hartenberg,
+    determinant,
+    homogeneous,
+    rotation,
+)
+from closedform.functions import Program, branches, real
+from closedform.lemmas import zyz_angles
+from closedform.solutions import rotation_parametrisation
+
+d = Derivation(
+    "spherical_wrist",
+    "Spherical wrist",
+    REDDY_BABU,
+    "Three revolute joints with axes through one point.  theta4 turns about z, theta5 about the y "
+    "axis that theta4 left, theta6 about the z axis that both left; the hand is d6 along it.",
+    task=[f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)],
+    singularities=("axes 4 and 6 coincide",),
+)
+d6 = d.parameter(
+    "d6",
+    value=1,
+    unit="any length",
+    meaning="distance of the hand from the centre of the wrist",
+    source="the paper gives no value",
+    nonnegative=False,
+)
+theta4, theta5, theta6 = d.joint("theta4"), d.joint("theta5"), d.joint("theta6")
+q = (theta4, theta5, theta6)
+
+# Orientation by Euler angles
+
+R = chain([rotation("z", theta4), rotation("y", theta5), rotation("z", theta6)])
+d.step(
+    "Orientation by ZYZ Euler angles",
+    "Three rotations about axes of the moving frame multiply from left to right.",
+    {"R": R},
+    published=("(12)",),
+    equal=[(R * R.T, sp.eye(3)), (R.det(), sp.Integer(1))],
+)
+
+# Pose by Denavit-Hartenberg
+
+A4 = denavit_hartenberg(0, -sp.pi / 2, 0, theta4)
+A5 = denavit_hartenberg(0, sp.pi / 2, 0, theta5)
+A6 = denavit_hartenberg(0, 0, d6, theta6)
+pose = chain([A4, A5, A6])
+d.step(
+    "Pose by Denavit-Hartenberg",
+    "Table II has twists of -90 and +90 degrees; the offset d6 is the only length. The rotation is "
+    "the one of the Euler angles: phi, theta, varphi are theta4, theta5, theta6.",
+    {"A_4": A4, "A_5": A5, "A_6": A6, "T": pose},
+    published=("(14)", "(15)", "Table II"),
+    equal=[(pose[:3, :3], R), (pose, homogeneous(R) * homogeneous(sp.eye(3), (0, 0, d6)))],
+)
+d.function("fk", "Rotation of the hand.", {"q": q}, {"R": R}, source="eqs. (12) and (15)")
+d.function("pose", "Pose of the hand, with its offset d6.", {"q": q}, {"T": pose}, source="eq. (14)")
+
+# Velocity
+
+space = angular_velocity_matrix(R, q, "space")
+body = angular_velocity_matrix(R, q, "body")
+det = determinant(space)
+d.step(
+    "Angular Jacobians",
+    "The columns in the space frame are the axes of the joints as they stand: z, the turned y and "
+    "the last column of R.  In the body frame they are the same axes seen from the hand.",
+    {"J_s": space, "J_b": body},
+    equal=[
+        (space, sp.Matrix.hstack(sp.Matrix([0, 0, 1]), rotation("z", theta4)[:, 1], R[:, 2])),
+        (space, R * body),
+    ],
+)
+d.step(
+    "Determinant and singular set",
+    "Both determinants are the same, for a rotation lies between the frames.  They vanish exactly "
+    "where theta5 is 0 or pi: the first and the last axis coincide, and the hand cannot turn about "
+    "the normal of the axes.",
+    {r"\det J": det},
+    equal=[(space.det(), det), (body.det(), det)],
+)
+d.function(
+    "jacobian_space",
+    "Angular velocity in the base frame per joint rate.",
+    {"q": q},
+    {"J": space},
+)
+d.function(
+    "jacobian_body",
+    "Angular velocity in the hand frame per joint rate.",
+    {"q": q},
+    {"J": body},
+)
+d.function("determinant", "Determinant of either angular Jacobian.", {"q": q}, {"det": det})
+d.function(
+    "singularities",
+    "The factor that vanishes exactly where the axes 4 and 6 coincide.",
+    {"q": q},
+    {"factors": [sin(theta5)]},
+)
+
+# Inverse
+
+given = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
+sigma = real("sigma_wrist")
+flip = branches((sigma, {+1: "theta5_positive", -1: "theta5_negative"}))
+d.branches = flip.labels
+
+p = Program()
+x_axis, y_axis, z_axis = (given[:, j] for j in range(3))
+p.require(
+    [
+        *(x_axis.cross(y_axis) - z_axis),
+        x_axis.dot(x_axis) - 1,
+        y_axis.dot(y_axis) - 1,
+        x_axis.dot(y_axis),
+    ],
+    1,
+    "a proper rotation",
+)
+angles = zyz_angles(p, given, theta4, theta5, theta6, sigma)
+d.solved.append(Solved("ik", theta4, angles, given[0, 2] * sin(theta4) - given[1, 2] * cos(theta4)))
+d.step(
+    "Inverse orientation",
+    "The third column of R gives theta4 and theta5, up to the sign of sin(theta5).  theta6 is read "
+    "from the rotation that theta4 leaves, and not from the third row as in eq. (16), which knows "
+    "nothing of theta6 when theta5 is small.",
+    {r"\theta_4": angles[theta4], r"\theta_5": angles[theta5], r"\theta_6": angles[theta6]},
+    published=("(13)", "(16)"),
+)
+d.function(
+    "ik",
+    "Both wrist configurations of a rotation.",
+    {"R": given},
+    {"q": [angles[theta4], angles[theta5], angles[theta6]]},
+    program=p,
+    branches=flip,
+    result="Solutions",
+    source="eqs. (13) and (16), with theta6 from the remaining rotation",
+    notes=(
+        "SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, "
+        "theta4 = 0 is returned.",
+        "INVALID: a matrix that is no proper rotation, a mirrored one included.",
+        "Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or "
+        "difference.",
+    ),
+)
+free = real("psi")
+aligned = sp.Symbol("aligned")
+turned = rotation("z", free)
+opposed = rotation("y", sp.pi) * rotation("z", free)
+d.inverses.append(
+    Inverse(
+        "ik",
+        q,
+        tuple(given),
+        tuple(R),
+        (
+            Continuum(aligned, dict(zip(given, turned, strict=True)), theta4, r"\theta_4+\theta_6"),
+            Continuum(aligned, dict(zip(given, opposed, strict=True)), theta4, r"\theta_6-\theta_4"),
+        ),
+        parametrisation=tuple(rotation_parametrisation()),
+    )
+)

@@ -147,7 +147,7 @@ class _Branch:
         for symbol, sign in self.signs.items():
             build.define(symbol, graph.const(sign))
         build.names = names
-        invalid, unreachable, singular = [self._invalid_input()], [], []
+        valid, reachable, singular = self._valid_input(), [], []
 
         def limit(name: str, scale: sp.Expr) -> Node:
             return graph.product([graph.node("tolerance", payload=name), build(scale)])
@@ -158,12 +158,12 @@ class _Branch:
             elif isinstance(statement, Bound):
                 raw = build(statement.value)
                 allowed = graph.neg(limit("feasibility", statement.scale))
-                unreachable.append(graph.node("lt", raw, allowed))
+                reachable.append(graph.node("le", allowed, raw))
                 clamped = graph.node("max", raw, graph.const(0))
                 self._name(names, build, statement.symbol, clamped, label)
             elif isinstance(statement, Match):
                 size = graph.even("abs", build(statement.value))
-                unreachable.append(graph.node("lt", limit("feasibility", statement.scale), size))
+                reachable.append(graph.node("le", size, limit("feasibility", statement.scale)))
             elif isinstance(statement, Vanishes):
                 flag = graph.node("le", build(statement.value), limit("vanishing", statement.scale))
                 build.define(statement.symbol, flag)
@@ -171,12 +171,12 @@ class _Branch:
                     singular.append(flag)
             else:
                 sizes = [graph.even("abs", build(v)) for v in statement.values]
-                worst = sizes[0]
-                for size in sizes[1:]:
-                    worst = graph.node("max", worst, size)
-                invalid.append(graph.node("lt", limit("rotation", statement.scale), worst))
+                allowed = limit("rotation", statement.scale)
+                valid += [graph.node("le", size, allowed) for size in sizes]
 
-        bad_input, out_of_reach = graph.any(invalid), graph.any(unreachable)
+        # Written so that a comparison with NaN, after an overflow, counts as a failure.
+        bad_input = graph.negate(graph.every(valid))
+        out_of_reach = graph.negate(graph.every(reachable))
         failed = graph.any([bad_input, out_of_reach]) if self._guarded else graph.node("false")
         for node, name in (
             (bad_input, "invalid"),
@@ -198,12 +198,16 @@ class _Branch:
         )
 
     def _output(self, build: Builder, failed: Node, entry: sp.Basic) -> Node:
+        """The value of an entry; adding NaN to a failed one is one selection for all entries."""
         node = build(entry)
         if self.function.boolean:
             return self.graph.every([self.graph.negate(failed), node])
         if entry.has(sp.atan2):
             node = self.graph.node("wrap", node)
-        return self.graph.select(failed, self.graph.node("nan"), node)
+        if failed.op == "false":
+            return node
+        poison = self.graph.select(failed, self.graph.node("nan"), self.graph.const(0))
+        return self.graph.node("add", node, poison)
 
     def _status(self, invalid: Node, unreachable: Node, singular: Node) -> Node:
         graph = self.graph
@@ -211,8 +215,8 @@ class _Branch:
         result = graph.select(unreachable, graph.const(STATUS["UNREACHABLE"]), result)
         return graph.select(invalid, graph.const(STATUS["INVALID"]), result)
 
-    def _invalid_input(self) -> Node:
-        """An input or a parameter that is not finite, or a length that is negative."""
+    def _valid_input(self) -> list[Node]:
+        """Every input and parameter is finite, and no length is negative."""
         graph = self.graph
         used = {s for e in _expressions(self.function) for s in e.free_symbols}
         parameters = [p for p in self.derivation.parameters if p.symbol in used]
@@ -223,7 +227,7 @@ class _Branch:
             for p in parameters
             if p.nonnegative
         ]
-        return graph.negate(graph.every([*finite, *lengths]))
+        return [*finite, *lengths]
 
     def _name(
         self, names: dict[int, str], build: Builder, symbol: sp.Symbol, node: Node, label: str

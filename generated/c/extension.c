@@ -3,6 +3,7 @@
  */
 #include "closedform_module.h"
 #include "planar_2r.h"
+#include "spherical_wrist.h"
 
 static const char *const planar_2r_fields[] = { "l1", "l2" };
 static const double planar_2r_values[] = PLANAR_2R_DEFAULTS;
@@ -197,6 +198,143 @@ static const cf_array planar_2r_workspace_radii_out[] = {
     { "radii", 1, { 2 }, 2, CF_REAL },
 };
 
+static const char *const spherical_wrist_fields[] = { "d6" };
+static const double spherical_wrist_values[] = SPHERICAL_WRIST_DEFAULTS;
+
+static void spherical_wrist_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_wrist_fk((const spherical_wrist_params *)params, in[0], out[0]);
+}
+
+static void spherical_wrist_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_wrist_fk_batch(n, (const spherical_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_wrist_fk_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array spherical_wrist_fk_out[] = {
+    { "R", 2, { 3, 3 }, 9, CF_REAL },
+};
+
+static void spherical_wrist_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_wrist_pose((const spherical_wrist_params *)params, in[0], out[0]);
+}
+
+static void spherical_wrist_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_wrist_pose_batch(n, (const spherical_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_wrist_pose_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array spherical_wrist_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void spherical_wrist_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_wrist_jacobian_space((const spherical_wrist_params *)params, in[0], out[0]);
+}
+
+static void spherical_wrist_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_wrist_jacobian_space_batch(n, (const spherical_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_wrist_jacobian_space_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array spherical_wrist_jacobian_space_out[] = {
+    { "J", 2, { 3, 3 }, 9, CF_REAL },
+};
+
+static void spherical_wrist_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_wrist_jacobian_body((const spherical_wrist_params *)params, in[0], out[0]);
+}
+
+static void spherical_wrist_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_wrist_jacobian_body_batch(n, (const spherical_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_wrist_jacobian_body_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array spherical_wrist_jacobian_body_out[] = {
+    { "J", 2, { 3, 3 }, 9, CF_REAL },
+};
+
+static void spherical_wrist_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_wrist_determinant((const spherical_wrist_params *)params, in[0], out[0]);
+}
+
+static void spherical_wrist_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_wrist_determinant_batch(n, (const spherical_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_wrist_determinant_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array spherical_wrist_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void spherical_wrist_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_wrist_singularities((const spherical_wrist_params *)params, in[0], out[0]);
+}
+
+static void spherical_wrist_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_wrist_singularities_batch(n, (const spherical_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_wrist_singularities_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array spherical_wrist_singularities_out[] = {
+    { "factors", 1, { 1 }, 1, CF_REAL },
+};
+
+static void spherical_wrist_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_wrist_ik((const spherical_wrist_params *)params, in[0], out[0], out[1]);
+}
+
+static void spherical_wrist_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_wrist_ik_batch(n, (const spherical_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array spherical_wrist_ik_in[] = {
+    { "R", 2, { 3, 3 }, 9, CF_REAL },
+};
+
+static const cf_array spherical_wrist_ik_out[] = {
+    { "q", 2, { 2, 3 }, 6, CF_REAL },
+    { "status", 1, { 2 }, 2, CF_STATUS },
+};
+
 const cf_function cf_functions[] = {
     { "planar_2r.fk",
       "Position of the hand.\n"
@@ -291,6 +429,71 @@ const cf_function cf_functions[] = {
       2, planar_2r_values, planar_2r_fields,
       0, NULL, 1, planar_2r_workspace_radii_out,
       planar_2r_workspace_radii_one, planar_2r_workspace_radii_many },
+    { "spherical_wrist.fk",
+      "Rotation of the hand.\n"
+      "Source: eqs. (12) and (15).\n"
+      "q: shape (..., 3): theta4, theta5, theta6.\n"
+      "Returns R: shape (..., 3, 3).\n"
+      ,
+      1, spherical_wrist_values, spherical_wrist_fields,
+      1, spherical_wrist_fk_in, 1, spherical_wrist_fk_out,
+      spherical_wrist_fk_one, spherical_wrist_fk_many },
+    { "spherical_wrist.pose",
+      "Pose of the hand, with its offset d6.\n"
+      "Source: eq. (14).\n"
+      "q: shape (..., 3): theta4, theta5, theta6.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      1, spherical_wrist_values, spherical_wrist_fields,
+      1, spherical_wrist_pose_in, 1, spherical_wrist_pose_out,
+      spherical_wrist_pose_one, spherical_wrist_pose_many },
+    { "spherical_wrist.jacobian_space",
+      "Angular velocity in the base frame per joint rate.\n"
+      "q: shape (..., 3): theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 3, 3).\n"
+      ,
+      1, spherical_wrist_values, spherical_wrist_fields,
+      1, spherical_wrist_jacobian_space_in, 1, spherical_wrist_jacobian_space_out,
+      spherical_wrist_jacobian_space_one, spherical_wrist_jacobian_space_many },
+    { "spherical_wrist.jacobian_body",
+      "Angular velocity in the hand frame per joint rate.\n"
+      "q: shape (..., 3): theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 3, 3).\n"
+      ,
+      1, spherical_wrist_values, spherical_wrist_fields,
+      1, spherical_wrist_jacobian_body_in, 1, spherical_wrist_jacobian_body_out,
+      spherical_wrist_jacobian_body_one, spherical_wrist_jacobian_body_many },
+    { "spherical_wrist.determinant",
+      "Determinant of either angular Jacobian.\n"
+      "q: shape (..., 3): theta4, theta5, theta6.\n"
+      "Returns det: shape (...).\n"
+      ,
+      1, spherical_wrist_values, spherical_wrist_fields,
+      1, spherical_wrist_determinant_in, 1, spherical_wrist_determinant_out,
+      spherical_wrist_determinant_one, spherical_wrist_determinant_many },
+    { "spherical_wrist.singularities",
+      "The factor that vanishes exactly where the axes 4 and 6 coincide.\n"
+      "q: shape (..., 3): theta4, theta5, theta6.\n"
+      "Returns factors: shape (..., 1).\n"
+      ,
+      1, spherical_wrist_values, spherical_wrist_fields,
+      1, spherical_wrist_singularities_in, 1, spherical_wrist_singularities_out,
+      spherical_wrist_singularities_one, spherical_wrist_singularities_many },
+    { "spherical_wrist.ik",
+      "Both wrist configurations of a rotation.\n"
+      "Source: eqs. (13) and (16), with theta6 from the remaining rotation.\n"
+      "R: shape (..., 3, 3): R11, R12, R13, R21, R22, R23, R31, R32, R33.\n"
+      "Returns q: shape (..., 2, 3).\n"
+      "Branches: theta5_positive, theta5_negative.\n"
+      "SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is\n"
+      "    determined, theta4 = 0 is returned.\n"
+      "INVALID: a matrix that is no proper rotation, a mirrored one included.\n"
+      "Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their\n"
+      "    sum or difference.\n"
+      ,
+      1, spherical_wrist_values, spherical_wrist_fields,
+      1, spherical_wrist_ik_in, 2, spherical_wrist_ik_out,
+      spherical_wrist_ik_one, spherical_wrist_ik_many },
 };
 
 const size_t cf_function_count = sizeof cf_functions / sizeof cf_functions[0];

@@ -10,8 +10,8 @@
 #   determinant: 2 multiply, 1 sincos
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
 #   singularities: 1 sincos
-#   ik: 9 add, 37 compare and select, 3 atan2, 13 multiply, 5 sqrt
-#   ik_pose: 86 compare and select, 23 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+#   ik: 13 add, 35 compare and select, 3 atan2, 13 multiply, 5 sqrt
+#   ik_pose: 95 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
 #   workspace_radii: 1 compare and select, 2 add
 """Planar 2R arm.
 
@@ -298,37 +298,36 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 
 
 def _ik(px, py, l1, l2):
-    t1 = np.isfinite(px) & np.isfinite(py) & np.isfinite(l1)
-    t2 = t1 & np.isfinite(l2) & (0.0 <= l1) & (0.0 <= l2)
-    invalid = np.logical_not(t2)
-    t3 = l1 + l2
     r = np.sqrt(px * px + py * py)
-    t4 = t3 - r
-    t5 = -(_runtime.FEASIBILITY * t3)
-    t6 = l1 - l2
-    t7 = r + t6
-    t8 = r - t6
-    unreachable = (t4 < t5) | (t7 < t5) | (t8 < t5)
-    failed = invalid | unreachable
-    t9 = r <= t3 * _runtime.VANISHING
-    t10 = np.arctan2(py, px)
+    t1 = l1 + l2
+    t2 = r <= t1 * _runtime.VANISHING
+    t3 = np.arctan2(py, px)
+    t4 = t1 - r
     rA = np.sqrt(np.maximum(t4, 0.0))
-    rC = np.sqrt(np.maximum(t8, 0.0))
-    rS = np.sqrt(r + t3)
+    t5 = l1 - l2
+    t6 = r - t5
+    rC = np.sqrt(np.maximum(t6, 0.0))
+    rS = np.sqrt(r + t1)
+    t7 = r + t5
     rB = np.sqrt(np.maximum(t7, 0.0))
-    t11 = 2.0 * np.arctan2(rA * rC, rS * rB)
-    t12 = np.where(failed, np.nan, _runtime.wrap(np.where(t9, 0.0, t10 - t11)))
-    t13 = 2.0 * np.arctan2(rA * rS, rC * rB)
-    t14 = np.where(failed, np.nan, _runtime.wrap(np.where(t9, 0.0, t10 + t11)))
-    t15 = np.where(failed, np.nan, _runtime.wrap(-t13))
-    t16 = t9 | (l1 * l2 <= _runtime.VANISHING * (t3 * t3))
+    t8 = 2.0 * np.arctan2(rA * rC, rS * rB)
+    t9 = np.isfinite(px) & np.isfinite(py) & np.isfinite(l1)
+    t10 = t9 & np.isfinite(l2) & (0.0 <= l1) & (0.0 <= l2)
+    invalid = np.logical_not(t10)
+    t11 = -(_runtime.FEASIBILITY * t1)
+    unreachable = np.logical_not((t11 <= t4) & (t11 <= t7) & (t11 <= t6))
+    t12 = np.where(invalid | unreachable, np.nan, 0.0)
+    t13 = _runtime.wrap(np.where(t2, 0.0, t3 - t8)) + t12
+    t14 = 2.0 * np.arctan2(rA * rS, rC * rB)
+    t15 = _runtime.wrap(np.where(t2, 0.0, t3 + t8)) + t12
+    t16 = t2 | (l1 * l2 <= _runtime.VANISHING * (t1 * t1))
     t17 = np.where(unreachable, 1.0, np.where(t16, 2.0, 0.0))
     t18 = np.where(invalid, 3.0, t17)
     return (
-        t12,
-        np.where(failed, np.nan, _runtime.wrap(t13)),
-        t14,
+        t13,
+        _runtime.wrap(t14) + t12,
         t15,
+        _runtime.wrap(-t14) + t12,
         t18,
         t18,
     )
@@ -363,41 +362,43 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
 def _ik_pose(
     T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T43, T44, l1, l2
 ):
-    t1 = np.isfinite(T11) & np.isfinite(T12) & np.isfinite(T13)
-    t2 = t1 & np.isfinite(T14) & np.isfinite(T21) & np.isfinite(T22)
-    t3 = t2 & np.isfinite(T23) & np.isfinite(T24) & np.isfinite(T31)
-    t4 = t3 & np.isfinite(T32) & np.isfinite(T33) & np.isfinite(T34)
-    t5 = t4 & np.isfinite(T41) & np.isfinite(T42) & np.isfinite(T43)
-    t6 = t5 & np.isfinite(T44) & np.isfinite(l1) & np.isfinite(l2)
-    t7 = np.logical_not(t6 & (0.0 <= l1) & (0.0 <= l2))
-    t8 = np.maximum(np.abs(T13 - T21 * T32 + T22 * T31), np.abs(T23 + T11 * T32 - T12 * T31))
-    t9 = np.maximum(t8, np.abs(T33 - T11 * T22 + T12 * T21))
-    t10 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t11 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t12 = np.maximum(np.maximum(np.maximum(t9, t10), t11), np.abs(T11 * T12 + T21 * T22 + T31 * T32))
-    t13 = np.maximum(np.maximum(t12, np.abs(T41)), np.abs(T42))
-    t14 = np.maximum(np.maximum(t13, np.abs(T43)), np.abs(T44 - 1.0))
-    invalid = t7 | (_runtime.ROTATION < t14)
-    t15 = l1 + l2
-    t16 = _runtime.FEASIBILITY * t15
-    elbow_x = T14 - T11 * l2
+    t1 = l1 + l2
+    t2 = l1 <= t1 * _runtime.VANISHING
     elbow_y = T24 - T21 * l2
-    t17 = np.sqrt(elbow_x * elbow_x + elbow_y * elbow_y)
-    t18 = (t16 < np.abs(l1 - t17)) | (t16 < np.abs(T34))
-    t19 = t18 | (_runtime.FEASIBILITY < np.abs(T13)) | (_runtime.FEASIBILITY < np.abs(T23))
-    unreachable = t19 | (_runtime.FEASIBILITY < np.abs(T33 - 1.0))
-    failed = invalid | unreachable
-    t20 = l1 <= t15 * _runtime.VANISHING
-    s1 = np.where(t20, 0.0, elbow_y / l1)
-    c1 = np.where(t20, 1.0, elbow_x / l1)
-    t21 = np.where(failed, np.nan, _runtime.wrap(np.arctan2(s1, c1)))
-    t22 = np.arctan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1)
-    t23 = np.where(failed, np.nan, _runtime.wrap(-t22))
-    t24 = np.where(unreachable, 1.0, np.where(t20, 2.0, 0.0))
+    s1 = np.where(t2, 0.0, elbow_y / l1)
+    elbow_x = T14 - T11 * l2
+    c1 = np.where(t2, 1.0, elbow_x / l1)
+    t3 = np.isfinite(T11) & np.isfinite(T12) & np.isfinite(T13)
+    t4 = t3 & np.isfinite(T14) & np.isfinite(T21) & np.isfinite(T22)
+    t5 = t4 & np.isfinite(T23) & np.isfinite(T24) & np.isfinite(T31)
+    t6 = t5 & np.isfinite(T32) & np.isfinite(T33) & np.isfinite(T34)
+    t7 = t6 & np.isfinite(T41) & np.isfinite(T42) & np.isfinite(T43)
+    t8 = t7 & np.isfinite(T44) & np.isfinite(l1) & np.isfinite(l2)
+    t9 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t10 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t11 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t12 = t8 & (0.0 <= l1) & (0.0 <= l2) & t9 & t10 & t11
+    t13 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t14 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t15 = t12 & (t13 <= _runtime.ROTATION) & (t14 <= _runtime.ROTATION)
+    t16 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t17 = t15 & t16 & (np.abs(T41) <= _runtime.ROTATION)
+    t18 = t17 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    t19 = t18 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    invalid = np.logical_not(t19)
+    t20 = np.sqrt(elbow_x * elbow_x + elbow_y * elbow_y)
+    t21 = _runtime.FEASIBILITY * t1
+    t22 = (np.abs(l1 - t20) <= t21) & (np.abs(T34) <= t21)
+    t23 = t22 & (np.abs(T13) <= _runtime.FEASIBILITY) & (np.abs(T23) <= _runtime.FEASIBILITY)
+    t24 = t23 & (np.abs(T33 - 1.0) <= _runtime.FEASIBILITY)
+    unreachable = np.logical_not(t24)
+    t25 = np.where(invalid | unreachable, np.nan, 0.0)
+    t26 = np.arctan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1)
+    t27 = np.where(unreachable, 1.0, np.where(t2, 2.0, 0.0))
     return (
-        t21,
-        t23,
-        np.where(invalid, 3.0, t24),
+        _runtime.wrap(np.arctan2(s1, c1)) + t25,
+        _runtime.wrap(-t26) + t25,
+        np.where(invalid, 3.0, t27),
     )
 
 

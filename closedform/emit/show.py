@@ -1,0 +1,367 @@
+"""What people read without TeX: a page for the terminal and the papers' errata as Markdown.
+
+Also the sentences that both these and the LaTeX article are made of: names of symbols, escaping,
+formulas inside prose.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal
+
+import sympy as sp
+from sympy.core.alphabets import greeks
+from sympy.printing.pretty.pretty import PrettyPrinter
+
+from closedform.claims import PROVED, VERDICTS, Check, Decimal, Every, Identity, Refuted, Undecidable
+from closedform.derivation import Derivation
+from closedform.emit.text import citation
+from closedform.functions import Bound, Function, Let, Match, Statement, Vanishes
+from closedform.prove import ClaimResult, Proof
+
+WIDTH = 100
+
+GREEK = {*greeks, *(g.capitalize() for g in greeks), "lambda", "varphi"}
+SYMBOL_NAMES = {"det": r"\det", "lamda": r"\lambda", "loff": r"l_{\mathrm{off}}"}
+"""Symbols that the rule of :func:`symbol_name` would misread."""
+
+ESCAPES = {
+    "\\": r"\textbackslash{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    **{c: "\\" + c for c in "&%$#_{}"},
+    **{c: f"${c}$" for c in "<>|"},
+    **{"–": "--", "—": "---", "‘": "`", "’": "'", "“": "``", "”": "''", "…": r"\dots{}"},
+}
+UNICODE = {
+    **{c: rf"\{g}" for c, g in zip("αβγδεηθκλμξπρστψω", (
+        "alpha beta gamma delta epsilon eta theta kappa lambda mu xi pi rho sigma tau psi omega"
+    ).split(), strict=True)},
+    **{c: rf"\{g}" for c, g in zip("φϕΔΩ±×·≤≥≠≈√∞∈ℓµ", (
+        "varphi phi Delta Omega pm times cdot le ge ne approx surd infty in ell mu"
+    ).split(), strict=True)},
+    **{"°": r"^\circ", "²": "^2", "³": "^3", "−": "-"},
+}  # fmt: skip
+
+FUNCTIONS = r"(?:sqrt|sin|cos|tan|atan2|acos|asin|atan|det|max|min|Abs)"
+PAREN = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
+NAME = r"[A-Za-z][A-Za-z0-9_]*"
+NUMBER = r"\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![A-Za-z])"
+POWER = rf"(?:\*\*|\^)(?:\{{[^}}]*\}}|-?\w+|{PAREN})"
+ATOM = rf"[-+]?(?:{FUNCTIONS}{PAREN}|{NAME}|{NUMBER}|{PAREN}|\|[^|]+\||\[[^]]*\+/-[^]]*\])(?:{POWER})?"
+RELATION = r"(?:\s*(?:<=|>=|!=|=|[*/])\s*|\s+[-+<>]\s+)"
+PROSE = re.compile(rf"(?<![\w-])({ATOM}(?:{RELATION}{ATOM})*)(?!-?\w)")
+TOKEN = re.compile(
+    rf"({FUNCTIONS})({PAREN})|(?:\*\*|\^)({PAREN}|\{{[^}}]*\}}|-?\w+)|({NUMBER})|({NAME})"
+    r"|(\+/-|<=|>=|!=|[*<>])|(.)"
+)
+SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,"}
+
+
+def symbol_name(name: str) -> str:
+    """The LaTeX of a symbol: theta2R -> \\theta_{2R}, px -> p_{x}, sigma_elbow -> \\sigma_{elbow}."""
+    if name in SYMBOL_NAMES:
+        return SYMBOL_NAMES[name]
+    dotted, name = "dot" in name, name.replace("_dot", "").replace("dot", "")
+    first, *subscripts = name.split("_")
+    letters, rest = (re.match(r"([A-Za-z]+)(.*)", first) or re.match("(.)(.*)", first)).groups()  # type: ignore[union-attr]
+    if letters in GREEK:
+        base = r"\lambda" if letters == "lamda" else rf"\{letters}"
+    elif len(letters) <= 2:
+        base, rest = letters[0], letters[1:] + rest
+    else:
+        base = rf"\mathrm{{{letters}}}"
+    base = rf"\dot{{{base}}}" if dotted else base
+    parts = [_subscript(s) for s in ([rest] if rest else []) + [s for s in subscripts if s]]
+    return f"{base}_{{{','.join(parts)}}}" if parts else base
+
+
+def _subscript(text: str) -> str:
+    if re.fullmatch(r"\d*[a-z]?|\d", text):
+        return text
+    if number := re.fullmatch(r"(\d+)([A-Za-z]+)", text):
+        return rf"{number[1]}\mathrm{{{number[2]}}}"
+    if (head := re.match("[A-Za-z]+", text)) and (head[0] in GREEK or re.search(r"\d", text)):
+        return symbol_name(text)
+    return rf"\mathrm{{{text}}}"
+
+def escape(text: str) -> str:
+    """Plain text; letters and signs of mathematics that LaTeX's fonts lack become formulas."""
+    text = re.sub(r'"([^"]*)"', "“\\1”", text)
+    return "".join(ESCAPES.get(c) or (f"${UNICODE[c]}$" if c in UNICODE else c) for c in text)
+
+
+def mixed(text: str) -> str:
+    """Text with formulas between dollar signs."""
+    parts = text.split("$")
+    for i, part in enumerate(parts):
+        formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
+        parts[i] = f"${formula}$" if i % 2 else escape(part)
+    return "".join(parts)
+
+
+class Prose:
+    """Sentences as derivations have them: ``theta1 = pi/6`` in the text becomes a formula."""
+
+    def __init__(self, derivation: Derivation):
+        functions = derivation.functions
+        symbols = [p.symbol for p in derivation.parameters] + [j.symbol for j in derivation.joints]
+        symbols += [s for f in functions for s in f.symbols]
+        symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
+        names = {str(s) for s in symbols} | set(derivation.task)
+        self.known = GREEK | {n for n in names if len(n) < 3 or re.search(r"\d|_", n)}
+
+    def __call__(self, text: str) -> str:
+        parts = PROSE.split(text)
+        return "".join(
+            f"${self.formula(part)}$" if i % 2 and self._is_formula(part) else escape(part)
+            for i, part in enumerate(parts)
+        )
+
+    def _is_formula(self, text: str) -> bool:
+        if re.search(rf"\b{FUNCTIONS}\(", text):
+            return True
+        names = re.findall(rf"(?<![\w.]){NAME}", text)
+        related = bool(re.search(r"[=<>*^|]|\+/-| [-+] |\w/\w", text))
+        if any(n in self.known or re.fullmatch("[^aAI]|[A-Za-z]_.+", n) for n in names):
+            return related or not text.startswith("(")
+        return related and ("=" in text if names else True)
+
+    def formula(self, text: str) -> str:
+        done = []
+        for function, argument, power, number, name, sign, other in TOKEN.findall(text):
+            if function:
+                inner = self.formula(argument[1:-1])
+                command = {"atan2": r"\operatorname{atan2}", "Abs": r"\operatorname{abs}"}
+                head = command.get(function, "\\" + function)
+                done.append(f"{head}{{{inner}}}" if function == "sqrt" else f"{head}({inner})")
+            elif power:
+                done.append(f"^{{{self.formula(re.sub(r'^[({](.*)[)}]$', r'\1', power))}}}")
+            elif number:
+                done.append(re.sub(r"e\+?(-?)0*(\d+)", r"\\cdot 10^{\1\2}", number))
+            elif name:
+                short = name in self.known or len(name) == 1 or name[1] == "_"
+                done.append(symbol_name(name) if short else rf"\mathrm{{{name}}}")
+            else:
+                done.append(SIGNS.get(sign, sign) or other)
+        return "".join(done)
+
+
+def upright(text: str) -> str:
+    """Words inside a formula, such as ``area`` or ``any``, set as words."""
+    if r"\begin" in text or r"\text" in text or r"\mathrm" in text:
+        return text
+    spaced = re.sub(r"(?<=\S) +(?=[A-Za-z]{3})|(?<=[a-z]{3}) +", r"\\ ", text)
+    return re.sub(r"(?<![\\A-Za-z])[A-Za-z]{3,}", r"\\mathrm{\g<0>}", spaced)
+
+
+def loosen(text: str) -> str:
+    """Parentheses of a fixed size instead of ``\\left( \\right)``, where no matrix stands inside."""
+    opened: list[tuple[int, str]] = []
+    parts = re.split(r"(\\left[(\[]|\\right[)\]]|\\left\S|\\right\S)", text)
+    for i, part in enumerate(parts):
+        if part.startswith(r"\left"):
+            opened.append((i, part))
+        elif part.startswith(r"\right") and opened:
+            j, left = opened.pop()
+            inside = "".join(parts[j + 1 : i])
+            if left[5:] in "([" and r"\begin" not in inside:
+                size = r"\bigl", r"\bigr"
+                if r"\frac" not in inside and r"\sqrt" not in inside:
+                    size = "", ""
+                parts[j], parts[i] = size[0] + left[5:], size[1] + part[6:]
+    return re.sub(r"(\S) ([)\]])", r"\1\2", "".join(parts))
+
+
+def verified(check: Check | None) -> bool:
+    """Whether the corrected form of a refuted claim was itself proved."""
+    if isinstance(check, Every):
+        return all(verified(c) for c in check.parts.values() if not isinstance(c, Undecidable))
+    return isinstance(check, Identity | Decimal) or (
+        isinstance(check, Refuted) and check.proof is not None
+    )
+
+
+def errata(derivations: Sequence[Derivation], proofs: Sequence[Proof]) -> dict[str, Any]:
+    """The context of ``errata.md.jinja``: per paper, what is not simply proved."""
+    papers: dict[str, dict[str, Any]] = {}
+    counts: dict[str, Counter[str]] = {}
+    for derivation, proof in zip(derivations, proofs, strict=True):
+        if not proof.claims:
+            continue
+        key = derivation.paper.key
+        paper = papers.setdefault(
+            key,
+            {
+                "title": derivation.paper.title,
+                "authors": ", ".join(derivation.paper.authors),
+                "reference": derivation.paper.reference,
+                "mechanisms": [],
+            },
+        )
+        checks = {(c.label, c.printed): c.check for c in derivation.claims}
+        claims = [
+            _entry(claim, verified(checks.get((claim.label, claim.printed))))
+            for claim in proof.claims
+            if claim.kind != PROVED
+        ]
+        paper["mechanisms"].append({"title": derivation.title, "claims": claims})
+        counts.setdefault(key, Counter()).update(c.kind for c in proof.claims)
+    for key, paper in papers.items():
+        paper["counts"] = [(kind, counts[key][kind]) for kind in VERDICTS]
+        paper["total"] = sum(counts[key].values())
+    return {"papers": list(papers.values())}
+
+
+def _entry(claim: ClaimResult, sure: bool) -> dict[str, str]:
+    corrected = claim.corrected
+    if corrected and "$" not in corrected:
+        corrected = "; ".join(f"${part}$" for part in separate(corrected))
+    return {
+        "label": markdown(claim.label),
+        "where": markdown(claim.where),
+        "printed": markdown(claim.printed),
+        "verdict": claim.kind,
+        "evidence": markdown(claim.evidence),
+        "corrected": markdown(corrected),
+        "mark": "proved" if sure else "not proved",
+    }
+
+
+def separate(corrected: str) -> list[str]:
+    """The parts of a corrected form: several statements, or entries of a matrix."""
+    return re.split(r";\\quad |,\\ (?=\[)", corrected)
+
+
+def markdown(text: str) -> str:
+    """Text and formulas between dollar signs, as GitHub renders them: ``$`...`$`` is left alone."""
+    parts = text.split("$")
+    for i, part in enumerate(parts):
+        if i % 2:
+            parts[i] = f"$`{part.strip()}`$"
+            continue
+        for old, new in (("**", "^"), ("*", "·"), ("<=", "≤"), (">=", "≥"), (" +/- ", " ± ")):
+            part = part.replace(old, new)
+        parts[i] = re.sub(r"([\\<`]|(?<!\w)_|_(?!\w))", r"\\\1", part)
+    return "".join(parts)
+
+
+def show(
+    derivation: Derivation, proof: Proof | None, format: Literal["text", "latex"] = "text"
+) -> str:
+    """A derivation on the terminal: plain text of at most 100 columns, or the LaTeX article."""
+    if format == "latex":
+        from closedform.emit.latex import document
+        from closedform.emit.render import render
+
+        empty = Proof(derivation.name, derivation.paper.key, (), 0, ())
+        return render("latex/robot.tex.jinja", document(derivation, proof or empty))
+    return "\n".join(line.rstrip() for line in _lines(derivation, proof)) + "\n"
+
+
+def _lines(derivation: Derivation, proof: Proof | None) -> Iterator[str]:
+    yield from (derivation.title, "=" * len(derivation.title), "")
+    yield from _wrap(derivation.mechanism)
+    yield from _wrap(f"Source: {citation(derivation)}.")
+    yield from _heading("Parameters")
+    for p in derivation.parameters:
+        yield from _wrap(f"{p.name} = {p.value} {p.unit}: {p.meaning} ({p.source})", 2)
+    yield from _heading("Joints")
+    for j in derivation.joints:
+        role = "passive" if j.passive else "actuated" if j.coupling is None else f"= {j.coupling}"
+        yield f"  {j.name}: {j.kind}, {role}"
+    yield from _heading("Steps")
+    for number, step in enumerate(derivation.steps, 1):
+        published = f"  [paper: {', '.join(step.published)}]" if step.published else ""
+        yield from ("", f"{number}. {step.title}{published}")
+        yield from _wrap(step.reason, 3)
+        for lhs, value in step.shown:
+            yield from _equation(plain(lhs), value)
+        if step.vanishes and proof and step.title in proof.steps:
+            yield f"   [identities proved: {len(step.vanishes)}]"
+    yield from _heading("Functions")
+    for function in derivation.functions:
+        yield from _function(function, proof)
+    if derivation.singularities:
+        yield from _heading("Singular set")
+        yield from _wrap(", ".join(derivation.singularities), 2)
+    if proof and proof.claims:
+        yield from _heading("Claims of the paper")
+        for kind, n in proof.verdicts().items():
+            labels = ", ".join(c.label for c in proof.claims if c.kind == kind)
+            yield from _wrap(f"{n} {kind}: {labels}", 2)
+
+
+def _function(function: Function, proof: Proof | None) -> Iterator[str]:
+    arguments = ", ".join(f"{a.name}: {_entries(a.entries)}" for a in function.inputs)
+    results = ", ".join(f"{a.name}{list(a.shape) or ''}" for a in function.outputs)
+    yield from ("", *_wrap(f"{function.name}({arguments}) -> {results}", 2))
+    yield from _wrap(function.summary, 4)
+    for statement in function.body:
+        yield from _wrap(_statement(statement), 4)
+    if function.has_status:
+        for a in function.outputs:
+            for k, e in enumerate(a.entries, 1):
+                yield from _wrap(f"{a.name}{k} = {e}", 4)
+    if function.branches and len(function.branches) > 1:
+        for label, signs in function.cases():
+            yield f"    branch {label}: " + ", ".join(f"{s} = {v:+d}" for s, v in signs.items())
+    for result in proof.inverses if proof else ():
+        if result.function == function.name:
+            found = f"{result.solutions} solution{'s' * (result.solutions != 1)}"
+            yield f"    proved sound and complete: the system has {found} ({result.method})"
+    for note in function.notes:
+        yield from _wrap(note, 4)
+
+
+def _entries(entries: Sequence[sp.Expr]) -> str:
+    return f"({', '.join(map(str, entries))})" if len(entries) < 7 else f"{entries[0]}..{entries[-1]}"
+
+
+def _statement(statement: Statement) -> str:
+    if isinstance(statement, Let):
+        return f"{statement.symbol} = {statement.value}"
+    if isinstance(statement, Bound):
+        return f"{statement.symbol} = {statement.value} >= 0: {statement.meaning}"
+    if isinstance(statement, Vanishes):
+        free = " and ".join(map(str, statement.free))
+        effect = f"; then {free} is free" if free else ""
+        return f"{statement.symbol} if {statement.value} = 0: {statement.meaning}{effect}"
+    values = (statement.value,) if isinstance(statement, Match) else statement.values
+    return f"{statement.meaning}: " + ", ".join(f"{v} = 0" for v in values)
+
+
+def _equation(lhs: str, value: Any) -> list[str]:
+    """Two-dimensional where it fits, else on lines of text."""
+    form = PrettyPrinter({"use_unicode": True, "wrap_line": False})._print(sp.sympify(value))
+    picture, space = list(form.picture), 3 + len(lhs) + 3
+    if space + form.width() <= WIDTH:
+        pad = " " * space
+        return [
+            (f"   {lhs} = " if k == form.baseline else pad) + line for k, line in enumerate(picture)
+        ]
+    if isinstance(value, sp.MatrixBase):
+        return [
+            line
+            for i in range(value.rows)
+            for j in range(value.cols)
+            for line in _equation(f"{lhs}[{i + 1},{j + 1}]", value[i, j])
+        ]
+    return _wrap(f"{lhs} = {value}", 3)
+
+
+def plain(latex: str) -> str:
+    """The LaTeX of a left-hand side, as text."""
+    return re.sub(r"_?\{(\w+)\}", r"_\1", latex.replace("\\", "")).strip()
+
+
+def _heading(title: str) -> tuple[str, ...]:
+    return ("", title, "-" * len(title))
+
+
+def _wrap(text: str, indent: int = 0) -> list[str]:
+    first, rest = " " * indent, " " * (indent + 4 * bool(indent))
+    return textwrap.wrap(text, WIDTH, initial_indent=first, subsequent_indent=rest)

@@ -1,0 +1,121 @@
+"""Where generated code breaks: the postures and dimensions at which it is compared.
+
+Home, multiples of a right angle approached to 1e-15, huge angles, denormals, merging branches and
+the boundary of the workspace; then random ones.  All are ordinary arrays of doubles, the same on
+every run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from closedform.derivation import Derivation
+from closedform.functions import Function
+
+Array = NDArray[np.float64]
+
+APPROACHES = (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1e-1)
+HUGE = (1e4, 4e5, 1e7, 1e15, 1e22, 1e300)
+TINY = (5e-324, 2.2250738585072014e-308, 1e-160, 1e-20)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A named batch: one row of joint values (or other inputs) a posture, one set of parameters."""
+
+    name: str
+    values: Array
+    parameters: tuple[float, ...]
+
+
+def parameter_sets(derivation: Derivation, rng: np.random.Generator) -> Iterator[tuple[float, ...]]:
+    """The example dimensions, all equal, all random, very unequal."""
+    n = len(derivation.parameters)
+    yield tuple(float(p.value) for p in derivation.parameters)
+    yield (1.0,) * n
+    yield tuple(rng.uniform(0.1, 3.0, n))
+    yield tuple(10.0 ** rng.uniform(-3, 3, n))
+
+
+def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> list[Sample]:
+    """Inputs of a function of joint values (or of any free real numbers)."""
+    rng = np.random.default_rng(seed)
+    n = len(function.symbols)
+    if n == 0:
+        none = np.empty((1, 0))
+        return [Sample("constant", none, p) for p in parameter_sets(derivation, rng)]
+    rows = {
+        "home": np.zeros((1, n)),
+        "random": rng.uniform(-np.pi, np.pi, (60, n)),
+        "right angles": _approaches(rng, n, 40),
+        "tiny": rng.choice(TINY, (8, n)) * rng.choice((-1, 1), (8, n)),
+        "huge": rng.choice(HUGE, (24, n)) * rng.uniform(-1, 1, (24, n)),
+    }
+    return [
+        Sample(name, values, parameters)
+        for parameters in parameter_sets(derivation, rng)
+        for name, values in rows.items()
+    ]
+
+
+def inverse_postures(derivation: Derivation, n: int, seed: int = 2) -> list[Sample]:
+    """Joint values whose images are the targets of an inverse, singular ones among them."""
+    rng = np.random.default_rng(seed)
+    rows = {
+        "random": rng.uniform(-np.pi, np.pi, (60, n)),
+        "right angles": _approaches(rng, n, 60),
+        "one joint singular": _one_singular(rng, n),
+    }
+    return [
+        Sample(name, values, parameters)
+        for parameters in parameter_sets(derivation, rng)
+        for name, values in rows.items()
+    ]
+
+
+def perturbed(targets: Array, seed: int = 3) -> Array:
+    """Targets moved off by relative amounts down to an ulp: in and out across the boundary."""
+    rng = np.random.default_rng(seed)
+    steps = rng.choice((1e-16, 1e-14, 1e-9, 1e-3, 0.3), (len(targets), 1))
+    return np.asarray(targets * (1 + steps * rng.choice((-1, 1), (len(targets), 1))))
+
+
+def _approaches(rng: np.random.Generator, n: int, rows: int) -> Array:
+    """Every joint a multiple of a right angle, up to a small or vanishing deviation."""
+    corners = rng.choice((-np.pi, -np.pi / 2, 0.0, np.pi / 2, np.pi), (rows, n))
+    return np.asarray(
+        corners + rng.choice(APPROACHES, (rows, n)) * rng.choice((-1, 1), (rows, n))
+    )
+
+
+def _one_singular(rng: np.random.Generator, n: int) -> Array:
+    """All joints random but one, which approaches 0 or pi."""
+    rows = []
+    for joint in range(n):
+        for corner in (0.0, np.pi, -np.pi):
+            for approach in APPROACHES:
+                row = rng.uniform(-np.pi, np.pi, n)
+                row[joint] = corner - np.copysign(approach, corner) if corner else approach
+                rows.append(row)
+    return np.array(rows)
+
+
+def magnitude(expr: sp.Expr) -> sp.Expr:
+    """The natural scale of a value: all signs positive, sines and cosines at their largest."""
+    if isinstance(expr, (sp.sin, sp.cos)):
+        return sp.Integer(1)
+    if isinstance(expr, (sp.atan2, sp.asin, sp.acos, sp.atan)):
+        return sp.pi
+    if isinstance(expr, (sp.Piecewise, sp.Max, sp.Min)):
+        branches = [e for e, _ in expr.args] if isinstance(expr, sp.Piecewise) else expr.args
+        return sp.Add(*(magnitude(e) for e in branches))
+    if expr.is_Symbol or expr.is_number:
+        return sp.Abs(expr)
+    if isinstance(expr, sp.Pow) and expr.exp.is_negative:
+        return sp.Abs(expr)
+    return expr.func(*(magnitude(a) for a in expr.args))

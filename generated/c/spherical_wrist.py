@@ -1,0 +1,40 @@
+"""Spherical wrist: the generated C, with the names and the meaning of the NumPy module."""
+
+from closedform.generated.numpy.spherical_wrist import (
+    BRANCHES,
+    JOINTS,
+    SINGULARITIES,
+    TASK,
+    Parameters,
+    Positions,
+    Solutions,
+    Status,
+)
+
+from . import _native
+
+__all__ = [
+    "BRANCHES",
+    "JOINTS",
+    "SINGULARITIES",
+    "TASK",
+    "Parameters",
+    "Positions",
+    "Solutions",
+    "Status",
+    "fk",
+    "pose",
+    "jacobian_space",
+    "jacobian_body",
+    "determinant",
+    "singularities",
+    "ik",
+]
+
+fk = _native.function("spherical_wrist.fk")
+pose = _native.function("spherical_wrist.pose")
+jacobian_space = _native.function("spherical_wrist.jacobian_space")
+jacobian_body = _native.function("spherical_wrist.jacobian_body")
+determinant = _native.function("spherical_wrist.determinant")
+singularities = _native.function("spherical_wrist.singularities")
+ik = _native.function("spherical_wrist.ik", Solutions)

@@ -396,9 +396,19 @@ def _power(e: Expr) -> Callable[[arb], arb]:
 
     def power(x: arb) -> arb:
         base = _sqrt(x) if root else x
-        return (_inverse(base) if inverted else base) ** n
+        return _whole_power(_inverse(base) if inverted else base, n)
 
     return power
+
+
+def _whole_power(x: arb, n: int) -> arb:
+    """By squaring: the `**` of python-flint gives nan for a ball that holds zero."""
+    result = arb(1)
+    while n:
+        if n & 1:
+            result *= x
+        x, n = x * x, n >> 1
+    return result
 
 
 _FUNCTIONS: dict[type, Callable[..., arb]] = {

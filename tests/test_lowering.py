@@ -1,0 +1,137 @@
+"""Lowered programs: what they cost, what they share, and that they mean what the source means."""
+
+import importlib
+import math
+
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sympy import cos, sin, sqrt
+
+from closedform.derivation import Derivation, Paper
+from closedform.functions import real
+from closedform.lower import Lowered, lower
+from closedform.lower.graph import Graph, reachable
+
+x, y, z = (real(n) for n in "xyz")
+SYMBOLS = (x, y, z)
+
+
+def lowered(*exprs: sp.Expr) -> Lowered:
+    d = Derivation("test", "", Paper("", "", ()), "")
+    return lower(d.function("f", "", {"q": SYMBOLS}, {"y": list(exprs)}), d)
+
+
+def run(program: Lowered, values: dict[str, float]) -> list[float]:
+    """A direct interpreter of the graph: a third reading beside the printers."""
+    value: dict[int, float] = {}
+    rules = {
+        "add": lambda a, b: a + b,
+        "sub": lambda a, b: a - b,
+        "mul": lambda a, b: a * b,
+        "div": lambda a, b: a / b,
+        "neg": lambda a: -a,
+        "sqrt": math.sqrt,
+        "sin": math.sin,
+        "cos": math.cos,
+        "abs": abs,
+        "atan2": math.atan2,
+        "wrap": lambda a: math.remainder(a, 2 * math.pi),
+    }
+    for node in program.schedule():
+        if node.op == "const":
+            value[node.id] = float(node.payload)
+        elif node.op == "input":
+            value[node.id] = values[node.payload]
+        else:
+            value[node.id] = rules[node.op](*(value[a.id] for a in node.args))
+    return [value[r.id] for r in program.roots]
+
+
+leaves = st.sampled_from([x, y, z, sp.Integer(2), sp.Rational(-3, 7), sin(x), cos(x + y), sin(2 * z - x / 2)])
+expressions = st.recursive(
+    leaves,
+    lambda inner: st.one_of(
+        st.tuples(inner, inner).map(lambda p: p[0] + p[1]),
+        st.tuples(inner, inner).map(lambda p: p[0] - p[1]),
+        st.tuples(inner, inner).map(lambda p: p[0] * p[1]),
+        inner.map(lambda e: e**2),
+        inner.map(lambda e: sqrt(1 + e**2)),
+        inner.map(lambda e: 1 / (2 + e**2)),
+    ),
+    max_leaves=12,
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(expressions, min_size=1, max_size=4), st.tuples(*[st.floats(-3, 3)] * 3))
+def test_means_what_the_source_means(exprs: list[sp.Expr], point: tuple[float, ...]) -> None:
+    values = dict(zip("xyz", point, strict=True))
+    computed = run(lowered(*exprs), values)
+    substitution = {s: sp.Float(v, 40) for s, v in zip(SYMBOLS, point, strict=True)}
+    for got, expr in zip(computed, exprs, strict=True):
+        exact = float(sp.N(expr.subs(substitution), 30))
+        scale = float(sp.N(sum(abs(t.subs(substitution)) for t in sp.Add.make_args(sp.expand(expr))), 15))
+        assert got == pytest.approx(exact, rel=1e-12, abs=1e-12 * (1 + scale))
+
+
+def test_sign_twins_share_their_value() -> None:
+    assert lowered(x * y - z, z - x * y).operations() == {"mul": 1, "sub": 1}
+
+
+def test_common_parts_are_computed_once() -> None:
+    assert lowered(x * y * z, x * z).operations() == {"mul": 2}
+    assert lowered(x + y + z, x + z - y, x + z).operations() == {"add": 2, "sub": 1}
+
+
+def test_trigonometry_is_taken_of_joint_angles_alone() -> None:
+    program = lowered(cos(x + y), sin(x + y), sin(-x), cos(-y), sin(2 * x))
+    assert len(program.angles) == 2
+    assert {a.op for a in program.angles} == {"input"}
+    assert len(lowered(sin(x / 2), cos(x)).angles) == 1
+
+
+def test_structural_zeros_and_constants_cost_nothing() -> None:
+    program = lowered(x - x, 0 * y, sp.Integer(1), sin(sp.pi / 6))
+    assert program.operations() == {}
+    assert [n.op for n in program.roots] == ["const"] * 4
+
+
+def test_local_identities() -> None:
+    graph = Graph()
+    a, b = graph.input("a"), graph.input("b")
+    assert graph.neg(graph.neg(a)) is a
+    assert graph.product([graph.neg(a), graph.neg(b)]) is graph.product([b, a])
+    assert graph.sum([a, graph.neg(a)]) is graph.const(0)
+    assert graph.sum([graph.neg(a), graph.neg(b)]) is graph.neg(graph.sum([a, b]))
+    assert graph.select(graph.node("true"), a, b) is a
+    assert graph.product([a, graph.const(0)]) is graph.const(0)
+
+
+@pytest.mark.parametrize(
+    ("robot", "function", "limit"),
+    [
+        ("planar_2r", "fk", {"add": 3, "mul": 8, "sub": 1, "sincos": 2}),
+        ("planar_2r", "jacobian", {"add": 3, "mul": 8, "sub": 1, "sincos": 2}),
+        ("spherical_wrist", "fk", {"add": 2, "mul": 12, "sub": 2, "sincos": 3}),
+    ],
+)
+def test_operation_counts(robot: str, function: str, limit: dict[str, int]) -> None:
+    d = importlib.import_module(f"closedform.derivations.{robot}").d
+    counts = lower(d[function], d).operations()
+    assert sum(counts.values()) <= sum(limit.values()), counts
+
+
+def test_a_function_that_cannot_be_lowered_says_so() -> None:
+    with pytest.raises(TypeError, match="gamma"):
+        lowered(sp.gamma(x))
+    with pytest.raises(TypeError, match="sine of"):
+        lowered(sin(x * y))
+
+
+def test_long_products_stay_linear() -> None:
+    """Sharing does not blow up: a sum of many products in well under a second."""
+    terms = [sin(a) * b * c * k for k, (a, b, c) in enumerate([(x, y, z), (y, z, x)] * 20, 1)]
+    program = lowered(sum(terms), sum(terms[::2]))
+    assert len(list(reachable(program.roots))) < 200

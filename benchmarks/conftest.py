@@ -8,7 +8,9 @@ import pytest
 RATIOS = Path(__file__).parent / "RESULTS.md"
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
     session = getattr(config, "_benchmarksession", None)
     if session is None or not session.benchmarks:
         return
@@ -21,7 +23,9 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
         row[info["backend"]] = 1e9 * bench.stats.median / info["postures"]
     backends = list(dict.fromkeys(b for row in medians.values() for b in row))
     lines = [
-        "| function | postures | " + " | ".join(f"{b}, ns" for b in backends) + " | best / lambdify |",
+        "| function | postures | "
+        + " | ".join(f"{b}, ns" for b in backends)
+        + " | best / lambdify |",
         "|---" * (len(backends) + 3) + "|",
     ]
     for (case, size), row in medians.items():

@@ -51,7 +51,9 @@ def planes_of(x: np.ndarray) -> np.ndarray:
     memory = np.empty((flat.shape[1], len(x) + 24))[:, : len(x)]
     memory[:] = flat.T
     core = tuple(range(1, x.ndim))
-    return memory.reshape((*x.shape[1:], len(x)), copy=False).transpose(x.ndim - 1, *(c - 1 for c in core))
+    return memory.reshape((*x.shape[1:], len(x)), copy=False).transpose(
+        x.ndim - 1, *(c - 1 for c in core)
+    )
 
 
 def empty_like_planes(result: Any) -> Any:

@@ -1,23 +1,30 @@
 """Checks that judge what a paper says.  A verdict is computed, never typed in.
 
 A check holds the statement *as printed*, beside what was derived, and :meth:`Check.judge` compares
-them exactly.  There are five verdicts; an equation that can be neither proved nor refuted raises
+them exactly.  There are five verdicts; a statement that can be neither proved nor refuted raises
 :class:`~closedform.algebra.Undecided`, which fails the build.
 """
+
+# mypy: allow-untyped-calls
+# SymPy is only partly annotated.
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import sympy as sp
-from flint import arb
 
-from closedform.algebra import decide
+from closedform.algebra import Undecided, decide
+from closedform.functions import reject_floats
 from closedform.reference import evaluate
+from closedform.refute import Counterexample
 from closedform.solutions import InfinitelyManyError, count_solutions
+
+Expr: TypeAlias = Any  # SymPy's annotations are partial
+Exact: TypeAlias = Any  # an expression, a matrix or a sequence of them
 
 PROVED = "proved"
 PROVED_UNDER = "proved under assumption"
@@ -26,13 +33,18 @@ REFUTED = "refuted"
 NOT_DECIDABLE = "not decidable here"
 VERDICTS = (PROVED, PROVED_UNDER, APPROXIMATION, REFUTED, NOT_DECIDABLE)
 
+_SEVERITY = (PROVED, PROVED_UNDER, APPROXIMATION, NOT_DECIDABLE, REFUTED)
+_READABLE = 24
+"""Longest exact value, in characters, that is shown as it is and not as a decimal."""
+
 
 @dataclass(frozen=True)
 class Verdict:
     """What was found.
 
     ``evidence`` is a sentence: the assumption, the counterexample, the order of the error, or the
-    reason.  ``corrected`` is the LaTeX of the form that was proved instead.
+    reason.  ``corrected`` is the LaTeX of the form that was proved instead; there is none that was
+    not proved.
     """
 
     kind: str
@@ -57,10 +69,10 @@ class Identity(Check):
     the derived form itself stands as the correction.
     """
 
-    printed: Any
-    derived: Any
-    nonnegative: tuple[sp.Expr, ...] = ()
-    corrected: Any = None
+    printed: Exact
+    derived: Exact
+    nonnegative: tuple[Expr, ...] = ()
+    corrected: Exact = None
     small: sp.Symbol | None = None
 
     def judge(self) -> Verdict:
@@ -70,54 +82,77 @@ class Identity(Check):
             return Verdict(decision.verdict, f"where {assumed}" if assumed else "")
         assert decision.counterexample is not None
         corrected = self.derived if self.corrected is None else self.corrected
-        if not decide(_difference(corrected, self.derived), self.nonnegative).holds:
-            raise ValueError(f"the corrected form {corrected} does not equal {self.derived}")
-        where = decision.counterexample.describe()
-        if self.small is not None and (order := self._order()):
+        _require_equal(corrected, self.derived, self.nonnegative)
+        where = self._point(decision.counterexample)
+        if self.small is not None and (order := self._order(self.small)):
             return Verdict(APPROXIMATION, f"{order}; e.g. {where}", _latex(corrected))
-        return Verdict(REFUTED, where, _latex(self._differing(corrected)))
+        return Verdict(REFUTED, where, self._correction(corrected))
 
-    def _order(self) -> str:
-        difference = sp.simplify(self.printed - self.derived)
-        leading = sp.series(difference, self.small, 0, 6).removeO()
-        term = leading.as_leading_term(self.small)
-        degree = sp.degree(term, self.small) if term != 0 else 0
-        return f"the error is {term} + O({self.small}**{degree + 1})" if degree > 0 else ""
+    def _point(self, found: Counterexample) -> str:
+        """The counterexample with the values of both sides, for a reader to check by hand."""
+        shape = getattr(self.printed, "shape", None)
+        entry = ""
+        if shape is not None:
+            entry = "entry ({},{}): ".format(*(k + 1 for k in divmod(found.entry, shape[1])))
+        elif isinstance(self.printed, Sequence):
+            entry = f"part {found.entry + 1}: "
+        at = ", ".join(f"{s} = {v}" for s, v in found.point.items())
+        printed, derived = (
+            _value(_entries(side)[found.entry], found.point)
+            for side in (self.printed, self.derived)
+        )
+        return f"{entry}{f'at {at} ' if at else ''}the printed form is {printed}, not {derived}"
 
-    def _differing(self, corrected: Any) -> Any:
-        """Of a matrix only the wrong entries, as equations of its elements."""
+    def _order(self, small: sp.Symbol) -> str:
+        """The leading term of the largest error, if all errors vanish with ``small``."""
+        terms = []
+        for entry in _entries(_difference(self.printed, self.derived)):
+            series = sp.series(sp.simplify(entry), small, 0, 6).removeO()
+            if series != 0:
+                term = sp.factor(series.as_leading_term(small))
+                terms.append((sp.degree(sp.numer(term), small), term))
+        if not terms:
+            return ""
+        degree, term = min(terms, key=lambda t: t[0])
+        return f"the error is {term} + O({small}**{degree + 1})" if degree > 0 else ""
+
+    def _correction(self, corrected: Exact) -> str:
+        """Of a matrix only the wrong entries, by their places."""
         if not isinstance(corrected, sp.MatrixBase) or corrected.shape == (1, 1):
-            return corrected
-        printed = sp.Matrix(self.printed)
-        entries = []
-        for i in range(corrected.rows):
-            for j in range(corrected.cols):
-                if not decide(printed[i, j] - self.derived[i, j], self.nonnegative).holds:
-                    entries.append((i + 1, j + 1, corrected[i, j]))
-        return entries
+            return _latex(corrected)
+        difference = _difference(self.printed, self.derived)
+        return r",\ ".join(
+            rf"[{i + 1},{j + 1}] = {sp.latex(corrected[i, j])}"
+            for i in range(corrected.rows)
+            for j in range(corrected.cols)
+            if not decide(difference[i, j], self.nonnegative).holds
+        )
 
 
 @dataclass(frozen=True)
 class Decimal(Check):
-    """A printed decimal is the exact value, rounded to the digits that are printed."""
+    """A printed decimal is the exact value, rounded to the digits that are printed.
+
+    Halfway between two decimals either of them is right.
+    """
 
     printed: str
-    exact: sp.Expr
+    exact: Expr
     unit: str = ""
 
     def judge(self) -> Verdict:
         digits = len(self.printed.partition(".")[2])
-        value, error = evaluate([self.exact, self.exact - sp.Rational(self.printed)], {})
-        half = arb(1) / (2 * 10**digits)
-        error = abs(error)
-        right = value.str(digits + 6, radius=False)
-        if error <= half:
-            return Verdict(PROVED, f"the exact value is {right}{self._unit}")
-        within = "truncated, not rounded: " if error < 2 * half else ""
-        nearest = _rounded(self.exact, digits)
-        return Verdict(
-            REFUTED, f"{within}the exact value is {right}{self._unit}", f"{nearest}{self._unit}"
-        )
+        scaled = sp.sympify(self.exact) * 10**digits
+        units = scaled - sp.Rational(self.printed) * 10**digits
+        value = evaluate([self.exact], {})[0].str(digits + 6, radius=False)
+        exact = f"the exact value is {value}{self._unit}"
+        if _sign(sp.Abs(units) - sp.Rational(1, 2)) <= 0:
+            return Verdict(PROVED, exact)
+        cut = _sign(sp.Abs(units) - 1) < 0 and _sign(units) == _sign(scaled)
+        off = _fixed(_nearest(100 * sp.Abs(units)), 2)
+        how = "truncated, not rounded" if cut else f"off by {off} units of the last place"
+        unit = rf"\text{{{self._unit}}}" if self.unit else ""
+        return Verdict(REFUTED, f"{how}: {exact}", _fixed(_nearest(scaled), digits) + unit)
 
     @property
     def _unit(self) -> str:
@@ -125,21 +160,84 @@ class Decimal(Check):
 
 
 @dataclass(frozen=True)
-class Count(Check):
-    """A system of equations has the printed number of solutions (``None``: infinitely many)."""
+class Posture(Check):
+    """Worked joint angles: ``forward`` takes the ``printed`` angles to ``target``.
 
-    equations: tuple[sp.Expr, ...]
-    unknowns: tuple[sp.Symbol, ...]
-    printed: int | None
+    ``corrected`` holds the angles of the branch that was meant; they are proved to reach the
+    target, and printed in degrees.
+    """
+
+    forward: Exact
+    printed: Mapping[sp.Symbol, Expr]
+    target: Exact
+    corrected: Mapping[sp.Symbol, Expr] | None = None
 
     def judge(self) -> Verdict:
-        try:
-            found: int | None = count_solutions(self.equations, self.unknowns).count
-        except InfinitelyManyError:
-            found = None
+        reached, target = self._reached(self.printed), _entries(self.target)
+        decision = decide(_difference(reached, target))
+        if decision.holds:
+            return Verdict(PROVED, "the forward map takes them to the target")
+        evidence = f"they reach ({_values(reached)}), not ({_values(target)})"
+        if self.corrected is None:
+            return Verdict(REFUTED, evidence)
+        _require_equal(self._reached(self.corrected), target)
+        angles = (rf"{sp.latex(s)} = {_degrees(v)}" for s, v in self.corrected.items())
+        return Verdict(REFUTED, evidence, r",\ ".join(angles))
+
+    def _reached(self, joints: Mapping[sp.Symbol, Expr]) -> list[Expr]:
+        return [_denested(sp.expand_trig(e.subs(joints))) for e in _entries(self.forward)]
+
+
+@dataclass(frozen=True)
+class Count(Check):
+    """A system of equations has the printed number of solutions (``None``: infinitely many).
+
+    They are counted over the complex numbers, two that coincide as one.  ``given`` replaces
+    dependent targets by free parameters.
+    """
+
+    equations: Sequence[Expr]
+    unknowns: Sequence[sp.Symbol]
+    printed: int | None
+    given: Mapping[sp.Symbol, Expr] | None = None
+
+    def judge(self) -> Verdict:
+        found = self._found()
         words = "a continuum of" if found is None else str(found)
         text = f"a Groebner basis counts {words} solution{'' if found == 1 else 's'}"
-        return Verdict(PROVED if found == self.printed else REFUTED, text)
+        if found == self.printed:
+            return Verdict(PROVED, text)
+        return Verdict(REFUTED, text, "infinitely many" if found is None else str(found))
+
+    def _found(self) -> int | None:
+        equations = [e for e in map(sp.sympify, self.equations) if e != 0]
+        try:
+            counted = count_solutions(
+                equations, self.unknowns, target_substitution=dict(self.given or {})
+            )
+        except InfinitelyManyError:
+            return None
+        if counted.distinct:
+            return counted.count
+        parameters = {s for e in equations for s in e.free_symbols} - set(self.unknowns)
+        if counted.count == 2 and not parameters:
+            return 1
+        raise Undecided(f"{counted.count} solutions, of which some may coincide")
+
+
+@dataclass(frozen=True)
+class Enumeration(Check):
+    """A number or a list that is found by going through all cases; ``meaning`` says which."""
+
+    printed: Any
+    found: Callable[[], Any]
+    meaning: str
+
+    def judge(self) -> Verdict:
+        found = self.found()
+        if found == self.printed:
+            return Verdict(PROVED, f"{self.meaning}: {found}")
+        return Verdict(REFUTED, f"{self.meaning}: {found}, not {self.printed}", str(found))
 
 
 @dataclass(frozen=True)
@@ -150,22 +248,34 @@ class Every(Check):
 
     def judge(self) -> Verdict:
         verdicts = {name: check.judge() for name, check in self.parts.items()}
-        worst = max(verdicts.values(), key=lambda v: VERDICTS.index(v.kind)).kind
+        worst = max(verdicts.values(), key=lambda v: _SEVERITY.index(v.kind)).kind
         return Verdict(
             worst,
             "; ".join(
                 f"{name}: {v.kind}" + (f" ({v.evidence})" if v.evidence else "")
                 for name, v in verdicts.items()
             ),
-            r";\quad ".join(v.corrected for v in verdicts.values() if v.corrected),
+            r";\quad ".join(
+                rf"\text{{{name}: }} {v.corrected}" for name, v in verdicts.items() if v.corrected
+            ),
         )
+
+
+@dataclass(frozen=True)
+class Deferred(Check):
+    """A check whose expressions take a while to write down: ``make`` does so when it is judged."""
+
+    make: Callable[[], Check]
+
+    def judge(self) -> Verdict:
+        return self.make().judge()
 
 
 @dataclass(frozen=True)
 class Refuted(Check):
     """A statement about all cases that a witness contradicts: ``witness`` must be provable.
 
-    ``corrected`` says what holds instead; it is what ``proof`` proves.
+    ``corrected`` says what holds instead, in LaTeX or in words; it is what ``proof`` proves.
     """
 
     witness: Check
@@ -174,6 +284,8 @@ class Refuted(Check):
     proof: Check | None = None
 
     def judge(self) -> Verdict:
+        if self.corrected and self.proof is None:
+            raise ValueError(f"the correction {self.corrected} comes without a proof")
         for check in (self.witness, self.proof):
             if check is not None and check.judge().kind not in (PROVED, PROVED_UNDER):
                 raise ValueError(f"the witness against a claim does not hold: {self.explanation}")
@@ -190,24 +302,85 @@ class Undecidable(Check):
         return Verdict(NOT_DECIDABLE, self.reason)
 
 
-def _difference(a: Any, b: Any) -> Any:
-    if isinstance(a, sp.MatrixBase) or isinstance(b, sp.MatrixBase):
-        return sp.Matrix(a) - sp.Matrix(b)
-    if isinstance(a, Sequence):
-        return sp.Matrix([x - y for x, y in zip(a, b, strict=True)])
-    return sp.sympify(a) - sp.sympify(b)
+def _entries(value: Exact) -> list[Expr]:
+    many = isinstance(value, sp.MatrixBase | Sequence)
+    entries = [sp.sympify(e) for e in (value if many else [value])]
+    for e in entries:
+        reject_floats(e, "a claim")
+    return entries
 
 
-def _latex(value: Any) -> str:
-    if isinstance(value, list):
-        return r",\ ".join(rf"[{i},{j}] = {sp.latex(e)}" for i, j, e in value)
-    if isinstance(value, tuple):
-        return r",\ ".join(sp.latex(v) for v in value)
+def _difference(a: Exact, b: Exact) -> Exact:
+    shape = getattr(a, "shape", None)
+    if shape != getattr(b, "shape", None):
+        raise ValueError(f"a matrix stands against something of another shape: {a}, {b}")
+    differences = [x - y for x, y in zip(_entries(a), _entries(b), strict=True)]
+    if shape is not None:
+        return sp.Matrix(*shape, differences)
+    return sp.Matrix(differences) if isinstance(a, Sequence) else differences[0]
+
+
+def _require_equal(corrected: Exact, derived: Exact, nonnegative: Sequence[Expr] = ()) -> None:
+    if not decide(_difference(corrected, derived), nonnegative).holds:
+        raise ValueError(f"the corrected form {corrected} does not equal {derived}")
+
+
+def _latex(value: Exact) -> str:
+    if isinstance(value, list | tuple):
+        return r",\ ".join(str(sp.latex(v)) for v in value)
     return str(sp.latex(value))
 
 
-def _rounded(exact: sp.Expr, digits: int) -> str:
-    scaled = sp.floor(exact * 10**digits + sp.Rational(1, 2))
-    whole, part = divmod(abs(int(scaled)), 10**digits)
-    sign = "-" if int(scaled) < 0 else ""
+def _value(e: Expr, point: Mapping[sp.Symbol, Expr]) -> str:
+    """The value at a point: exact where that is short, else six digits."""
+    exact = e.subs(point)
+    if not exact.free_symbols and exact.is_finite and len(str(exact)) <= _READABLE:
+        return str(exact)
+    return str(evaluate([e], point)[0].str(6, radius=False))
+
+
+def _values(entries: Sequence[Expr]) -> str:
+    return ", ".join(_value(e, {}) for e in entries)
+
+
+def _degrees(angle: Expr) -> str:
+    degrees = sp.sympify(angle) * 180 / sp.pi
+    if degrees.is_Rational:
+        return rf"{sp.latex(degrees)}^\circ"
+    return rf"{_fixed(_nearest(degrees * 10**4), 4)}^\circ"
+
+
+def _denested(e: Expr) -> Expr:
+    """Roots of ``a + b sqrt(c)`` that are of this form themselves are written so."""
+    roots = [p for p in e.atoms(sp.Pow) if p.exp.is_Rational and not p.exp.is_Integer]
+    plain = {p: sp.sqrtdenest(sp.sqrt(sp.expand(p.base))) ** (2 * p.exp) for p in roots}
+    return e.xreplace(plain)
+
+
+def _sign(e: Expr) -> int:
+    """The sign of a constant; zero only if it is proved to vanish."""
+    (e,) = _entries(e)
+    if e.is_Rational:
+        return int(sp.sign(e))
+    ball = evaluate([e], {})[0]
+    if not ball.contains(0):
+        return 1 if ball > 0 else -1
+    if decide(_denested(e)).holds:
+        return 0
+    raise Undecided(f"the sign of {e}")
+
+
+def _nearest(e: Expr) -> int:
+    """The integer nearest to a constant; halfway the one farther from zero."""
+    size = abs(e)
+    floor = int(str(evaluate([size], {})[0].mid().floor().unique_fmpz()))
+    below = floor if _sign(size - floor) >= 0 else floor - 1
+    up = _sign(size - below - sp.Rational(1, 2)) >= 0
+    return _sign(e) * (below + up)
+
+
+def _fixed(n: int, digits: int) -> str:
+    """``n / 10**digits`` as a decimal."""
+    whole, part = divmod(abs(n), 10**digits)
+    sign = "-" if n < 0 else ""
     return f"{sign}{whole}.{part:0{digits}d}" if digits else f"{sign}{whole}"

@@ -1,9 +1,9 @@
 """Compares generated code with the symbolic source, evaluated in Arb balls.
 
 A function of the joints is compared value by value; its error is counted in ulps of the natural
-scale (see :func:`closedform.samples.magnitude`).  An inverse is compared three ways: its answers are
-put into the exact forward map, its statuses are compared with the exact bounds, and every posture
-whose image is the target must be among the branches.
+scale (see :func:`closedform.samples.magnitude`).  An inverse is compared three ways: its answers
+are put into the exact forward map, its statuses are compared with the exact bounds, and every
+posture whose image is the target must be among the branches.
 """
 
 from __future__ import annotations

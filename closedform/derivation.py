@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from closedform.claims import Check
     from closedform.lemmas import Lemma
 
-Exact = sp.Expr | sp.MatrixBase
-
 
 @dataclass(frozen=True)
 class Paper:
@@ -82,7 +80,7 @@ class Step:
     reason: str
     shown: tuple[tuple[str, Any], ...]
     published: tuple[str, ...] = ()
-    vanishes: tuple[Exact, ...] = ()
+    vanishes: tuple[Any, ...] = ()
     nonnegative: tuple[sp.Expr, ...] = ()
 
 

@@ -24,11 +24,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Any
+from typing import Any, TypeAlias
 
 import sympy as sp
 
-Number = sp.Expr | int
+Number: TypeAlias = Any  # an exact SymPy expression or an int; SymPy's annotations are partial
 
 
 def real(name: str, **assumptions: bool) -> sp.Symbol:
@@ -225,7 +225,7 @@ class Function:
         flags: Mapping[sp.Symbol, bool],
         locus: Mapping[sp.Symbol, sp.Expr] | None = None,
     ) -> tuple[sp.Expr, ...]:
-        """The outputs of one branch with the given ``flags`` true, on ``locus`` (a substitution)."""
+        """The outputs of a branch with the given ``flags`` true, on ``locus``, a substitution."""
         known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
         known |= dict(locus or {})
         for statement in self.body:

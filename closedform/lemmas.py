@@ -1,8 +1,8 @@
 """The lemmas that solve for a joint, with the names of the field.
 
-Each is a function that adds its statements to a :class:`~closedform.functions.Program` and returns a
-:class:`Lemma`: the equations, the unknowns and the closed form of each.  The closed forms are chosen
-for the boundary of the workspace: differences of lengths under the roots instead of
+Each is a function that adds its statements to a :class:`~closedform.functions.Program` and returns
+a :class:`Lemma`: the equations, the unknowns and the closed form of each.  The closed forms are
+chosen for the boundary of the workspace: differences of lengths under the roots instead of
 ``1 - cos(x)**2``, and ``atan2`` of half angles instead of ``acos``.
 
 :func:`closedform.prove.prove_lemma` proves a lemma once, for symbolic coefficients: its solutions
@@ -65,8 +65,8 @@ def sine_cosine(
 ) -> Lemma:
     """``a sin x + b cos x = c``: two solutions where ``a^2 + b^2 >= c^2``.
 
-    With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``, and the half angle
-    of ``x - atan2(a, b)`` has the tangent ``sqrt(h - c) / sqrt(h + c)``.  x is free where
+    With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``, and half the angle
+    ``x - atan2(a, b)`` has the tangent ``sqrt(h - c) / sqrt(h + c)``.  x is free where
     ``a = b = c = 0``.
     """
     h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
@@ -96,8 +96,8 @@ def two_link_triangle(
 ) -> Lemma:
     """The triangle of two links of lengths ``first``, ``second`` whose ends are ``reach`` apart.
 
-    ``elbow`` is the joint angle between the links (zero when stretched), ``base`` the angle from the
-    first link to the line of the ends, so that a link at ``theta`` reaches the direction
+    ``elbow`` is the joint angle between the links (zero when stretched), ``base`` the angle from
+    the first link to the line of the ends, so that a link at ``theta`` reaches the direction
     ``theta + base``.  Two mirror solutions.  With the four factors of Heron's formula, S, A, B, C,
 
         tan(elbow / 2) = sqrt(S A) / sqrt(B C),   tan(base / 2) = sqrt(A C) / sqrt(S B).
@@ -142,8 +142,8 @@ def zyz_angles(
     """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, one for each sign of sin(middle).
 
     The third column of R gives the first two angles.  The last is *not* read from the third row, as
-    the textbooks do: near ``middle = 0`` that row knows nothing of it.  It follows from the rotation
-    that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row is
+    the textbooks do: near ``middle = 0`` that row knows nothing of it.  It follows from the
+    rotation that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row is
     ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
 
     Where ``sin(middle) = 0`` only ``first + last`` (or ``first - last``) is determined; the

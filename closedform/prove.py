@@ -91,7 +91,9 @@ class Proof:
             tuple(data["steps"]),
             data["identities"],
             tuple(
-                InverseResult(**{**i, "assumptions": tuple(i["assumptions"]), "lemmas": tuple(i["lemmas"])})
+                InverseResult(
+                    **{**i, "assumptions": tuple(i["assumptions"]), "lemmas": tuple(i["lemmas"])}
+                )
                 for i in data["inverses"]
             ),
             tuple(ClaimResult(**c) for c in data["claims"]),
@@ -183,7 +185,9 @@ def _prove_sound(
             ]
         )
         bounds = tuple(substitute(b, given) for b in function.bounds(signs))
-        where = f"{derivation.name}.{function.name}, branch {label or 'only'}, put into the forward map"
+        where = (
+            f"{derivation.name}.{function.name}, branch {label or 'only'}, put into the forward map"
+        )
         used += [a for a in _require(difference, bounds, where).assumptions if a not in used]
     return tuple(used)
 
@@ -213,8 +217,8 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
         if solved.function != inverse.function:
             continue
         where = (
-            f"{derivation.name}.{inverse.function}: the equation solved for {solved.unknown} by the "
-            f"lemma {solved.lemma.name!r} must follow from the forward map"
+            f"{derivation.name}.{inverse.function}: the equation solved for {solved.unknown} by "
+            f"the lemma {solved.lemma.name!r} must follow from the forward map"
         )
         _require(substitute(solved.equation, graph), (), where)
         lemmas.append(solved.lemma.name)
@@ -242,15 +246,17 @@ def prove_lemma(
 ) -> None:
     """Prove a lemma for the coefficients it was applied to: symbols, so for all.
 
-    Its solutions satisfy its equations for either sign, and the equations have no others.  ``given``
-    writes dependent coefficients in free parameters.
+    Its solutions satisfy its equations for either sign, and the equations have no others.
+    ``given`` writes dependent coefficients in free parameters.
     """
     given = dict(given or {})
     outputs = tuple(lemma.solution.values())
     steps = [s.value for s in program.body if isinstance(s, (Let, Bound))]
     free = {s for e in (*outputs, *steps) for s in e.free_symbols}
     sign = next((s for s in free if s.name.startswith("sigma")), None)
-    function = Function("lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(program.body))
+    function = Function(
+        "lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(program.body)
+    )
     for value in (1, -1) if sign else (1,):
         signs = {sign: value} if sign else {}
         solution = dict(zip(lemma.solution, function.values(signs), strict=True))

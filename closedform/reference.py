@@ -28,6 +28,7 @@ Expr: TypeAlias = Any  # SymPy's annotations are partial
 Value: TypeAlias = Any  # int, Fraction, float, or an exact SymPy number such as pi/3
 Registers: TypeAlias = "list[arb]"
 Step: TypeAlias = "tuple[int, Callable[..., arb], tuple[int, ...] | None]"
+Compare: TypeAlias = "Callable[[arb, arb], bool | None]"
 Test: TypeAlias = "Callable[[Registers], bool | None]"
 
 _SPARE_BITS = 40
@@ -320,32 +321,24 @@ def _combine(decisive: bool, truths: Sequence[bool | None]) -> bool | None:
     return None if None in truths else not decisive
 
 
-def _less(a: arb, b: arb) -> bool | None:
-    if a < b:
-        return True
-    # Only exact balls can be told to be equal.
-    return False if a is _UNDEFINED or b is _UNDEFINED or a >= b else None
+def _comparison(holds: Compare, fails: Compare, undefined: bool = False) -> Compare:
+    """True or False where the balls prove it, otherwise open; exact equal balls prove equality."""
+
+    def compare(a: arb, b: arb) -> bool | None:
+        if a is _UNDEFINED or b is _UNDEFINED:
+            return undefined
+        return True if holds(a, b) else False if fails(a, b) else None
+
+    return compare
 
 
-def _less_equal(a: arb, b: arb) -> bool | None:
-    if a <= b:
-        return True
-    return False if a is _UNDEFINED or b is _UNDEFINED or a > b else None
-
-
-def _same(a: arb, b: arb) -> bool | None:
-    if a == b:
-        return True
-    return False if a is _UNDEFINED or b is _UNDEFINED or a != b else None
-
-
-_COMPARISONS: dict[str, Callable[[arb, arb], bool | None]] = {
-    "<": _less,
-    "<=": _less_equal,
-    ">": lambda a, b: _less(b, a),
-    ">=": lambda a, b: _less_equal(b, a),
-    "==": _same,
-    "!=": lambda a, b: _not(_same(a, b)),
+_COMPARISONS = {
+    "<": _comparison(operator.lt, operator.ge),
+    "<=": _comparison(operator.le, operator.gt),
+    ">": _comparison(operator.gt, operator.le),
+    ">=": _comparison(operator.ge, operator.lt),
+    "==": _comparison(operator.eq, operator.ne),
+    "!=": _comparison(operator.ne, operator.eq, undefined=True),
 }
 
 

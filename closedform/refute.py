@@ -1,8 +1,5 @@
 """Counterexamples that a person can check: simple exact points where a difference is not zero."""
 
-# mypy: allow-untyped-calls
-# SymPy is only partly annotated.
-
 from __future__ import annotations
 
 import itertools
@@ -30,6 +27,7 @@ _ANGLES = tuple(
 )
 _SIMPLE_POINTS = 400
 _RANDOM_POINTS = 200
+_BITS = 300  # tells a difference of 1e-80 from zero
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,12 @@ class Counterexample:
         """The point and the difference, such as `theta1 = 0, l1 = 1: difference = 0.2929`."""
         at = ", ".join(f"{s} = {v}" for s, v in self.point.items())
         where = f"entry {self.entry}, " if self.entry else ""
-        return f"{where}{at}: difference = {self.ball.str(6)}".lstrip()
+        return f"{where}{at}: difference = {_shown(self.ball)}"
+
+
+def _shown(ball: arb, digits: int = 10) -> str:
+    text: str = ball.str(digits)
+    return text.rstrip("0").rstrip(".") if "." in text and text[-1].isdigit() else text
 
 
 def find_counterexample(
@@ -63,7 +66,9 @@ def find_counterexample(
     gaps = [_gap(c) for c in conditions]
     free = {s for e in [*entries, *(g for g, _ in gaps)] for s in e.free_symbols}
     names = sorted(free | set(symbols or ()), key=str) if symbols is None else list(symbols)
-    evaluator = Evaluator(names, [*entries, *(g for g, _ in gaps)], rel_bits=40, max_bits=640)
+    evaluator = Evaluator(
+        names, [*entries, *(g for g, _ in gaps)], rel_bits=_BITS, max_bits=4 * _BITS
+    )
     for values in _points(names, _angles(entries), random.Random(seed)):
         try:
             balls = evaluator(values)

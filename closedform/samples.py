@@ -88,9 +88,7 @@ def perturbed(targets: Array, seed: int = 3) -> Array:
 def _approaches(rng: np.random.Generator, n: int, rows: int) -> Array:
     """Every joint a multiple of a right angle, up to a small or vanishing deviation."""
     corners = rng.choice((-np.pi, -np.pi / 2, 0.0, np.pi / 2, np.pi), (rows, n))
-    return np.asarray(
-        corners + rng.choice(APPROACHES, (rows, n)) * rng.choice((-1, 1), (rows, n))
-    )
+    return np.asarray(corners + rng.choice(APPROACHES, (rows, n)) * rng.choice((-1, 1), (rows, n)))
 
 
 def _one_singular(rng: np.random.Generator, n: int) -> Array:

@@ -41,6 +41,4 @@ class Tolerances:
 DOUBLE = Tolerances(
     feasibility=1e-12, vanishing=2.0**-50, rotation=1e-6, round_trip=1.1e-12, ulps=8.0
 )
-FLOAT = Tolerances(
-    feasibility=1e-6, vanishing=2.0**-21, rotation=1e-4, round_trip=4e-6, ulps=8.0
-)
+FLOAT = Tolerances(feasibility=1e-6, vanishing=2.0**-21, rotation=1e-4, round_trip=4e-6, ulps=8.0)

@@ -1,10 +1,11 @@
 """The planar 2R arm of Reddy and Babu, by geometry and by Denavit-Hartenberg."""
 
 import sympy as sp
+from closedform.derivations.claims.planar_2r import Arm, state
+from closedform.derivations.papers import REDDY_BABU
 from sympy import atan2, cos, sin, sqrt
 
 from closedform.derivation import Continuum, Derivation, Inverse, Solved
-from closedform.derivations.papers import REDDY_BABU
 from closedform.frames import chain, denavit_hartenberg, determinant, jacobian, rotation
 from closedform.functions import SINGLE, Program, branches, choose, real
 from closedform.lemmas import linear_pair, two_link_triangle
@@ -66,7 +67,9 @@ d.function(
     {"x": position},
     source="eqs. (1) and (2)",
 )
-d.function("pose", "Pose of the hand frame in the base frame.", {"q": q}, {"T": pose}, source="eq. (8)")
+d.function(
+    "pose", "Pose of the hand frame in the base frame.", {"q": q}, {"T": pose}, source="eq. (8)"
+)
 d.function(
     "orientation",
     "Angle phi of the last link against the x axis, the plain sum of the joint angles.",
@@ -89,8 +92,8 @@ d.step(
 )
 d.step(
     "Manipulability and singular set",
-    "Yoshikawa's measure sqrt(det(J J^T)) of the square Jacobian is the modulus of the determinant. "
-    "It vanishes exactly where sin(theta2) does (for links that have a length): the arm is "
+    "Yoshikawa's measure sqrt(det(J J^T)) of the square Jacobian is the modulus of the "
+    "determinant.  It vanishes exactly where sin(theta2) does (for links that have a length): the arm is "
     "stretched or folded, and the hand cannot move along the arm.",
     {"w": manipulability, r"w^2": sp.factor(det**2)},
     equal=[((J[:2, :] * J[:2, :].T).det(), det**2)],
@@ -259,7 +262,12 @@ d.inverses.append(
     )
 )
 d.solved += [
-    Solved("ik_pose", theta1, linear_pair(theta1, elbow_y, elbow_x), l1 * sin(theta1) - T[1, 3] + l2 * T[1, 0]),
+    Solved(
+        "ik_pose",
+        theta1,
+        linear_pair(theta1, elbow_y, elbow_x),
+        l1 * sin(theta1) - T[1, 3] + l2 * T[1, 0],
+    ),
     Solved("ik_pose", theta2, full, T[0, 0] * cos(theta1) + T[1, 0] * sin(theta1) - cos(theta2)),
 ]
 
@@ -277,3 +285,7 @@ d.function(
     {},
     {"radii": [sp.Abs(l1 - l2), l1 + l2]},
 )
+
+# Claims of the paper
+
+state(d, Arm(l1, l2, theta1, theta2, position, A1, A2, pose))

@@ -1,10 +1,11 @@
 """The spherical wrist of Reddy and Babu, by ZYZ Euler angles and by Denavit-Hartenberg."""
 
 import sympy as sp
+from closedform.derivations.claims.spherical_wrist import Wrist, state
+from closedform.derivations.papers import REDDY_BABU
 from sympy import cos, sin
 
 from closedform.derivation import Continuum, Derivation, Inverse, Solved
-from closedform.derivations.papers import REDDY_BABU
 from closedform.frames import (
     angular_velocity_matrix,
     chain,
@@ -63,7 +64,9 @@ d.step(
     equal=[(pose[:3, :3], R), (pose, homogeneous(R) * homogeneous(sp.eye(3), (0, 0, d6)))],
 )
 d.function("fk", "Rotation of the hand.", {"q": q}, {"R": R}, source="eqs. (12) and (15)")
-d.function("pose", "Pose of the hand, with its offset d6.", {"q": q}, {"T": pose}, source="eq. (14)")
+d.function(
+    "pose", "Pose of the hand, with its offset d6.", {"q": q}, {"T": pose}, source="eq. (14)"
+)
 
 # Velocity
 
@@ -166,8 +169,14 @@ d.inverses.append(
         tuple(R),
         (
             Continuum(aligned, dict(zip(given, turned, strict=True)), theta4, r"\theta_4+\theta_6"),
-            Continuum(aligned, dict(zip(given, opposed, strict=True)), theta4, r"\theta_6-\theta_4"),
+            Continuum(
+                aligned, dict(zip(given, opposed, strict=True)), theta4, r"\theta_6-\theta_4"
+            ),
         ),
         parametrisation=tuple(rotation_parametrisation()),
     )
 )
+
+# Claims of the paper
+
+state(d, Wrist(d6, theta4, theta5, theta6, R, pose, space))

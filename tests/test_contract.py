@@ -65,14 +65,24 @@ def wrist(backend: str):
 
 def rotation(axis: str, angle: float) -> np.ndarray:
     c, s = np.cos(angle), np.sin(angle)
-    return np.array({"z": [[c, -s, 0], [s, c, 0], [0, 0, 1]], "y": [[c, 0, s], [0, 1, 0], [-s, 0, c]]}[axis])
+    return np.array(
+        {"z": [[c, -s, 0], [s, c, 0], [0, 0, 1]], "y": [[c, 0, s], [0, 1, 0], [-s, 0, c]]}[axis]
+    )
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_both_back_ends_export_the_same(robot: str) -> None:
     numpy, c = load("numpy", robot), load("c", robot)
     assert numpy.__all__ == c.__all__
-    for name in ("JOINTS", "TASK", "BRANCHES", "SINGULARITIES", "Parameters", "Status", "Solutions"):
+    for name in (
+        "JOINTS",
+        "TASK",
+        "BRANCHES",
+        "SINGULARITIES",
+        "Parameters",
+        "Status",
+        "Solutions",
+    ):
         assert getattr(numpy, name) == getattr(c, name)
     for name in numpy.__all__:
         if name.islower():
@@ -86,8 +96,8 @@ def test_names_and_shapes(robot: str, backend: str) -> None:
     module, expected = load(backend, robot), ROBOTS[robot]
     n = len(expected["joints"])
     assert module.Parameters._fields == expected["fields"]
-    assert module.JOINTS == expected["joints"]
-    assert module.TASK == expected["task"]
+    assert expected["joints"] == module.JOINTS
+    assert expected["task"] == module.TASK
     assert len(module.BRANCHES) == expected["branches"]
     assert [s.value for s in module.Status] == [0, 1, 2, 3]
     for lead in [(), (1,), (5,), (2, 3), (0,), (3, 0, 2)]:
@@ -110,7 +120,7 @@ def test_back_ends_agree(robot: str, data: st.DataObject) -> None:
     lead = data.draw(hnp.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=4))
     q = data.draw(hnp.arrays(float, (*lead, n), elements=st.floats(-1e3, 1e3)))
     for name in numpy.__all__:
-        if name.islower() and [*inspect.signature(getattr(numpy, name)).parameters][0] == "q":
+        if name.islower() and next(iter(inspect.signature(getattr(numpy, name)).parameters), "") == "q":
             a, b = getattr(numpy, name)(q), getattr(c, name)(q)
             np.testing.assert_allclose(a, b, rtol=0, atol=1e-13 * (1 + np.abs(q).max(initial=0)))
     a, b = numpy.ik(numpy.fk(q)), c.ik(numpy.fk(q))
@@ -261,7 +271,14 @@ def test_wrist_from_noisy_matrices(wrist) -> None:
 
 def test_wrist_rejects_what_is_no_rotation(wrist) -> None:
     R = wrist.fk([0.1, 0.2, 0.3])
-    for bad in (R @ np.diag([1, 1, -1]), -R, 1.001 * R, R + 1e-3, np.zeros((3, 3)), np.ones((3, 3))):
+    for bad in (
+        R @ np.diag([1, 1, -1]),
+        -R,
+        1.001 * R,
+        R + 1e-3,
+        np.zeros((3, 3)),
+        np.ones((3, 3)),
+    ):
         solutions = wrist.ik(bad)
         assert (solutions.status == INVALID).all() and np.isnan(solutions.q).all()
 

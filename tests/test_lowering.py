@@ -49,7 +49,9 @@ def run(program: Lowered, values: dict[str, float]) -> list[float]:
     return [value[r.id] for r in program.roots]
 
 
-leaves = st.sampled_from([x, y, z, sp.Integer(2), sp.Rational(-3, 7), sin(x), cos(x + y), sin(2 * z - x / 2)])
+leaves = st.sampled_from(
+    [x, y, z, sp.Integer(2), sp.Rational(-3, 7), sin(x), cos(x + y), sin(2 * z - x / 2)]
+)
 expressions = st.recursive(
     leaves,
     lambda inner: st.one_of(
@@ -72,7 +74,9 @@ def test_means_what_the_source_means(exprs: list[sp.Expr], point: tuple[float, .
     substitution = {s: sp.Float(v, 40) for s, v in zip(SYMBOLS, point, strict=True)}
     for got, expr in zip(computed, exprs, strict=True):
         exact = float(sp.N(expr.subs(substitution), 30))
-        scale = float(sp.N(sum(abs(t.subs(substitution)) for t in sp.Add.make_args(sp.expand(expr))), 15))
+        scale = float(
+            sp.N(sum(abs(t.subs(substitution)) for t in sp.Add.make_args(sp.expand(expr))), 15)
+        )
         assert got == pytest.approx(exact, rel=1e-12, abs=1e-12 * (1 + scale))
 
 

@@ -139,10 +139,13 @@ def five_bar() -> Derivation:
         program=p,
         branches=modes,
     )
-    A = sp.Matrix([[solution[0] - cx, solution[1] - cy], [solution[0] - cx - 2 * ux, solution[1] - cy - 2 * uy]])
-    d.function(
-        "jacobian_parallel", "A.", {"q": (t1, t2)}, {"A": A}, program=p, branches=modes
+    A = sp.Matrix(
+        [
+            [solution[0] - cx, solution[1] - cy],
+            [solution[0] - cx - 2 * ux, solution[1] - cy - 2 * uy],
+        ]
     )
+    d.function("jacobian_parallel", "A.", {"q": (t1, t2)}, {"A": A}, program=p, branches=modes)
     d.inverses.append(Inverse("fk", (x, y), (sp.S.Zero, sp.S.Zero), tuple(loop)))
     return d
 
@@ -187,7 +190,9 @@ def test_polar_arm_inverts(tmp_path: Path) -> None:
     q = np.array([[0.3, 0.5], [2.0, -5.0], [-3.0, 1.0]])
     solutions = module.ik(module.fk(q))
     assert (solutions.status == 0).all()
-    np.testing.assert_allclose(module.fk(solutions.q), module.fk(q)[:, None].repeat(2, 1), atol=1e-14)
+    np.testing.assert_allclose(
+        module.fk(solutions.q), module.fk(q)[:, None].repeat(2, 1), atol=1e-14
+    )
     assert (module.ik([0.0, 0.0]).status == 2).all()
 
 
@@ -245,7 +250,7 @@ def test_a_wrong_step_is_refuted() -> None:
     d = Derivation("wrong", "Wrong", PAPER, "")
     theta = d.joint("theta")
     d.step("Pythagoras", "", {}, equal=[(cos(theta) ** 2 - sin(theta) ** 2, sp.S.One)])
-    with pytest.raises(ProofError, match="Pythagoras.*theta ="):
+    with pytest.raises(ProofError, match=r"Pythagoras.*theta ="):
         prove(d)
 
 

@@ -36,9 +36,49 @@ CALLS = {
     "select": "cf_select",
 }
 RESERVED = frozenset(
-    "auto break case char const continue default do double else enum extern float for goto if "
-    "inline int long register restrict return short signed sizeof static struct switch typedef "
-    "union unsigned void volatile while params sines cosines n i m start".split()
+    [
+        "auto",
+        "break",
+        "case",
+        "char",
+        "const",
+        "continue",
+        "default",
+        "do",
+        "double",
+        "else",
+        "enum",
+        "extern",
+        "float",
+        "for",
+        "goto",
+        "if",
+        "inline",
+        "int",
+        "long",
+        "register",
+        "restrict",
+        "return",
+        "short",
+        "signed",
+        "sizeof",
+        "static",
+        "struct",
+        "switch",
+        "typedef",
+        "union",
+        "unsigned",
+        "void",
+        "volatile",
+        "while",
+        "params",
+        "sines",
+        "cosines",
+        "n",
+        "i",
+        "m",
+        "start",
+    ]
 )
 
 
@@ -112,13 +152,13 @@ class CFunction:
     kernel_lines: tuple[str, ...]
     kernel_call_single: str
     kernel_call_batch: str
+    copies_params: bool
     n_angles: int
     n_lanes: int
     lanes: tuple[str, ...]
     angle_blocks: tuple[str, ...]
-    planes: tuple[str, ...]
     loads: tuple[str, ...]
-    copies: tuple[str, ...]
+    stores: tuple[str, ...]
     narrow: tuple[str, ...]
     table_single: str
     table_batch: str
@@ -140,9 +180,7 @@ def robot(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, A
 def shared(derivations: Sequence[Derivation]) -> dict[str, Any]:
     """The context of the files that all robots share."""
     return {
-        "robots": [
-            robot(d, {f.name: lower(f, d) for f in d.functions}) for d in derivations
-        ],
+        "robots": [robot(d, {f.name: lower(f, d) for f in d.functions}) for d in derivations],
         "tolerances": [
             (name.upper(), repr(getattr(DOUBLE, name)), repr(getattr(FLOAT, name)))
             for name in ("feasibility", "vanishing", "rotation")
@@ -199,6 +237,7 @@ class _Emission:
         shared = ["params"] * bool(self.parameters)
         kernel_lines = self._kernel_lines()
         trig = [name for name in ("sines", "cosines") if _occurs(name, kernel_lines)]
+        names = [o.name for o in self.outputs]
         return CFunction(
             name=f.name,
             full=f"{self.derivation.name}_{f.name}",
@@ -221,8 +260,8 @@ class _Emission:
                     [
                         *shared,
                         *self._angle_blocks(),
-                        *self._planes(),
                         *self._loads(trig),
+                        *self._stores(),
                         *self._narrow(),
                     ],
                 )
@@ -246,17 +285,16 @@ class _Emission:
                 + [f"{o.name}_real" if o in narrowed else o.name for o in self.outputs]
             ),
             kernel_call_batch=", ".join(
-                shared + [f"{a}_i" for a in [r.name for r in self.raw] + trig + self._names()]
+                ["&local"] * bool(self.parameters)
+                + [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)]
             ),
+            copies_params=bool(self.parameters),
             n_angles=n_angles,
             n_lanes=-(-n_angles // LANES) * LANES,
             lanes=tuple(self._lanes()),
             angle_blocks=tuple(self._angle_blocks()),
-            planes=tuple(self._planes()),
             loads=tuple(self._loads(trig)),
-            copies=tuple(
-                f"{o.name}_{k}[i] = {o.name}_i[{k}];" for o in self.outputs for k in range(o.size)
-            ),
+            stores=tuple(self._stores()),
             narrow=tuple(self._narrow()),
             table_single=self._table_call(
                 f"(const {self.derivation.name}_params *)params", "in[{k}]", "out[{k}]"
@@ -267,9 +305,6 @@ class _Emission:
                 "out[{k}], out_stride[{k}]",
             ),
         )
-
-    def _names(self) -> list[str]:
-        return [o.name for o in self.outputs]
 
     def _paragraphs(self, width: int) -> list[str]:
         return [
@@ -282,9 +317,7 @@ class _Emission:
         return "\n".join(f" * {line}" for line in self._paragraphs(WIDTH - 3))
 
     def _kernel_lines(self) -> list[str]:
-        lines = [
-            f"const real_t {self.printer.inputs[p]} = params->{p};" for p in self.parameters
-        ]
+        lines = [f"const real_t {self.printer.inputs[p]} = params->{p};" for p in self.parameters]
         for entry in self.entries:
             argument, k = self.places[entry]
             lines.append(f"const real_t {self.printer.inputs[entry]} = {argument.name}[{k}];")
@@ -333,7 +366,9 @@ class _Emission:
             if argument and divisor == 1:
                 source = f"{argument.name} + {argument.plane(k)}"
             else:
-                place = f"{argument.name}[{argument.plane(k)} + i]" if argument else f"params->{name}"
+                place = (
+                    f"{argument.name}[{argument.plane(k)} + i]" if argument else f"params->{name}"
+                )
                 source = f"angle_{j}"
                 lines.append(f"real_t {source}[CLOSEDFORM_BLOCK];")
                 lines.append("for (size_t i = 0; i < m; ++i)")
@@ -341,20 +376,18 @@ class _Emission:
             lines.append(f"cf_sincos_block(m, {source}, sines[{j}], cosines[{j}]);")
         return lines
 
-    def _planes(self) -> list[str]:
-        lines = []
-        for o in self.outputs:
-            for k in range(o.size):
-                if o.kind == "CF_REAL":
-                    place = f"{o.name} + {o.plane(k)}"
-                    lines.append(f"real_t *CF_RESTRICT const {o.name}_{k} = {place};")
-                else:
-                    lines.append(f"real_t {o.name}_{k}[CLOSEDFORM_BLOCK];")
-        return lines
+    def _stores(self) -> list[str]:
+        return [
+            f"{o.name}[{o.plane(k)} + i] = {o.name}_i[{k}];"
+            if o.kind == "CF_REAL"
+            else f"{o.name}_real[{k}][i] = {o.name}_i[{k}];"
+            for o in self.outputs
+            for k in range(o.size)
+        ]
 
     def _narrow(self) -> list[str]:
         return [
-            f"{o.name}[{o.plane(k)} + i] = ({o.type}){o.name}_{k}[i];"
+            f"{o.name}[{o.plane(k)} + i] = ({o.type}){o.name}_real[{k}][i];"
             for o in self.outputs
             if o.kind != "CF_REAL"
             for k in range(o.size)

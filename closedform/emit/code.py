@@ -61,7 +61,7 @@ class Names:
 
 
 def trig_names(names: Names, angle: Node) -> tuple[str, str]:
-    """Names for the sine and cosine of an angle: ``s1, c1`` for theta1, ``s_psi, c_psi`` for psi."""
+    """Names for the sine and cosine of an angle: ``s1, c1`` of theta1, ``s_psi, c_psi`` of psi."""
     half = ""
     if angle.op == "div":
         half = "_half" if angle.args[1].payload == 2 else f"_{angle.args[1].payload}th"
@@ -117,7 +117,7 @@ class Printer:
         args = tuple(self.text[a.id] for a in node.args)
         match node.op:
             case "const":
-                return self.constant(literal(node.payload))  # type: ignore[arg-type]
+                return self.constant(literal(node.payload))
             case "input":
                 return Text(self.inputs[str(node.payload)])
             case "sin" | "cos":

@@ -8,31 +8,31 @@ printer writes no ``\\left(``, between which TeX never breaks.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
+from itertools import count, groupby
 from typing import Any
 
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
-from closedform.derivation import Continuum, Derivation, Joint, Step
-from closedform.emit.show import Prose, errata, escape, mixed, symbol_name, upright, verified
+from closedform.derivation import Continuum, Derivation, Inverse, Joint, Step
+from closedform.emit.show import Prose, errata, escape, loosen, mixed, symbol_name, upright
 from closedform.emit.text import citation
-from closedform.functions import Array, Bound, Function, Let, Match, Statement, Vanishes
+from closedform.functions import Array, Bound, Function, Let, Match, Statement, Vanishes, real
 from closedform.prove import InverseResult, Proof
 
 __all__ = ["document", "errata", "notebook"]
 
-FITS = 78.0
+FITS = 84.0
 """Widest formula that is set on one line, in average letters of 10 pt."""
 
 
 class Printer(LatexPrinter):  # type: ignore[misc]
     """LaTeX with upright c, s for cosines and sines of (sums of) numbered joint angles."""
 
-    def __init__(self, derivation: Derivation, **settings: Any):
-        super().__init__(settings)
-        self.joints = {j.symbol for j in derivation.joints}
-        self.legend: dict[str, str] = {}
+    def __init__(self, joints: set[sp.Symbol]):
+        super().__init__({"long_frac_ratio": 20})
+        self.joints, self.legend = joints, dict[str, str]()
 
     def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
         return symbol_name(expr.name)
@@ -49,14 +49,13 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             (re.fullmatch(r"theta(\d)([A-Z]?)", str(term)) if term in self.joints else None)
             for term in angle.as_ordered_terms()
         ]
-        full = self._print(angle)
+        full = self._print(angle) if angle.is_Symbol else f"({self._print(angle)})"
         if all(numbers):
             index = sorted(n[1] + (rf"\mathrm{{{n[2]}}}" if n[2] else "") for n in numbers if n)
             short = rf"\mathrm{{{function[0]}}}_{{{''.join(index)}}}"
-            self.legend[short] = rf"\{function}({full})" if len(index) > 1 else rf"\{function}{full}"
+            self.legend[short] = rf"\{function} {full}"
             return short + power
-        simple = angle.is_Symbol
-        return rf"\{function}{power}{full}" if simple else rf"\{function}{power}({full})"
+        return rf"\{function}{power} {full}"
 
     def _print_atan2(self, expr: sp.Expr) -> str:
         y, x = map(self._print, expr.args)
@@ -69,17 +68,19 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     def case(self, condition: Any) -> str:
         if condition == sp.true:
             return r"\text{otherwise}"
-        return rf"\text{{if {flag_name(condition)}}}" if condition.is_Symbol else self._print(condition)
+        return rf"\text{{if {self._words(condition)}}}"
+
+    def _words(self, condition: Any) -> str:
+        if isinstance(condition, sp.Not):
+            return f"not {self._words(condition.args[0])}"
+        if isinstance(condition, sp.And | sp.Or):
+            word = " and " if isinstance(condition, sp.And) else " or "
+            return word.join(sorted(map(self._words, condition.args)))
+        return flag_name(condition) if condition.is_Symbol else f"${self._print(condition)}$"
 
     def math(self, expr: Any) -> str:
         """An expression that TeX can break between its terms."""
-        text = loosen(self.doprint(expr))
-        if max(map(measure, pieces(text))) <= FITS:
-            return text
-        wide = type(self).__new__(type(self))
-        wide.__dict__.update(self.__dict__)
-        wide._settings = {**self._settings, "long_frac_ratio": 1, "root_notation": False}
-        return loosen(wide.doprint(expr))
+        return loosen(self.doprint(expr))
 
 
 def flag_name(flag: sp.Symbol) -> str:
@@ -88,63 +89,12 @@ def flag_name(flag: sp.Symbol) -> str:
 
 def measure(text: str) -> float:
     """The width of a formula, in average letters; a fraction counts as its two parts."""
-    text = re.sub(r"_\{?\\?\w+\}?|\\mathrm|\\operatorname|\\text|\\[a-z]+\{\w*matrix\}", "i", text)
-    rows = re.split(r"\\\\(?= )", re.sub(r"\\(left|right|[bB]ig[lr])?(?![A-Za-z\\])|[{}^]", "", text))
-    signs = re.compile(r"[-+=&]|\\(?:sin|cos|quad)")
+    text = re.sub(r"\\(?:mathrm|operatorname|text|left|right|[bB]ig[lr]|begin|end)\b", "", text)
     return max(
-        len(re.findall(r"\\[A-Za-z]+|\S", row)) + 1.2 * len(signs.findall(row)) for row in rows
+        len(re.findall(r"\\[a-z]+|[^\s{}^_]", row))
+        + 1.2 * len(re.findall(r"[-+=&]|\\sin|\\cos", row))
+        for row in text.split(r" \\ ")
     )
-
-
-def pieces(text: str) -> list[str]:
-    """What TeX keeps together: the parts between operators outside braces."""
-    parts, depth = [""], 0
-    for token in re.findall(r"\\left|\\right|\\begin|\\end|\\.|[{}+=-]|[^\\{}+=-]+", text):
-        depth += (token in ("{", r"\left", r"\begin")) - (token in ("}", r"\right", r"\end"))
-        parts[-1] += token
-        if token in "+-=" and depth == 0:
-            parts.append("")
-    return parts
-
-
-def notebook(derivation: Derivation) -> str:
-    """What Jupyter shows of a derivation: the forward map and the inverse."""
-    page = Page(derivation, Proof("", "", (), 0, ()))
-    rows = [rf"&\textbf{{{derivation.title}}}"]
-    for function in derivation.functions:
-        if function.name in ("fk", "ik"):
-            rows.append(rf"&\text{{{function.summary}}}")
-            for s in function.body:
-                if isinstance(s, (Let, Bound)):
-                    rows += [f"{a} &= {b}" for a, b in page.equations(s.symbol, s.value)]
-            rows += [f"{a} &= {b}" for a, b in page.outputs(function)]
-    rows += [f"{short} &= {full}" for short, full in page.legend()]
-    return r"$\displaystyle \begin{aligned}" + " \\\\\n".join(rows) + r"\end{aligned}$"
-
-
-def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
-    """The context of ``latex/robot.tex.jinja``."""
-    page = Page(derivation, proof)
-    text = page.prose
-    context = {
-        "name": derivation.name,
-        "title": escape(derivation.title),
-        "source": escape(citation(derivation)),
-        "reference": escape(derivation.paper.reference),
-        "mechanism": text(derivation.mechanism),
-        "parameters": [
-            (page.printer.math(p.symbol), escape(p.name), escape(p.unit), p.value, text(p.meaning),
-             text(p.source)) for p in derivation.parameters
-        ],
-        "joints": [page.joint(j) for j in derivation.joints],
-        "steps": [page.step(s) for s in derivation.steps],
-        "inverses": [page.inverse(f) for f in derivation.functions if f.has_status],
-        "functions": [page.function(f) for f in derivation.functions],
-        "singular": page.singular_set(),
-        "verdicts": ", ".join(f"{n} {kind}" for kind, n in proof.verdicts().items()),
-        "claims": page.claims(),
-    }  # fmt: skip
-    return context | {"legend": page.legend()}
 
 
 class Page:
@@ -152,12 +102,12 @@ class Page:
 
     def __init__(self, derivation: Derivation, proof: Proof):
         self.derivation, self.proof = derivation, proof
-        self.printer, self.prose = Printer(derivation), Prose(derivation)
-        self.math = self.printer.math
+        self.printer = Printer({j.symbol for j in derivation.joints})
+        self.math, self.prose = self.printer.math, Prose(derivation)
 
     def legend(self) -> list[tuple[str, str]]:
         """The abbreviated sines and cosines that were printed so far."""
-        return sorted(self.printer.legend.items(), key=lambda item: (len(item[1]), item))
+        return sorted(self.printer.legend.items(), key=lambda e: (len(e[1]), e[0][9:], e[0]))
 
     def joint(self, joint: Joint) -> tuple[str, str, str, str]:
         role = "passive: the others move it" if joint.passive else "actuated"
@@ -168,7 +118,7 @@ class Page:
     def step(self, step: Step) -> dict[str, Any]:
         shown = [e for lhs, value in step.shown for e in self.equations(upright(lhs), value)]
         n, proved = len(step.vanishes), step.title in self.proof.steps
-        mark = f"{n} {'identity' if n == 1 else 'identities'} proved" if n and proved else ""
+        mark = f"{n} {'identity' if n == 1 else 'identities'}" if n and proved else ""
         if mark and step.nonnegative:
             mark += " where " + ", ".join(rf"${self.math(e)} \ge 0$" for e in step.nonnegative)
         return {
@@ -180,16 +130,15 @@ class Page:
         }
 
     def function(self, function: Function) -> dict[str, Any]:
-        statements = [] if function.has_status else function.body
         return {
             "name": escape(function.name),
             "arguments": ", ".join(escape(a.name) for a in function.inputs),
             "summary": self.prose(function.summary),
             "source": self.prose(function.source),
-            "statements": [self.statement(s) for s in statements],
-            "blocks": [] if function.has_status else blocks(self.outputs(function)),
-            "label": f"inverse:{function.name}" if function.has_status else "",
-            "notes": [] if function.has_status else [self.prose(n) for n in function.notes],
+            "statements": self.statements(function.body),
+            "blocks": blocks(self.outputs(function)),
+            "key": function.name.replace("_", "-") if function.has_status else "",
+            "notes": [self.prose(n) for n in function.notes],
         }
 
     def inverse(self, function: Function) -> dict[str, Any]:
@@ -197,31 +146,41 @@ class Page:
         solved = [s for s in self.derivation.solved if s.function == function.name]
         lemmas = {s.lemma.name: s.lemma.statement for s in solved}
         inverse = next((i for i in self.derivation.inverses if i.function == function.name), None)
-        continua = inverse.continua if inverse else ()
+        proved = [self.proved(r) for r in self.proof.inverses if r.function == function.name]
         return {
             **self.function(function),
-            "given": ", ".join(self.math(s) for s in function.symbols),
+            "given": formulas(
+                [f"{a} = {b}" for v in function.inputs for a, b in self.assigned(v, {})]
+            ),
             "lemmas": [(escape(name), loosen(text)) for name, text in lemmas.items()],
             "solved": [
                 (self.math(s.unknown), escape(s.lemma.name), f"0 = {self.math(s.equation)}")
                 for s in solved
             ],
-            "statements": [self.statement(s) for s in function.body],
-            "blocks": blocks(self.outputs(function)),
             "branches": [
                 (escape(label), ",\\ ".join(f"{self.math(s)} = {v:+d}" for s, v in signs.items()))
                 for label, signs in function.cases()
                 if signs
             ],
-            "continua": [self.continuum(function, c) for c in continua],
-            "proved": [
-                line
-                for result in self.proof.inverses
-                if result.function == function.name
-                for line in self.proved(result)
-            ],
-            "notes": [self.prose(n) for n in function.notes],
+            "continua": [self.continuum(function, inverse, c) for c in inverse.continua]
+            if inverse
+            else [],
+            "proved": proved,
         }
+
+    def statements(self, body: Sequence[Statement]) -> list[tuple[str, str]]:
+        """One line a statement, but neighbours that name or match alike share theirs."""
+        lines: list[tuple[str, str]] = []
+        for kind, text in map(self.statement, body):
+            _, colon, meaning = text.partition("$: ")
+            last = lines[-1][1] if lines and lines[-1][0] == kind else ""
+            if kind == "let" and last and measure(last + text) < FITS:
+                lines[-1] = kind, f"{last},\\quad {text}"
+            elif kind == "match" and last.endswith(colon + meaning):
+                lines[-1] = kind, f"{last.removesuffix(colon + meaning)}$, {text}"
+            else:
+                lines.append((kind, text))
+        return lines
 
     def statement(self, statement: Statement) -> tuple[str, str]:
         """The kind of a statement, and the sentence that says it."""
@@ -242,101 +201,99 @@ class Page:
         kind = "match" if isinstance(statement, Match) else "require"
         return kind, f"{conditions}: {self.prose(statement.meaning)}"
 
-    def continuum(self, function: Function, continuum: Continuum) -> dict[str, str]:
+    def continuum(self, function: Function, inverse: Inverse, case: Continuum) -> dict[str, str]:
         """Where a joint is free, what is returned, and what all solutions there share."""
-        locus = dict(continuum.locus)
-        equations = []
-        for a in function.inputs:
-            if a.shape and len(a.shape) == 2 and all(e in locus for e in a.entries):
-                equations += self.equations(a.name, sp.Matrix(*a.shape, [locus.pop(e) for e in a.entries]))
-        equations += [e for s, v in locus.items() for e in self.equations(s, v)]
-        inverse = next(i for i in self.derivation.inverses if i.function == function.name)
+        given = [e for a in function.inputs for e in self.assigned(a, case.locus)]
+        others = {p.symbol for p in self.derivation.parameters} & set(case.locus)
+        given += [e for s in sorted(others, key=str) for e in self.equations(s, case.locus[s])]
         _, signs = next(function.cases())
-        values = function.at(signs, {continuum.flag: True}, continuum.locus)
-        convention = dict(zip(inverse.unknowns, values, strict=False))[continuum.free]
+        values = function.at(signs, {case.flag: True}, case.locus)
+        convention = dict(zip(inverse.unknowns, values, strict=True))[case.free]
         return {
-            "free": self.math(continuum.free),
-            "flag": flag_name(continuum.flag),
-            "locus": formulas([f"{a} = {b}" for a, b in equations]),
-            "convention": f"{self.math(continuum.free)} = {self.math(convention)}",
-            "relation": upright(continuum.relation),
+            "free": self.math(case.free),
+            "flag": flag_name(case.flag),
+            "locus": formulas([f"{a} = {b}" for a, b in given]),
+            "convention": f"{self.math(case.free)} = {self.math(convention)}",
+            "relation": upright(case.relation),
         }
 
-    def proved(self, result: InverseResult) -> list[str]:
+    def proved(self, result: InverseResult) -> dict[str, Any]:
         symbols = {s.name: s for f in self.derivation.functions for s in f.symbols}
         symbols |= {p.name: p.symbol for p in self.derivation.parameters}
-        given = [rf"${self.math(sp.sympify(a, symbols))} \ge 0$" for a in result.assumptions]
-        where = f", where {', '.join(given)}" if given else ""
-        one = result.branches == 1
-        each = "the branch, put" if one else f"each of the {result.branches} branches, put"
-        count = f"{result.solutions} solution{'' if result.solutions == 1 else 's'}"
+        given = [rf"{self.math(sp.sympify(a, symbols))} \ge 0" for a in result.assumptions]
         how = {
-            "generic": "counted from a Gr\\"obner basis over the field of parameters and targets",
-            "specialised": "counted from Gr\\"obner bases, the same at several rational points",
-        }.get(result.method, escape(result.method))
-        lines = [
-            f"Sound: {each} into the forward map, gives the target identically{where}.",
-            f"Complete: the polynomial system has {count}, {how}.",
-        ]
-        if result.lemmas:
-            lines.append("Each equation that a lemma solves follows from the forward map.")
-        if result.continua:
-            lines.append("On each continuum the value by convention satisfies the forward map too.")
-        return lines
+            "generic": "a Groebner basis over the field of parameters and targets",
+            "specialised": "Groebner bases, the same at several rational points",
+        }
+        return {
+            "where": f", where {formulas(given)}" if given else "",
+            "count": f"{result.solutions} solution{'s' * (result.solutions != 1)}",
+            "how": how.get(result.method, escape(result.method)),
+            "lemmas": result.lemmas,
+            "continua": result.continua,
+        }
 
     def claims(self) -> list[dict[str, Any]]:
-        checks = {(c.label, c.printed): c.check for c in self.derivation.claims}
-        rows = []
+        """The rows of the table; ``where`` stands once above the claims of one place."""
+        rows, where = [], ""
         for claim in self.proof.claims:
-            details = [("", self.prose(claim.evidence))] if claim.evidence else []
-            if claim.corrected:
-                sure = verified(checks.get((claim.label, claim.printed)))
-                corrected = re.split(r";\\quad |,\\ (?=\[)", claim.corrected)
-                text = formulas([loosen(c) for c in corrected])
-                if "$" in claim.corrected:
-                    text = mixed(claim.corrected)
-                details.append(("holds instead (proved)" if sure else "instead", text))
-            row = {"label": escape(claim.label), "where": escape(claim.where), "verdict": claim.kind}
-            rows.append(row | {"printed": mixed(claim.printed), "details": details})
+            rows.append(
+                {
+                    "where": escape(claim.where) if claim.where != where else "",
+                    "label": escape(claim.label),
+                    "verdict": claim.kind,
+                    "printed": mixed(claim.printed),
+                    "evidence": self.prose(claim.evidence),
+                    "corrected": mixed(self.prose.correction(claim.corrected)),
+                }
+            )
+            where = claim.where
         return rows
 
     def singular_set(self) -> list[tuple[str, str]]:
-        if all(f.name != "singularities" for f in self.derivation.functions):
-            return []
-        entries = self.derivation["singularities"].outputs[0].entries
-        titles = self.derivation.singularities
-        return [
-            (escape(titles[k % len(titles)]), formulas([f"{self.math(e)} = 0"]))
-            for k, e in enumerate(entries)
-        ]
+        """The name of each factor, and the equation that it vanishes."""
+        names = list(map(escape, self.derivation.singularities)) or ["factor"]
+        found = [f.outputs[0] for f in self.derivation.functions if f.name == "singularities"]
+        vanish = [formulas([f"{self.math(e)} = 0"]) for a in found for e in a.entries]
+        return [(names[k % len(names)], formula) for k, formula in enumerate(vanish)]
 
     def outputs(self, function: Function) -> list[tuple[str, str]]:
-        return [e for a in function.outputs for e in self.array(function, a)]
+        return [e for a in function.outputs for e in self.array(a)]
 
-    def array(self, function: Function, array: Array) -> list[tuple[str, str]]:
+    def assigned(self, array: Array, locus: Mapping[sp.Symbol, sp.Expr]) -> list[tuple[str, str]]:
+        """An argument and its entries; on ``locus``, what these are there."""
+        if not locus or all(e in locus for e in array.entries):
+            entries = [locus.get(e, e) for e in array.entries]
+            matrix = len(array.shape) == 2
+            value = sp.Matrix(*array.shape, entries) if matrix else entries
+            return self.equations(symbol_name(array.name), value)
+        return [x for e in array.entries if e in locus for x in self.equations(e, locus[e])]
+
+    def array(self, array: Array) -> list[tuple[str, str]]:
         """The equations of a result: a matrix, or a row for each coordinate under its name."""
         name = symbol_name(array.name)
-        if len(array.shape) == 0:
-            return self.equations(name, array.entries[0])
-        if len(array.shape) == 2:
-            return self.equations(name, sp.Matrix(*array.shape, array.entries))
-        if len(array.shape) == 3:
-            n, size = array.shape[0], array.size // array.shape[0]
-            parts = [array.entries[k * size : (k + 1) * size] for k in range(n)]
+        if len(array.shape) > 1:
+            shape = array.shape[-2:]
+            parts = sp.Matrix(array.size // sp.prod(shape), sp.prod(shape), array.entries)
+            marks = [f"^{{({k + 1})}}" if len(array.shape) > 2 else "" for k in range(parts.rows)]
             return [
-                e
-                for k, part in enumerate(parts)
-                for e in self.equations(f"{name}^{{({k + 1})}}", sp.Matrix(*array.shape[1:], part))
+                equation
+                for k, mark in enumerate(marks)
+                for equation in self.equations(name + mark, parts.row(k).reshape(*shape))
             ]
-        names = [element(name, str(k + 1)) for k in range(array.size)]
-        for known, joints in (("q", self.derivation.actuated), ("x", self.derivation.task)):
-            if array.name == known and len(joints) == array.size:
-                names = [symbol_name(str(j)) for j in joints]
+        names = [element(name, str(k + 1)) if array.shape else name for k in range(array.size)]
+        for known, symbols in (("q", self.derivation.actuated), ("x", self.derivation.task)):
+            if array.name == known and len(symbols) == array.size:
+                names = [symbol_name(str(j)) for j in symbols]
         return [e for n, v in zip(names, array.entries, strict=True) for e in self.equations(n, v)]
 
     def equations(self, lhs: Any, value: Any) -> list[tuple[str, str]]:
         """A value as one equation or, where it is too wide, as several."""
         left = lhs if isinstance(lhs, str) else self.math(lhs)
+        if isinstance(value, sp.Expr | sp.MatrixBase) and (inner := self._unbreakable(value)):
+            name = real(next(n for n in map("u{}".format, count(1)) if n not in self.prose.known))
+            self.prose.known.add(name.name)
+            return self.equations(left, value.xreplace({inner: name})) + self.equations(name, inner)
         if isinstance(value, sp.MatrixBase):
             return self._matrix(left, value)
         if isinstance(value, str):
@@ -345,16 +302,20 @@ class Page:
             return [(left, "(" + r",\ ".join(map(self.math, value)) + ")")]
         text = self.math(value)
         if isinstance(value, sp.Piecewise) and measure(text) > FITS:
-            return [
-                (left, rf"{self.math(e)}\quad {self.printer.case(c)}") for e, c in value.args
-            ]
+            return [(left, rf"{self.math(e)}\quad {self.printer.case(c)}") for e, c in value.args]
         return [(left, text)]
+
+    def _unbreakable(self, value: sp.Basic) -> sp.Expr | None:
+        """The smallest radicand or denominator that is too wide for a line."""
+        powers = (p for p in value.atoms(sp.Pow) if not p.exp.is_Integer or p.exp.is_negative)
+        wide = [p.base for p in powers if measure(self.math(p.base)) > FITS - 12]
+        return min(wide, key=lambda e: (sp.count_ops(e), str(e)), default=None)
 
     def _matrix(self, lhs: str, matrix: sp.MatrixBase) -> list[tuple[str, str]]:
         """The widest entries get names, until the rest fits on a line."""
         cells = [[self.math(e) for e in matrix.row(i)] for i in range(matrix.rows)]
         base, named = lhs.partition("=")[0].strip(), []
-        while measure(lhs) + _table_width(cells) > FITS:
+        while measure(lhs) + sum(max(map(measure, c)) + 2 for c in zip(*cells, strict=True)) > FITS:
             width, i, j = max(
                 (measure(c), -i, -j) for i, row in enumerate(cells) for j, c in enumerate(row)
             )
@@ -368,11 +329,6 @@ class Page:
         return [whole, *(equation for _, _, equation in sorted(named))]
 
 
-def _table_width(cells: Sequence[Sequence[str]]) -> float:
-    columns = zip(*cells, strict=True)
-    return sum(max(map(measure, column)) + 2 for column in columns)
-
-
 def element(base: str, index: str) -> str:
     """The name of an entry of a matrix or a vector."""
     if subscript := re.fullmatch(r"(.+?)_\{?([^{}]+)\}?", base):
@@ -382,21 +338,14 @@ def element(base: str, index: str) -> str:
 
 def blocks(equations: Sequence[tuple[str, str]]) -> list[str]:
     """Neighbours that fit on a line, aligned; longer ones as paragraphs."""
-    done: list[list[str]] = []
-    aligned = False
-    for left, right in equations:
-        fits = measure(left) + measure(right) + 4 <= FITS
-        if fits and aligned:
-            done[-1].append(f"{left} &= {right}")
+    done: list[str] = []
+    for fits, group in groupby(equations, lambda e: measure(e[0] + e[1]) + 4 <= FITS):
+        if fits:
+            rows = " \\\\\n".join(f"{left} &= {right}" for left, right in group)
+            done.append(f"\\begin{{align*}}\n{rows}\n\\end{{align*}}")
         else:
-            done.append([f"{left} &= {right}" if fits else f"{left} = {right}"])
-        aligned = fits
-    return [
-        "\\begin{align*}\n" + " \\\\\n".join(rows) + "\n\\end{align*}"
-        if " &= " in rows[0]
-        else rf"\longformula{{{rows[0]}}}"
-        for rows in done
-    ]
+            done += [rf"\longformula{{{left} = {right}}}" for left, right in group]
+    return done
 
 
 def formulas(texts: Sequence[str]) -> str:
@@ -435,10 +384,11 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         ],
         "joints": [page.joint(j) for j in derivation.joints],
         "steps": [page.step(s) for s in derivation.steps],
+        "modes": derivation.assembly_modes,
         "inverses": [page.inverse(f) for f in derivation.functions if f.has_status],
         "functions": [page.function(f) for f in derivation.functions],
         "singular": page.singular_set(),
         "verdicts": ", ".join(f"{n} {kind}" for kind, n in proof.verdicts().items()),
         "claims": page.claims(),
     }  # fmt: skip
-    return context | {"legend": page.legend()}
+    return context | {"legend": ",\\quad ".join(map(" = ".join, page.legend()))}

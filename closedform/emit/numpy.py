@@ -91,10 +91,7 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
     entries = [str(e) for a in function.inputs for e in a.entries]
     parameters = list(program.parameters)
     names = [e if e in used else f"_{e}" for e in entries] + parameters
-    if function.result:
-        returns = f"_runtime.{function.result}"
-    else:
-        returns = "Any"
+    returns = f"_runtime.{function.result}" if function.result else "Any"
     return NumpyFunction(
         function.name,
         call_signature(function),

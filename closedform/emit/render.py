@@ -69,7 +69,5 @@ def shared_files(
         for name in ("closedform.h", "extension.c", "CMakeLists.txt", "closedform-config.cmake.in"):
             printed[Path("c", name)] = render(f"c/{name}.jinja", context)
     if "latex" in backends:
-        printed[Path("errata.md")] = render(
-            "errata.md.jinja", latex.errata(derivations, proofs)
-        )
+        printed[Path("errata.md")] = render("errata.md.jinja", latex.errata(derivations, proofs))
     return printed

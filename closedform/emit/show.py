@@ -16,7 +16,10 @@ import sympy as sp
 from sympy.core.alphabets import greeks
 from sympy.printing.pretty.pretty import PrettyPrinter
 
-from closedform.claims import PROVED, VERDICTS, Check, Decimal, Every, Identity, Refuted, Undecidable
+from closedform.claims import (
+    PROVED,
+    VERDICTS,
+)
 from closedform.derivation import Derivation
 from closedform.emit.text import citation
 from closedform.functions import Bound, Function, Let, Match, Statement, Vanishes
@@ -34,16 +37,21 @@ ESCAPES = {
     "^": r"\textasciicircum{}",
     **{c: "\\" + c for c in "&%$#_{}"},
     **{c: f"${c}$" for c in "<>|"},
-    **{"–": "--", "—": "---", "‘": "`", "’": "'", "“": "``", "”": "''", "…": r"\dots{}"},
+    "–": "--",
+    "—": "---",
+    "‘": "`",
+    "’": "'",
+    "“": "``",
+    "”": "''",
+    "…": r"\dots{}",
 }
 UNICODE = {
-    **{c: rf"\{g}" for c, g in zip("αβγδεηθκλμξπρστψω", (
-        "alpha beta gamma delta epsilon eta theta kappa lambda mu xi pi rho sigma tau psi omega"
-    ).split(), strict=True)},
-    **{c: rf"\{g}" for c, g in zip("φϕΔΩ±×·≤≥≠≈√∞∈ℓµ", (
-        "varphi phi Delta Omega pm times cdot le ge ne approx surd infty in ell mu"
-    ).split(), strict=True)},
-    **{"°": r"^\circ", "²": "^2", "³": "^3", "−": "-"},
+    "α": r"\alpha", "β": r"\beta", "γ": r"\gamma", "δ": r"\delta", "ε": r"\epsilon", "η": r"\eta",
+    "θ": r"\theta", "κ": r"\kappa", "λ": r"\lambda", "μ": r"\mu", "µ": r"\mu", "ξ": r"\xi",
+    "π": r"\pi", "ρ": r"\rho", "σ": r"\sigma", "τ": r"\tau", "φ": r"\varphi", "ϕ": r"\phi",
+    "ψ": r"\psi", "ω": r"\omega", "Δ": r"\Delta", "Ω": r"\Omega", "°": r"^\circ", "±": r"\pm",
+    "×": r"\times", "·": r"\cdot", "≤": r"\le", "≥": r"\ge", "≠": r"\ne", "≈": r"\approx",
+    "√": r"\surd", "∞": r"\infty", "∈": r"\in", "²": "^2", "³": "^3", "−": "-",
 }  # fmt: skip
 
 FUNCTIONS = r"(?:sqrt|sin|cos|tan|atan2|acos|asin|atan|det|max|min|Abs)"
@@ -51,7 +59,8 @@ PAREN = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
 NAME = r"[A-Za-z][A-Za-z0-9_]*"
 NUMBER = r"\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![A-Za-z])"
 POWER = rf"(?:\*\*|\^)(?:\{{[^}}]*\}}|-?\w+|{PAREN})"
-ATOM = rf"[-+]?(?:{FUNCTIONS}{PAREN}|{NAME}|{NUMBER}|{PAREN}|\|[^|]+\||\[[^]]*\+/-[^]]*\])(?:{POWER})?"
+BALL = r"\[[^]]*\+/-[^]]*\]"
+ATOM = rf"[-+]?(?:{FUNCTIONS}{PAREN}|{NAME}|{NUMBER}|{PAREN}|\|[^|]+\||{BALL})(?:{POWER})?"
 RELATION = r"(?:\s*(?:<=|>=|!=|=|[*/])\s*|\s+[-+<>]\s+)"
 PROSE = re.compile(rf"(?<![\w-])({ATOM}(?:{RELATION}{ATOM})*)(?!-?\w)")
 TOKEN = re.compile(
@@ -62,7 +71,7 @@ SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,"
 
 
 def symbol_name(name: str) -> str:
-    """The LaTeX of a symbol: theta2R -> \\theta_{2R}, px -> p_{x}, sigma_elbow -> \\sigma_{elbow}."""
+    """The LaTeX of a symbol: px is ``p_{x}``, theta2R ``\\theta_{2\\mathrm{R}}``."""
     if name in SYMBOL_NAMES:
         return SYMBOL_NAMES[name]
     dotted, name = "dot" in name, name.replace("_dot", "").replace("dot", "")
@@ -88,10 +97,17 @@ def _subscript(text: str) -> str:
         return symbol_name(text)
     return rf"\mathrm{{{text}}}"
 
+
 def escape(text: str) -> str:
     """Plain text; letters and signs of mathematics that LaTeX's fonts lack become formulas."""
     text = re.sub(r'"([^"]*)"', "“\\1”", text)
-    return "".join(ESCAPES.get(c) or (f"${UNICODE[c]}$" if c in UNICODE else c) for c in text)
+    parts = re.split(r"([α-ωϕ])(\d+)", text)
+    for i, part in enumerate(parts):
+        plain = (ESCAPES.get(c) or (f"${UNICODE[c]}$" if c in UNICODE else c) for c in part)
+        parts[i] = (
+            f"${UNICODE[part]}" if i % 3 == 1 else f"_{{{part}}}$" if i % 3 else "".join(plain)
+        )
+    return "".join(parts)
 
 
 def mixed(text: str) -> str:
@@ -99,7 +115,7 @@ def mixed(text: str) -> str:
     parts = text.split("$")
     for i, part in enumerate(parts):
         formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
-        parts[i] = f"${formula}$" if i % 2 else escape(part)
+        parts[i] = rf"$\displaystyle {formula}$" if i % 2 else escape(part)
     return "".join(parts)
 
 
@@ -128,7 +144,27 @@ class Prose:
         related = bool(re.search(r"[=<>*^|]|\+/-| [-+] |\w/\w", text))
         if any(n in self.known or re.fullmatch("[^aAI]|[A-Za-z]_.+", n) for n in names):
             return related or not text.startswith("(")
-        return related and ("=" in text if names else True)
+        return related and "=" in text if names else related or text[0] == "-"
+
+    def correction(self, text: str) -> str:
+        """A corrected form as text with formulas between dollar signs, one for each statement."""
+        if "$" in text or re.search(r"^[^\\]*\b[a-z]{2,} [a-z]{2,}\b[^\\]*$", text):
+            return text
+        text = loosen(text)
+        for name in sorted(n for n in self.known if len(n) == 2 and n.isalpha() and n not in GREEK):
+            text = re.sub(rf"(?<![\\A-Za-z]){name}(?![A-Za-z])", f"{name[0]}_{name[1]}", text)
+        text = re.sub(r"_\{(\w)\}", r"_\1", text)
+        text = re.sub(
+            r"\\(sin|cos|tan)(\^\{\w+\})?\{\((\\?\w+(?:_\{\w+\})?)\)\}", r"\\\1\2 \3", text
+        )
+        parts = []
+        for part in re.split(r";\\quad |,\\ (?=\[)", text):
+            entry = re.match(r"(?:\\text\{(.*?): \})?(?:\[(\d+,\d+)\] = )?", part)
+            assert entry is not None
+            head = [entry[1]] if entry[1] else []
+            head += [f"entry ({entry[2]})"] if entry[2] else []
+            parts.append(", ".join(head) + ": " * bool(head) + f"${part[entry.end() :]}$")
+        return "; ".join(parts) if text else ""
 
     def formula(self, text: str) -> str:
         done = []
@@ -139,7 +175,8 @@ class Prose:
                 head = command.get(function, "\\" + function)
                 done.append(f"{head}{{{inner}}}" if function == "sqrt" else f"{head}({inner})")
             elif power:
-                done.append(f"^{{{self.formula(re.sub(r'^[({](.*)[)}]$', r'\1', power))}}}")
+                inner = self.formula(re.sub(r"^[({](.*)[)}]$", r"\1", power))
+                done.append(f"^{{{inner}}}")
             elif number:
                 done.append(re.sub(r"e\+?(-?)0*(\d+)", r"\\cdot 10^{\1\2}", number))
             elif name:
@@ -154,12 +191,12 @@ def upright(text: str) -> str:
     """Words inside a formula, such as ``area`` or ``any``, set as words."""
     if r"\begin" in text or r"\text" in text or r"\mathrm" in text:
         return text
-    spaced = re.sub(r"(?<=\S) +(?=[A-Za-z]{3})|(?<=[a-z]{3}) +", r"\\ ", text)
+    spaced = re.sub(r"(?<=\S) +(?=[A-Za-z]{3})", r"\\ ", text)
     return re.sub(r"(?<![\\A-Za-z])[A-Za-z]{3,}", r"\\mathrm{\g<0>}", spaced)
 
 
 def loosen(text: str) -> str:
-    """Parentheses of a fixed size instead of ``\\left( \\right)``, where no matrix stands inside."""
+    """Parentheses of a fixed size for ``\\left( \\right)``, unless a matrix stands inside."""
     opened: list[tuple[int, str]] = []
     parts = re.split(r"(\\left[(\[]|\\right[)\]]|\\left\S|\\right\S)", text)
     for i, part in enumerate(parts):
@@ -174,15 +211,6 @@ def loosen(text: str) -> str:
                     size = "", ""
                 parts[j], parts[i] = size[0] + left[5:], size[1] + part[6:]
     return re.sub(r"(\S) ([)\]])", r"\1\2", "".join(parts))
-
-
-def verified(check: Check | None) -> bool:
-    """Whether the corrected form of a refuted claim was itself proved."""
-    if isinstance(check, Every):
-        return all(verified(c) for c in check.parts.values() if not isinstance(c, Undecidable))
-    return isinstance(check, Identity | Decimal) or (
-        isinstance(check, Refuted) and check.proof is not None
-    )
 
 
 def errata(derivations: Sequence[Derivation], proofs: Sequence[Proof]) -> dict[str, Any]:
@@ -202,12 +230,8 @@ def errata(derivations: Sequence[Derivation], proofs: Sequence[Proof]) -> dict[s
                 "mechanisms": [],
             },
         )
-        checks = {(c.label, c.printed): c.check for c in derivation.claims}
-        claims = [
-            _entry(claim, verified(checks.get((claim.label, claim.printed))))
-            for claim in proof.claims
-            if claim.kind != PROVED
-        ]
+        prose = Prose(derivation)
+        claims = [_entry(claim, prose) for claim in proof.claims if claim.kind != PROVED]
         paper["mechanisms"].append({"title": derivation.title, "claims": claims})
         counts.setdefault(key, Counter()).update(c.kind for c in proof.claims)
     for key, paper in papers.items():
@@ -216,24 +240,15 @@ def errata(derivations: Sequence[Derivation], proofs: Sequence[Proof]) -> dict[s
     return {"papers": list(papers.values())}
 
 
-def _entry(claim: ClaimResult, sure: bool) -> dict[str, str]:
-    corrected = claim.corrected
-    if corrected and "$" not in corrected:
-        corrected = "; ".join(f"${part}$" for part in separate(corrected))
+def _entry(claim: ClaimResult, prose: Prose) -> dict[str, str]:
     return {
         "label": markdown(claim.label),
         "where": markdown(claim.where),
         "printed": markdown(claim.printed),
         "verdict": claim.kind,
         "evidence": markdown(claim.evidence),
-        "corrected": markdown(corrected),
-        "mark": "proved" if sure else "not proved",
+        "corrected": markdown(prose.correction(claim.corrected)),
     }
-
-
-def separate(corrected: str) -> list[str]:
-    """The parts of a corrected form: several statements, or entries of a matrix."""
-    return re.split(r";\\quad |,\\ (?=\[)", corrected)
 
 
 def markdown(text: str) -> str:
@@ -277,14 +292,16 @@ def _lines(derivation: Derivation, proof: Proof | None) -> Iterator[str]:
     for number, step in enumerate(derivation.steps, 1):
         published = f"  [paper: {', '.join(step.published)}]" if step.published else ""
         yield from ("", f"{number}. {step.title}{published}")
-        yield from _wrap(step.reason, 3)
+        yield from textwrap.wrap(
+            step.reason, WIDTH, initial_indent=3 * " ", subsequent_indent=3 * " "
+        )
         for lhs, value in step.shown:
             yield from _equation(plain(lhs), value)
         if step.vanishes and proof and step.title in proof.steps:
             yield f"   [identities proved: {len(step.vanishes)}]"
     yield from _heading("Functions")
     for function in derivation.functions:
-        yield from _function(function, proof)
+        yield from _function(derivation, function, proof)
     if derivation.singularities:
         yield from _heading("Singular set")
         yield from _wrap(", ".join(derivation.singularities), 2)
@@ -295,7 +312,7 @@ def _lines(derivation: Derivation, proof: Proof | None) -> Iterator[str]:
             yield from _wrap(f"{n} {kind}: {labels}", 2)
 
 
-def _function(function: Function, proof: Proof | None) -> Iterator[str]:
+def _function(derivation: Derivation, function: Function, proof: Proof | None) -> Iterator[str]:
     arguments = ", ".join(f"{a.name}: {_entries(a.entries)}" for a in function.inputs)
     results = ", ".join(f"{a.name}{list(a.shape) or ''}" for a in function.outputs)
     yield from ("", *_wrap(f"{function.name}({arguments}) -> {results}", 2))
@@ -303,9 +320,11 @@ def _function(function: Function, proof: Proof | None) -> Iterator[str]:
     for statement in function.body:
         yield from _wrap(_statement(statement), 4)
     if function.has_status:
+        inverse = next((i for i in derivation.inverses if i.function == function.name), None)
         for a in function.outputs:
-            for k, e in enumerate(a.entries, 1):
-                yield from _wrap(f"{a.name}{k} = {e}", 4)
+            names = inverse.unknowns if inverse else [f"{a.name}{k + 1}" for k in range(a.size)]
+            for name, e in zip(names, a.entries, strict=False):
+                yield from _wrap(f"{name} = {_text(e)}", 4)
     if function.branches and len(function.branches) > 1:
         for label, signs in function.cases():
             yield f"    branch {label}: " + ", ".join(f"{s} = {v:+d}" for s, v in signs.items())
@@ -318,12 +337,14 @@ def _function(function: Function, proof: Proof | None) -> Iterator[str]:
 
 
 def _entries(entries: Sequence[sp.Expr]) -> str:
-    return f"({', '.join(map(str, entries))})" if len(entries) < 7 else f"{entries[0]}..{entries[-1]}"
+    if len(entries) > 6:
+        return f"({entries[0]}, ..., {entries[-1]})"
+    return f"({', '.join(map(str, entries))})"
 
 
 def _statement(statement: Statement) -> str:
     if isinstance(statement, Let):
-        return f"{statement.symbol} = {statement.value}"
+        return f"{statement.symbol} = {_text(statement.value)}"
     if isinstance(statement, Bound):
         return f"{statement.symbol} = {statement.value} >= 0: {statement.meaning}"
     if isinstance(statement, Vanishes):
@@ -332,6 +353,13 @@ def _statement(statement: Statement) -> str:
         return f"{statement.symbol} if {statement.value} = 0: {statement.meaning}{effect}"
     values = (statement.value,) if isinstance(statement, Match) else statement.values
     return f"{statement.meaning}: " + ", ".join(f"{v} = 0" for v in values)
+
+
+def _text(value: sp.Expr) -> str:
+    """A choice as a person writes it, else as SymPy does."""
+    if isinstance(value, sp.Piecewise):
+        return ", ".join(f"{e}{'' if c == sp.true else f' if {c}'}" for e, c in value.args)
+    return str(value)
 
 
 def _equation(lhs: str, value: Any) -> list[str]:

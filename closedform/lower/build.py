@@ -29,9 +29,11 @@ RELATIONS = {
 class Builder:
     """Translates expressions over ``known`` symbols into nodes of one graph."""
 
-    def __init__(self, graph: Graph, known: Mapping[sp.Basic, Node], divisors: Mapping[sp.Basic, int]):
+    def __init__(
+        self, graph: Graph, known: Mapping[sp.Basic, Node], divisors: Mapping[sp.Basic, int]
+    ):
         self.graph = graph
-        self.known = dict(known)
+        self.known: dict[sp.Basic, Node] = dict(known)
         self.divisors = divisors
         self.memo: dict[sp.Basic, Node] = {}
         self.names: dict[int, str] = {}
@@ -40,8 +42,8 @@ class Builder:
         self.known[symbol] = node
 
     def __call__(self, expr: sp.Basic) -> Node:
-        if expr in self.known:
-            return self.known[expr]
+        if (known := self.known.get(expr)) is not None:
+            return known
         if expr not in self.memo:
             self.memo[expr] = self._translate(expr)
         return self.memo[expr]
@@ -71,7 +73,8 @@ class Builder:
         if isinstance(expr, (sp.Max, sp.Min)):
             op = "max" if isinstance(expr, sp.Max) else "min"
             ordered = sorted(expr.args, key=sp.default_sort_key)
-            return reduce(lambda a, b: graph.node(op, a, b), map(self, ordered))
+            nodes = [self(e) for e in ordered]
+            return reduce(lambda a, b: graph.node(op, a, b), nodes)
         if isinstance(expr, sp.Piecewise):
             *cases, (last, _) = expr.args
             result = self(last)

@@ -1,8 +1,8 @@
 """The expression graph: hash-consed nodes with their local identities applied.
 
 A node knows its operator and its operands and nothing of any language.  Negation is kept outside of
-products and sums, so that a value and its negative share one node ("sign twins").  Sums and products
-are n-ary until :mod:`closedform.lower.share` has looked for common parts in them.
+products and sums, so that a value and its negative share one node ("sign twins").  Sums and
+products are n-ary until :mod:`closedform.lower.share` has looked for common parts in them.
 """
 
 from __future__ import annotations

@@ -94,9 +94,7 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
         part = tuple(renamed[position : position + len(result.nodes)])
         lowered_results.append(Result(result.name, result.shape, result.kind, part))
         position += len(result.nodes)
-    angles = tuple(
-        dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op in ("sin", "cos"))
-    )
+    angles = tuple(dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op in ("sin", "cos")))
     used = {str(n.payload) for n in reachable(renamed) if n.op == "input"}
     return Lowered(
         function.name,

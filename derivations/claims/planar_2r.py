@@ -110,13 +110,13 @@ def geometry(d: Derivation, arm: Arm) -> None:
         Identity(position.subs({l2: l1, theta2: pi}), sp.zeros(2, 1)),  # whatever theta1
     )
     claim(
-        "unnumbered, before eq. (3)",
+        "cos θ2, before eq. (3)",
         r"$\cos\theta_2 = \frac{x^2 + y^2 - l_1^2 - l_2^2}{2l_1l_2} = D$",
         Identity((x**2 + y**2 - l1**2 - l2**2) / (2 * l1 * l2), c2),
     )
     D = c2  # as was just proved
     claim(
-        "unnumbered, before eq. (3)",
+        "sin θ2, before eq. (3)",
         r"$\sin\theta_2 = \pm\sqrt{1 - D^2}$",
         Identity(1 - D**2, s2**2),  # of a square both roots are meant
     )
@@ -133,17 +133,17 @@ def geometry(d: Derivation, arm: Arm) -> None:
         ),
     )
     claim(
-        "unnumbered, before eq. (4)",
+        "θ1, before eq. (4)",
         r"$(\beta - \alpha) = \theta_1$",
         Identity([cos(beta - alpha), sin(beta - alpha)], [c1, s1]),
     )
     claim(
-        "unnumbered, before eq. (4)",
+        "tan α, before eq. (4)",
         r"$\tan \alpha = \frac{l_2 \cos \theta_2}{l_2 \cos \theta_2 + l_1}$",
         Identity(l2 * c2 / (l2 * c2 + l1), tan(alpha), corrected=l2 * s2 / (l2 * c2 + l1)),
     )
     claim(
-        "unnumbered, before eq. (4)",
+        "tan β, before eq. (4)",
         r"$\tan \beta = \frac{y}{x}$",
         Identity(y / x, tan(theta1 + alpha)),
     )
@@ -181,7 +181,7 @@ def convention(d: Derivation) -> None:
     x_axis, z_axis, origin = sp.Matrix([1, 0, 0]), sp.Matrix([0, 0, 1]), sp.zeros(3, 1)
 
     claim(
-        "unnumbered, before eq. (6)",
+        "four movements, before eq. (6)",
         r"${}^{i-1}A_i = Rot_{z,\theta_i} Trans_{z,d_i} Trans_{x,a_i} Rot_{x,\alpha_i}$",
         Identity(
             A,
@@ -226,17 +226,26 @@ def convention(d: Derivation) -> None:
             }
         ),
     )
+    point = sp.Matrix(3, 1, lambda i, _: real(f"v{i + 1}"))
+    claim(
+        "homogeneous transformation",
+        "“The combination of the spatial location and orientation of the end – effector (kinematic "
+        "attitudes) can be described mathematically by means of a homogeneous transformation (HT) "
+        "matrix.”",
+        Identity(homogeneous(R, p) * sp.Matrix([*point, 1]), sp.Matrix([*(R * point + p), 1])),
+        where="Abstract",
+    )
     back = homogeneous(turn.T, -turn.T * shift)
     claim(
         "joint variables",
-        "“for prismatic joints d_i is the joint variable and for rotational joints, θ_i is the "
-        "joint variable”",
+        "“It must be observed that for prismatic joints $d_i$ is the joint variable and for "
+        "rotational joints, $\\theta_i$ is the joint variable.”",
         Every(
             {
-                "d_i slides along the joint axis": Identity(
+                "an offset slides along the joint axis": Identity(
                     (A.diff(offset) * back)[:3, :], sp.Matrix.hstack(sp.zeros(3), z_axis)
                 ),
-                "θ_i turns about the joint axis": Identity(
+                "an angle turns about the joint axis": Identity(
                     (A.diff(theta) * back)[:3, :], sp.Matrix.hstack(hat(z_axis), origin)
                 ),
             }
@@ -266,8 +275,8 @@ def forward(d: Derivation, arm: Arm) -> None:
 
     claim(
         "position and orientation",
-        "“0p_n is the end-effector position, while its orientation is given by the rotation matrix "
-        "0R_n”",
+        "“${}^0p_n$ is the end-effector position, while its orientation is given by the rotation "
+        "matrix ${}^0R_n$, which can be used to obtain Euler angles or other representations.”",
         Identity(pose, by_geometry),
     )
     table = ((l1, 0, 0, theta1), (l2, 0, 0, theta2))
@@ -278,7 +287,7 @@ def forward(d: Derivation, arm: Arm) -> None:
         Identity(sp.prod(denavit_hartenberg(*row) for row in table), by_geometry),
     )
     claim(
-        "A_1",
+        "A1, before eq. (8)",
         r"$A_1 = \begin{bmatrix} c_1 & -s_1 & 0 & a_1c_1 \\ s_1 & c_1 & 0 & a_1s_1 \\ "
         r"0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \end{bmatrix}$",
         Identity(
@@ -286,7 +295,7 @@ def forward(d: Derivation, arm: Arm) -> None:
         ),
     )
     claim(
-        "A_2",
+        "A2, before eq. (8)",
         r"$A_2 = \begin{bmatrix} c_2 & -s_2 & 0 & a_2c_2 \\ s_2 & c_2 & 0 & a_2s_2 \\ "
         r"0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \end{bmatrix}$",
         Identity(
@@ -294,12 +303,12 @@ def forward(d: Derivation, arm: Arm) -> None:
         ),
     )
     claim(
-        "unnumbered, before eq. (8)",
+        "product, before eq. (8)",
         r"$T_2^0 = A_1 * A_2$",
         Identity(A1 * A2, by_geometry),
     )
     claim(
-        "eq. (8), with c_12 = cos(θ_1 + θ_2)",
+        "eq. (8), with c12 = cos(θ1 + θ2)",
         r"$T_2^0 = \begin{bmatrix} c_{12} & -s_{12} & 0 & a_1c_1 + a_2c_{12} \\ s_{12} & c_{12} & "
         r"0 & a_1s_1 + a_2s_{12} \\ 0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \end{bmatrix}$",
         Identity(
@@ -315,7 +324,7 @@ def forward(d: Derivation, arm: Arm) -> None:
         ),
     )
     claim(
-        "unnumbered, after eq. (8)",
+        "c12, after eq. (8)",
         r"$c_{12} = c_1 + c_2$",
         Identity(c1 + c2, (A1 * A2)[0, 0], corrected=c12),
     )
@@ -330,14 +339,12 @@ def inverse(d: Derivation, arm: Arm) -> None:
     A1_inverse = sp.Matrix([[c1, s1, 0, -l1], [-s1, c1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
     T = sp.Matrix.vstack(pose[:3, :], sp.Matrix([[0, 0, 1, 0]]))
     claim(
-        "eq. (9), inverse of A_1",
+        "eq. (9), inverse of A1",
         r"$A_1^{-1} = \begin{bmatrix} c_1 & s_1 & 0 & -a_1 \\ -s_1 & c_1 & 0 & 0 \\ 0 & 0 & 1 & 0 "
         r"\\ 0 & 0 & 0 & 1 \end{bmatrix}$",
         Identity(A1_inverse * A1, sp.eye(4)),
     )
-    claim(
-        "unnumbered, before eq. (9)", r"$A_1^{-1} * T_2^0 = A_2$", Identity(A1_inverse * pose, A2)
-    )
+    claim("product, before eq. (9)", r"$A_1^{-1} * T_2^0 = A_2$", Identity(A1_inverse * pose, A2))
     claim(
         "eq. (9), last row of T",
         r"$T_2^0 = \begin{bmatrix} n_x & o_x & a_x & p_x \\ n_y & o_y & a_y & p_y \\ "
@@ -370,7 +377,7 @@ def inverse(d: Derivation, arm: Arm) -> None:
     seen = A1_inverse.subs(theta1, unknown1) * pose - A2.subs(theta2, unknown2)
     claim(
         "use of eq. (10)",
-        "“Eq. (10), can be used to get θ_1 and θ_2”",
+        "“Eq. (10), can be used to get $\\theta_1$ and $\\theta_2$”",
         Count(list(seen[:2, :]), (unknown1, unknown2), 1),
     )
 

@@ -30,6 +30,7 @@ CF_INLINE void planar_2r_fk_kernel(const planar_2r_params *params, const real_t 
     x[1] = l1 * s1 + l2 * (s1 * c2 + c1 * s2);
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_fk(const planar_2r_params *params, const real_t q[2],
     real_t x[2])
 {
@@ -39,25 +40,25 @@ void planar_2r_fk(const planar_2r_params *params, const real_t q[2],
     planar_2r_fk_kernel(params, sines, cosines, x);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_fk_batch(size_t n, const planar_2r_params *params, const
     real_t *q, size_t q_stride, real_t *x, size_t
     x_stride)
 {
+    const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + start, sines[0], cosines[0]);
         cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
-        real_t *CF_RESTRICT const x_0 = x + start;
-        real_t *CF_RESTRICT const x_1 = x + x_stride + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t x_i[2];
-            planar_2r_fk_kernel(params, sines_i, cosines_i, x_i);
-            x_0[i] = x_i[0];
-            x_1[i] = x_i[1];
+            planar_2r_fk_kernel(&local, sines_i, cosines_i, x_i);
+            x[start + i] = x_i[0];
+            x[x_stride + start + i] = x_i[1];
         }
     }
 }
@@ -91,6 +92,7 @@ CF_INLINE void planar_2r_pose_kernel(const planar_2r_params *params, const real_
     T[15] = CLOSEDFORM_C(1.0);
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_pose(const planar_2r_params *params, const real_t q[2],
     real_t T[16])
 {
@@ -100,53 +102,39 @@ void planar_2r_pose(const planar_2r_params *params, const real_t q[2],
     planar_2r_pose_kernel(params, sines, cosines, T);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_pose_batch(size_t n, const planar_2r_params *params, const
     real_t *q, size_t q_stride, real_t *T, size_t
     T_stride)
 {
+    const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + start, sines[0], cosines[0]);
         cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
-        real_t *CF_RESTRICT const T_0 = T + start;
-        real_t *CF_RESTRICT const T_1 = T + T_stride + start;
-        real_t *CF_RESTRICT const T_2 = T + 2 * T_stride + start;
-        real_t *CF_RESTRICT const T_3 = T + 3 * T_stride + start;
-        real_t *CF_RESTRICT const T_4 = T + 4 * T_stride + start;
-        real_t *CF_RESTRICT const T_5 = T + 5 * T_stride + start;
-        real_t *CF_RESTRICT const T_6 = T + 6 * T_stride + start;
-        real_t *CF_RESTRICT const T_7 = T + 7 * T_stride + start;
-        real_t *CF_RESTRICT const T_8 = T + 8 * T_stride + start;
-        real_t *CF_RESTRICT const T_9 = T + 9 * T_stride + start;
-        real_t *CF_RESTRICT const T_10 = T + 10 * T_stride + start;
-        real_t *CF_RESTRICT const T_11 = T + 11 * T_stride + start;
-        real_t *CF_RESTRICT const T_12 = T + 12 * T_stride + start;
-        real_t *CF_RESTRICT const T_13 = T + 13 * T_stride + start;
-        real_t *CF_RESTRICT const T_14 = T + 14 * T_stride + start;
-        real_t *CF_RESTRICT const T_15 = T + 15 * T_stride + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t T_i[16];
-            planar_2r_pose_kernel(params, sines_i, cosines_i, T_i);
-            T_0[i] = T_i[0];
-            T_1[i] = T_i[1];
-            T_2[i] = T_i[2];
-            T_3[i] = T_i[3];
-            T_4[i] = T_i[4];
-            T_5[i] = T_i[5];
-            T_6[i] = T_i[6];
-            T_7[i] = T_i[7];
-            T_8[i] = T_i[8];
-            T_9[i] = T_i[9];
-            T_10[i] = T_i[10];
-            T_11[i] = T_i[11];
-            T_12[i] = T_i[12];
-            T_13[i] = T_i[13];
-            T_14[i] = T_i[14];
-            T_15[i] = T_i[15];
+            planar_2r_pose_kernel(&local, sines_i, cosines_i, T_i);
+            T[start + i] = T_i[0];
+            T[T_stride + start + i] = T_i[1];
+            T[2 * T_stride + start + i] = T_i[2];
+            T[3 * T_stride + start + i] = T_i[3];
+            T[4 * T_stride + start + i] = T_i[4];
+            T[5 * T_stride + start + i] = T_i[5];
+            T[6 * T_stride + start + i] = T_i[6];
+            T[7 * T_stride + start + i] = T_i[7];
+            T[8 * T_stride + start + i] = T_i[8];
+            T[9 * T_stride + start + i] = T_i[9];
+            T[10 * T_stride + start + i] = T_i[10];
+            T[11 * T_stride + start + i] = T_i[11];
+            T[12 * T_stride + start + i] = T_i[12];
+            T[13 * T_stride + start + i] = T_i[13];
+            T[14 * T_stride + start + i] = T_i[14];
+            T[15 * T_stride + start + i] = T_i[15];
         }
     }
 }
@@ -165,7 +153,7 @@ void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
     planar_2r_orientation_kernel(q, phi);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_orientation_batch(size_t n, const planar_2r_params *params, const
     real_t *q, size_t q_stride, real_t *phi, size_t
     phi_stride)
@@ -174,12 +162,12 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params, const
     (void)phi_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t *CF_RESTRICT const phi_0 = phi + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
             real_t phi_i[1];
             planar_2r_orientation_kernel(q_i, phi_i);
-            phi_0[i] = phi_i[0];
+            phi[start + i] = phi_i[0];
         }
     }
 }
@@ -203,6 +191,7 @@ CF_INLINE void planar_2r_jacobian_kernel(const planar_2r_params *params, const r
     J[5] = CLOSEDFORM_C(1.0);
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_jacobian(const planar_2r_params *params, const real_t q[2],
     real_t J[6])
 {
@@ -212,33 +201,29 @@ void planar_2r_jacobian(const planar_2r_params *params, const real_t q[2],
     planar_2r_jacobian_kernel(params, sines, cosines, J);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_jacobian_batch(size_t n, const planar_2r_params *params, const
     real_t *q, size_t q_stride, real_t *J, size_t
     J_stride)
 {
+    const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + start, sines[0], cosines[0]);
         cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
-        real_t *CF_RESTRICT const J_0 = J + start;
-        real_t *CF_RESTRICT const J_1 = J + J_stride + start;
-        real_t *CF_RESTRICT const J_2 = J + 2 * J_stride + start;
-        real_t *CF_RESTRICT const J_3 = J + 3 * J_stride + start;
-        real_t *CF_RESTRICT const J_4 = J + 4 * J_stride + start;
-        real_t *CF_RESTRICT const J_5 = J + 5 * J_stride + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t J_i[6];
-            planar_2r_jacobian_kernel(params, sines_i, cosines_i, J_i);
-            J_0[i] = J_i[0];
-            J_1[i] = J_i[1];
-            J_2[i] = J_i[2];
-            J_3[i] = J_i[3];
-            J_4[i] = J_i[4];
-            J_5[i] = J_i[5];
+            planar_2r_jacobian_kernel(&local, sines_i, cosines_i, J_i);
+            J[start + i] = J_i[0];
+            J[J_stride + start + i] = J_i[1];
+            J[2 * J_stride + start + i] = J_i[2];
+            J[3 * J_stride + start + i] = J_i[3];
+            J[4 * J_stride + start + i] = J_i[4];
+            J[5 * J_stride + start + i] = J_i[5];
         }
     }
 }
@@ -252,6 +237,7 @@ CF_INLINE void planar_2r_determinant_kernel(const planar_2r_params *params, cons
     det[0] = l1 * l2 * s2;
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
     real_t det[1])
 {
@@ -261,22 +247,23 @@ void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
     planar_2r_determinant_kernel(params, sines, det);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_determinant_batch(size_t n, const planar_2r_params *params, const
     real_t *q, size_t q_stride, real_t *det, size_t
     det_stride)
 {
     (void)det_stride;
+    const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        real_t *CF_RESTRICT const det_0 = det + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t det_i[1];
-            planar_2r_determinant_kernel(params, sines_i, det_i);
-            det_0[i] = det_i[0];
+            planar_2r_determinant_kernel(&local, sines_i, det_i);
+            det[start + i] = det_i[0];
         }
     }
 }
@@ -290,6 +277,7 @@ CF_INLINE void planar_2r_manipulability_kernel(const planar_2r_params *params, c
     w[0] = l1 * l2 * cf_abs(s2);
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
     real_t w[1])
 {
@@ -299,22 +287,23 @@ void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
     planar_2r_manipulability_kernel(params, sines, w);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params, const
     real_t *q, size_t q_stride, real_t *w, size_t
     w_stride)
 {
     (void)w_stride;
+    const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        real_t *CF_RESTRICT const w_0 = w + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t w_i[1];
-            planar_2r_manipulability_kernel(params, sines_i, w_i);
-            w_0[i] = w_i[0];
+            planar_2r_manipulability_kernel(&local, sines_i, w_i);
+            w[start + i] = w_i[0];
         }
     }
 }
@@ -325,6 +314,7 @@ CF_INLINE void planar_2r_singularities_kernel(const real_t *sines, real_t factor
     factors[0] = s2;
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_singularities(const planar_2r_params *params, const real_t q[2],
     real_t factors[1])
 {
@@ -335,7 +325,7 @@ void planar_2r_singularities(const planar_2r_params *params, const real_t q[2],
     planar_2r_singularities_kernel(sines, factors);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_singularities_batch(size_t n, const planar_2r_params *params, const
     real_t *q, size_t q_stride, real_t *factors, size_t
     factors_stride)
@@ -346,12 +336,12 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params, con
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        real_t *CF_RESTRICT const factors_0 = factors + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t factors_i[1];
             planar_2r_singularities_kernel(sines_i, factors_i);
-            factors_0[i] = factors_i[0];
+            factors[start + i] = factors_i[0];
         }
     }
 }
@@ -406,35 +396,34 @@ void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
         status[i] = (uint8_t)status_real[i];
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_ik_batch(size_t n, const planar_2r_params *params, const
     real_t *x, size_t x_stride, real_t *q, size_t
     q_stride, uint8_t *status, size_t status_stride)
 {
+    const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t *CF_RESTRICT const q_0 = q + start;
-        real_t *CF_RESTRICT const q_1 = q + q_stride + start;
-        real_t *CF_RESTRICT const q_2 = q + 2 * q_stride + start;
-        real_t *CF_RESTRICT const q_3 = q + 3 * q_stride + start;
-        real_t status_0[CLOSEDFORM_BLOCK];
-        real_t status_1[CLOSEDFORM_BLOCK];
+        real_t status_real[2][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t x_i[2] = { x[start + i], x[x_stride + start + i] };
             real_t q_i[4];
             real_t status_i[2];
-            planar_2r_ik_kernel(params, x_i, q_i, status_i);
-            q_0[i] = q_i[0];
-            q_1[i] = q_i[1];
-            q_2[i] = q_i[2];
-            q_3[i] = q_i[3];
-            status_0[i] = status_i[0];
-            status_1[i] = status_i[1];
+            planar_2r_ik_kernel(&local, x_i, q_i, status_i);
+            q[start + i] = q_i[0];
+            q[q_stride + start + i] = q_i[1];
+            q[2 * q_stride + start + i] = q_i[2];
+            q[3 * q_stride + start + i] = q_i[3];
+            status_real[0][i] = status_i[0];
+            status_real[1][i] = status_i[1];
         }
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i)
-            status[start + i] = (uint8_t)status_0[i];
+            status[start + i] = (uint8_t)status_real[0][i];
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i)
-            status[status_stride + start + i] = (uint8_t)status_1[i];
+            status[status_stride + start + i] = (uint8_t)status_real[1][i];
     }
 }
 
@@ -512,28 +501,29 @@ void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
         status[i] = (uint8_t)status_real[i];
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params, const
     real_t *T, size_t T_stride, real_t *q, size_t
     q_stride, uint8_t *status, size_t status_stride)
 {
     (void)status_stride;
+    const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t *CF_RESTRICT const q_0 = q + start;
-        real_t *CF_RESTRICT const q_1 = q + q_stride + start;
-        real_t status_0[CLOSEDFORM_BLOCK];
+        real_t status_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t T_i[16] = { T[start + i], T[T_stride + start + i], T[2 * T_stride + start + i], T[3 * T_stride + start + i], T[4 * T_stride + start + i], T[5 * T_stride + start + i], T[6 * T_stride + start + i], T[7 * T_stride + start + i], T[8 * T_stride + start + i], T[9 * T_stride + start + i], T[10 * T_stride + start + i], T[11 * T_stride + start + i], T[12 * T_stride + start + i], T[13 * T_stride + start + i], T[14 * T_stride + start + i], T[15 * T_stride + start + i] };
             real_t q_i[2];
             real_t status_i[1];
-            planar_2r_ik_pose_kernel(params, T_i, q_i, status_i);
-            q_0[i] = q_i[0];
-            q_1[i] = q_i[1];
-            status_0[i] = status_i[0];
+            planar_2r_ik_pose_kernel(&local, T_i, q_i, status_i);
+            q[start + i] = q_i[0];
+            q[q_stride + start + i] = q_i[1];
+            status_real[0][i] = status_i[0];
         }
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i)
-            status[start + i] = (uint8_t)status_0[i];
+            status[start + i] = (uint8_t)status_real[0][i];
     }
 }
 
@@ -550,19 +540,19 @@ void planar_2r_workspace_radii(const planar_2r_params *params, real_t radii[2])
     planar_2r_workspace_radii_kernel(params, radii);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void planar_2r_workspace_radii_batch(size_t n, const planar_2r_params *params, real_t
     *radii, size_t radii_stride)
 {
+    const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t *CF_RESTRICT const radii_0 = radii + start;
-        real_t *CF_RESTRICT const radii_1 = radii + radii_stride + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             real_t radii_i[2];
-            planar_2r_workspace_radii_kernel(params, radii_i);
-            radii_0[i] = radii_i[0];
-            radii_1[i] = radii_i[1];
+            planar_2r_workspace_radii_kernel(&local, radii_i);
+            radii[start + i] = radii_i[0];
+            radii[radii_stride + start + i] = radii_i[1];
         }
     }
 }

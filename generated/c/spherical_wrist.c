@@ -38,6 +38,7 @@ CF_INLINE void spherical_wrist_fk_kernel(const real_t *sines, const real_t *cosi
     R[8] = c5;
 }
 
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_fk(const spherical_wrist_params *params, const real_t
     q[3], real_t R[9])
 {
@@ -48,7 +49,7 @@ void spherical_wrist_fk(const spherical_wrist_params *params, const real_t
     spherical_wrist_fk_kernel(sines, cosines, R);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_fk_batch(size_t n, const spherical_wrist_params *params,
     const real_t *q, size_t q_stride, real_t *R, size_t
     R_stride)
@@ -60,29 +61,21 @@ void spherical_wrist_fk_batch(size_t n, const spherical_wrist_params *params,
         cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
         cf_sincos_block(m, q + start, sines[1], cosines[1]);
         cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
-        real_t *CF_RESTRICT const R_0 = R + start;
-        real_t *CF_RESTRICT const R_1 = R + R_stride + start;
-        real_t *CF_RESTRICT const R_2 = R + 2 * R_stride + start;
-        real_t *CF_RESTRICT const R_3 = R + 3 * R_stride + start;
-        real_t *CF_RESTRICT const R_4 = R + 4 * R_stride + start;
-        real_t *CF_RESTRICT const R_5 = R + 5 * R_stride + start;
-        real_t *CF_RESTRICT const R_6 = R + 6 * R_stride + start;
-        real_t *CF_RESTRICT const R_7 = R + 7 * R_stride + start;
-        real_t *CF_RESTRICT const R_8 = R + 8 * R_stride + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t R_i[9];
             spherical_wrist_fk_kernel(sines_i, cosines_i, R_i);
-            R_0[i] = R_i[0];
-            R_1[i] = R_i[1];
-            R_2[i] = R_i[2];
-            R_3[i] = R_i[3];
-            R_4[i] = R_i[4];
-            R_5[i] = R_i[5];
-            R_6[i] = R_i[6];
-            R_7[i] = R_i[7];
-            R_8[i] = R_i[8];
+            R[start + i] = R_i[0];
+            R[R_stride + start + i] = R_i[1];
+            R[2 * R_stride + start + i] = R_i[2];
+            R[3 * R_stride + start + i] = R_i[3];
+            R[4 * R_stride + start + i] = R_i[4];
+            R[5 * R_stride + start + i] = R_i[5];
+            R[6 * R_stride + start + i] = R_i[6];
+            R[7 * R_stride + start + i] = R_i[7];
+            R[8 * R_stride + start + i] = R_i[8];
         }
     }
 }
@@ -120,6 +113,7 @@ CF_INLINE void spherical_wrist_pose_kernel(const spherical_wrist_params *params,
     T[15] = CLOSEDFORM_C(1.0);
 }
 
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_pose(const spherical_wrist_params *params, const real_t
     q[3], real_t T[16])
 {
@@ -129,54 +123,40 @@ void spherical_wrist_pose(const spherical_wrist_params *params, const real_t
     spherical_wrist_pose_kernel(params, sines, cosines, T);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
     const real_t *q, size_t q_stride, real_t *T, size_t
     T_stride)
 {
+    const spherical_wrist_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
         cf_sincos_block(m, q + start, sines[1], cosines[1]);
         cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
-        real_t *CF_RESTRICT const T_0 = T + start;
-        real_t *CF_RESTRICT const T_1 = T + T_stride + start;
-        real_t *CF_RESTRICT const T_2 = T + 2 * T_stride + start;
-        real_t *CF_RESTRICT const T_3 = T + 3 * T_stride + start;
-        real_t *CF_RESTRICT const T_4 = T + 4 * T_stride + start;
-        real_t *CF_RESTRICT const T_5 = T + 5 * T_stride + start;
-        real_t *CF_RESTRICT const T_6 = T + 6 * T_stride + start;
-        real_t *CF_RESTRICT const T_7 = T + 7 * T_stride + start;
-        real_t *CF_RESTRICT const T_8 = T + 8 * T_stride + start;
-        real_t *CF_RESTRICT const T_9 = T + 9 * T_stride + start;
-        real_t *CF_RESTRICT const T_10 = T + 10 * T_stride + start;
-        real_t *CF_RESTRICT const T_11 = T + 11 * T_stride + start;
-        real_t *CF_RESTRICT const T_12 = T + 12 * T_stride + start;
-        real_t *CF_RESTRICT const T_13 = T + 13 * T_stride + start;
-        real_t *CF_RESTRICT const T_14 = T + 14 * T_stride + start;
-        real_t *CF_RESTRICT const T_15 = T + 15 * T_stride + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t T_i[16];
-            spherical_wrist_pose_kernel(params, sines_i, cosines_i, T_i);
-            T_0[i] = T_i[0];
-            T_1[i] = T_i[1];
-            T_2[i] = T_i[2];
-            T_3[i] = T_i[3];
-            T_4[i] = T_i[4];
-            T_5[i] = T_i[5];
-            T_6[i] = T_i[6];
-            T_7[i] = T_i[7];
-            T_8[i] = T_i[8];
-            T_9[i] = T_i[9];
-            T_10[i] = T_i[10];
-            T_11[i] = T_i[11];
-            T_12[i] = T_i[12];
-            T_13[i] = T_i[13];
-            T_14[i] = T_i[14];
-            T_15[i] = T_i[15];
+            spherical_wrist_pose_kernel(&local, sines_i, cosines_i, T_i);
+            T[start + i] = T_i[0];
+            T[T_stride + start + i] = T_i[1];
+            T[2 * T_stride + start + i] = T_i[2];
+            T[3 * T_stride + start + i] = T_i[3];
+            T[4 * T_stride + start + i] = T_i[4];
+            T[5 * T_stride + start + i] = T_i[5];
+            T[6 * T_stride + start + i] = T_i[6];
+            T[7 * T_stride + start + i] = T_i[7];
+            T[8 * T_stride + start + i] = T_i[8];
+            T[9 * T_stride + start + i] = T_i[9];
+            T[10 * T_stride + start + i] = T_i[10];
+            T[11 * T_stride + start + i] = T_i[11];
+            T[12 * T_stride + start + i] = T_i[12];
+            T[13 * T_stride + start + i] = T_i[13];
+            T[14 * T_stride + start + i] = T_i[14];
+            T[15 * T_stride + start + i] = T_i[15];
         }
     }
 }
@@ -199,6 +179,7 @@ CF_INLINE void spherical_wrist_jacobian_space_kernel(const real_t *sines, const 
     J[8] = c5;
 }
 
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_jacobian_space(const spherical_wrist_params *params, const real_t
     q[3], real_t J[9])
 {
@@ -209,7 +190,7 @@ void spherical_wrist_jacobian_space(const spherical_wrist_params *params, const 
     spherical_wrist_jacobian_space_kernel(sines, cosines, J);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_jacobian_space_batch(size_t n, const spherical_wrist_params *params,
     const real_t *q, size_t q_stride, real_t *J, size_t
     J_stride)
@@ -220,29 +201,21 @@ void spherical_wrist_jacobian_space_batch(size_t n, const spherical_wrist_params
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + start, sines[0], cosines[0]);
         cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
-        real_t *CF_RESTRICT const J_0 = J + start;
-        real_t *CF_RESTRICT const J_1 = J + J_stride + start;
-        real_t *CF_RESTRICT const J_2 = J + 2 * J_stride + start;
-        real_t *CF_RESTRICT const J_3 = J + 3 * J_stride + start;
-        real_t *CF_RESTRICT const J_4 = J + 4 * J_stride + start;
-        real_t *CF_RESTRICT const J_5 = J + 5 * J_stride + start;
-        real_t *CF_RESTRICT const J_6 = J + 6 * J_stride + start;
-        real_t *CF_RESTRICT const J_7 = J + 7 * J_stride + start;
-        real_t *CF_RESTRICT const J_8 = J + 8 * J_stride + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t J_i[9];
             spherical_wrist_jacobian_space_kernel(sines_i, cosines_i, J_i);
-            J_0[i] = J_i[0];
-            J_1[i] = J_i[1];
-            J_2[i] = J_i[2];
-            J_3[i] = J_i[3];
-            J_4[i] = J_i[4];
-            J_5[i] = J_i[5];
-            J_6[i] = J_i[6];
-            J_7[i] = J_i[7];
-            J_8[i] = J_i[8];
+            J[start + i] = J_i[0];
+            J[J_stride + start + i] = J_i[1];
+            J[2 * J_stride + start + i] = J_i[2];
+            J[3 * J_stride + start + i] = J_i[3];
+            J[4 * J_stride + start + i] = J_i[4];
+            J[5 * J_stride + start + i] = J_i[5];
+            J[6 * J_stride + start + i] = J_i[6];
+            J[7 * J_stride + start + i] = J_i[7];
+            J[8 * J_stride + start + i] = J_i[8];
         }
     }
 }
@@ -265,6 +238,7 @@ CF_INLINE void spherical_wrist_jacobian_body_kernel(const real_t *sines, const r
     J[8] = CLOSEDFORM_C(1.0);
 }
 
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_jacobian_body(const spherical_wrist_params *params, const real_t
     q[3], real_t J[9])
 {
@@ -275,7 +249,7 @@ void spherical_wrist_jacobian_body(const spherical_wrist_params *params, const r
     spherical_wrist_jacobian_body_kernel(sines, cosines, J);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_jacobian_body_batch(size_t n, const spherical_wrist_params *params,
     const real_t *q, size_t q_stride, real_t *J, size_t
     J_stride)
@@ -286,29 +260,21 @@ void spherical_wrist_jacobian_body_batch(size_t n, const spherical_wrist_params 
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
         cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
-        real_t *CF_RESTRICT const J_0 = J + start;
-        real_t *CF_RESTRICT const J_1 = J + J_stride + start;
-        real_t *CF_RESTRICT const J_2 = J + 2 * J_stride + start;
-        real_t *CF_RESTRICT const J_3 = J + 3 * J_stride + start;
-        real_t *CF_RESTRICT const J_4 = J + 4 * J_stride + start;
-        real_t *CF_RESTRICT const J_5 = J + 5 * J_stride + start;
-        real_t *CF_RESTRICT const J_6 = J + 6 * J_stride + start;
-        real_t *CF_RESTRICT const J_7 = J + 7 * J_stride + start;
-        real_t *CF_RESTRICT const J_8 = J + 8 * J_stride + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t J_i[9];
             spherical_wrist_jacobian_body_kernel(sines_i, cosines_i, J_i);
-            J_0[i] = J_i[0];
-            J_1[i] = J_i[1];
-            J_2[i] = J_i[2];
-            J_3[i] = J_i[3];
-            J_4[i] = J_i[4];
-            J_5[i] = J_i[5];
-            J_6[i] = J_i[6];
-            J_7[i] = J_i[7];
-            J_8[i] = J_i[8];
+            J[start + i] = J_i[0];
+            J[J_stride + start + i] = J_i[1];
+            J[2 * J_stride + start + i] = J_i[2];
+            J[3 * J_stride + start + i] = J_i[3];
+            J[4 * J_stride + start + i] = J_i[4];
+            J[5 * J_stride + start + i] = J_i[5];
+            J[6 * J_stride + start + i] = J_i[6];
+            J[7 * J_stride + start + i] = J_i[7];
+            J[8 * J_stride + start + i] = J_i[8];
         }
     }
 }
@@ -319,6 +285,7 @@ CF_INLINE void spherical_wrist_determinant_kernel(const real_t *sines, real_t de
     det[0] = -s5;
 }
 
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_determinant(const spherical_wrist_params *params, const real_t
     q[3], real_t det[1])
 {
@@ -329,7 +296,7 @@ void spherical_wrist_determinant(const spherical_wrist_params *params, const rea
     spherical_wrist_determinant_kernel(sines, det);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_determinant_batch(size_t n, const spherical_wrist_params *params,
     const real_t *q, size_t q_stride, real_t *det,
     size_t det_stride)
@@ -340,12 +307,12 @@ void spherical_wrist_determinant_batch(size_t n, const spherical_wrist_params *p
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        real_t *CF_RESTRICT const det_0 = det + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t det_i[1];
             spherical_wrist_determinant_kernel(sines_i, det_i);
-            det_0[i] = det_i[0];
+            det[start + i] = det_i[0];
         }
     }
 }
@@ -356,6 +323,7 @@ CF_INLINE void spherical_wrist_singularities_kernel(const real_t *sines, real_t 
     factors[0] = s5;
 }
 
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_singularities(const spherical_wrist_params *params, const real_t
     q[3], real_t factors[1])
 {
@@ -366,7 +334,7 @@ void spherical_wrist_singularities(const spherical_wrist_params *params, const r
     spherical_wrist_singularities_kernel(sines, factors);
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params *params,
     const real_t *q, size_t q_stride, real_t *factors,
     size_t factors_stride)
@@ -377,12 +345,12 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
         cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        real_t *CF_RESTRICT const factors_0 = factors + start;
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t factors_i[1];
             spherical_wrist_singularities_kernel(sines_i, factors_i);
-            factors_0[i] = factors_i[0];
+            factors[start + i] = factors_i[0];
         }
     }
 }
@@ -446,7 +414,7 @@ void spherical_wrist_ik(const spherical_wrist_params *params, const real_t
         status[i] = (uint8_t)status_real[i];
 }
 
-CLOSEDFORM_BATCH
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
     const real_t *R, size_t R_stride, real_t *q, size_t
     q_stride, uint8_t *status, size_t status_stride)
@@ -454,31 +422,27 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t *CF_RESTRICT const q_0 = q + start;
-        real_t *CF_RESTRICT const q_1 = q + q_stride + start;
-        real_t *CF_RESTRICT const q_2 = q + 2 * q_stride + start;
-        real_t *CF_RESTRICT const q_3 = q + 3 * q_stride + start;
-        real_t *CF_RESTRICT const q_4 = q + 4 * q_stride + start;
-        real_t *CF_RESTRICT const q_5 = q + 5 * q_stride + start;
-        real_t status_0[CLOSEDFORM_BLOCK];
-        real_t status_1[CLOSEDFORM_BLOCK];
+        real_t status_real[2][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
             const real_t R_i[9] = { R[start + i], R[R_stride + start + i], R[2 * R_stride + start + i], R[3 * R_stride + start + i], R[4 * R_stride + start + i], R[5 * R_stride + start + i], R[6 * R_stride + start + i], R[7 * R_stride + start + i], R[8 * R_stride + start + i] };
             real_t q_i[6];
             real_t status_i[2];
             spherical_wrist_ik_kernel(R_i, q_i, status_i);
-            q_0[i] = q_i[0];
-            q_1[i] = q_i[1];
-            q_2[i] = q_i[2];
-            q_3[i] = q_i[3];
-            q_4[i] = q_i[4];
-            q_5[i] = q_i[5];
-            status_0[i] = status_i[0];
-            status_1[i] = status_i[1];
+            q[start + i] = q_i[0];
+            q[q_stride + start + i] = q_i[1];
+            q[2 * q_stride + start + i] = q_i[2];
+            q[3 * q_stride + start + i] = q_i[3];
+            q[4 * q_stride + start + i] = q_i[4];
+            q[5 * q_stride + start + i] = q_i[5];
+            status_real[0][i] = status_i[0];
+            status_real[1][i] = status_i[1];
         }
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i)
-            status[start + i] = (uint8_t)status_0[i];
+            status[start + i] = (uint8_t)status_real[0][i];
+        CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i)
-            status[status_stride + start + i] = (uint8_t)status_1[i];
+            status[status_stride + start + i] = (uint8_t)status_real[1][i];
     }
 }

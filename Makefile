@@ -1,0 +1,89 @@
+# make help lists the targets. With -j N, N robots are proved at a time.
+
+PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+BIN := .venv/bin
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+DERIVING := $(shell find closedform derivations templates -name '*.py' -o -name '*.jinja')
+PRINTED := $(shell find generated -name '*.py' -o -name '*.c' -o -name '*.h' -o -name '*.tex')
+C_SOURCES := $(wildcard generated/c/*.[ch] closedform/extension/*.[ch])
+PORTABLE := $(filter-out generated/c/extension.c,$(wildcard generated/c/*.c))
+PDFS := $(patsubst generated/latex/%.tex,build/pdf/%.pdf,$(wildcard generated/latex/*.tex))
+WARNINGS := -std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
+
+.PHONY: all test check lint types regenerated warnings format pdf bench clean distclean help
+.DELETE_ON_ERROR:
+
+all: build/native.stamp  ## derive, prove, generate and build; one line a robot (the default)
+	@cat build/derived.txt
+
+.venv/installed.stamp: pyproject.toml setup.py
+	@test -n "$(PYTHON)" || { echo "closedform needs Python 3.11 or later: make PYTHON=..."; exit 1; }
+	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --editable '.[dev]'
+	@touch $@
+
+# The list of what was proved. Files in generated/ are written only where they change.
+build/derived.txt: .venv/installed.stamp $(DERIVING) $(PRINTED)
+	@mkdir -p build
+	@$(BIN)/closedform derive > $@.new
+	@mv $@.new $@
+
+build/native.stamp: build/derived.txt $(C_SOURCES) setup.py
+	@$(BIN)/python setup.py --quiet build_ext --inplace
+	@touch $@
+
+test: all  ## run the tests; ARGS="-k name" selects
+	$(BIN)/python -m pytest $(ARGS)
+
+check: lint types regenerated warnings  ## lint, types, warnings of C; generated/ is what is printed
+
+lint: .venv/installed.stamp
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: .venv/installed.stamp
+	$(BIN)/mypy
+
+regenerated: all
+	$(BIN)/closedform check
+
+warnings: $(foreach cc,gcc clang,$(foreach type,double float,warnings-$(cc)-$(type)))
+
+# Optimised, because without it a compiler does not see every use of an unset variable.
+warnings-gcc-float warnings-clang-float: FLOAT := -DCLOSEDFORM_FLOAT
+warnings-gcc-% warnings-clang-%: build/derived.txt
+	@command -v $(word 2,$(subst -, ,$@)) >/dev/null || { echo "$@: no such compiler, skipped"; exit 0; }; \
+	set -e; for source in $(PORTABLE); do \
+		$(word 2,$(subst -, ,$@)) $(WARNINGS) $(FLOAT) -O1 -c -o /dev/null $$source; done; \
+	echo "$@: clean"
+
+format: .venv/installed.stamp  ## lay out the Python that is written by hand
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+pdf: $(PDFS)  ## the derivations as PDF, in build/pdf
+
+build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
+	@command -v pdflatex >/dev/null || { \
+		echo "make pdf needs pdflatex; on Debian: apt install texlive-latex-recommended"; exit 1; }
+	@mkdir -p $(@D)
+	@for pass in 1 2; do pdflatex -interaction=nonstopmode -halt-on-error -output-directory=$(@D) $< \
+		> $(@D)/$*.out || { tail -n 30 $(@D)/$*.out; exit 1; }; done
+	@echo $@
+
+bench: all  ## time the generated code; the numbers also go to build/benchmarks.json
+	$(BIN)/python -m pytest benchmarks --benchmark-json=build/benchmarks.json $(ARGS)
+
+clean:  ## remove what was built, but neither .venv nor generated sources
+	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .benchmarks .hypothesis
+	rm -f generated/c/_native*.so
+	find closedform derivations generated templates tests -name __pycache__ -exec rm -rf {} +
+
+distclean: clean  ## and .venv
+	rm -rf .venv
+
+help:  ## this list
+	@sed -n 's/^\([a-z]*\):.*  ## \(.*\)/\1|\2/p' Makefile | while IFS='|' read -r name what; do \
+		printf '%-10s %s\n' "$$name" "$$what"; done

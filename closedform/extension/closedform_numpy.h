@@ -1,0 +1,68 @@
+/* Python and NumPy as the Python-facing files of the runtime see them, and what they share. */
+#ifndef CLOSEDFORM_NUMPY_H
+#define CLOSEDFORM_NUMPY_H
+
+#ifndef PY_SSIZE_T_CLEAN
+#define PY_SSIZE_T_CLEAN
+#endif
+#include <Python.h>
+
+#ifndef NPY_NO_DEPRECATED_API
+#define NPY_NO_DEPRECATED_API NPY_1_7_API_VERSION
+#endif
+#define PY_ARRAY_UNIQUE_SYMBOL closedform_array_api
+#include <numpy/arrayobject.h>
+
+#include "closedform_module.h"
+
+/* A call with its arguments told apart; references are borrowed from the caller's frame. */
+typedef struct {
+    const cf_function *function;
+    PyTypeObject *results;   /* the class of several outputs: tuple or a NamedTuple */
+    PyObject *in[CF_MAX_IN];
+    PyObject *params;        /* NULL: the defaults */
+    PyObject *out;           /* NULL: allocate */
+} cf_call;
+
+/* Answers a call for one posture in plain form, with *result NULL if there is an exception.
+ * Returns 0 if the call is not of that form; nothing has been written then. */
+CF_INTERNAL int cf_call_single(const cf_call *call, PyObject **result);
+
+/* A call of any shape: converts, broadcasts, allocates and sweeps. */
+CF_INTERNAL PyObject *cf_call_any(const cf_call *call);
+
+/* What the caller gets for `items`, one for each output; steals them, also on failure. */
+CF_INTERNAL PyObject *cf_result(const cf_call *call, PyObject **items);
+
+/* A new array for one output; `n_axes` and `length` count all axes, the core included. */
+CF_INTERNAL PyArrayObject *cf_new_output(const cf_array *spec, int n_axes, const npy_intp *length);
+
+static inline int
+cf_type_number(cf_kind kind)
+{
+    return kind == CF_REAL ? NPY_DOUBLE : kind == CF_STATUS ? NPY_UBYTE : NPY_BOOL;
+}
+
+/* Whether the elements of `array` are of that kind, in native byte order. */
+static inline int
+cf_has_kind(PyArrayObject *array, cf_kind kind)
+{
+    return PyArray_TYPE(array) == cf_type_number(kind) && PyArray_ISNOTSWAPPED(array);
+}
+
+/* A Python number that needs no array to become a double: 1 yes, 0 no, -1 with an exception. */
+static inline int
+cf_number(PyObject *object, double *value)
+{
+    if (PyFloat_Check(object)) {
+        *value = PyFloat_AS_DOUBLE(object);
+        return 1;
+    }
+    if (PyLong_CheckExact(object)) {
+        *value = PyLong_AsDouble(object);
+        return *value == -1.0 && PyErr_Occurred() ? -1 : 1;
+    }
+    return 0;
+}
+
+#endif

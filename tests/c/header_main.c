@@ -1,0 +1,45 @@
+/* Every helper on every pair of awkward values, to be run under the address and undefined-behaviour
+ * sanitizers. Prints the number of calls. */
+#include <stdio.h>
+
+#include "closedform.h"
+
+int main(void)
+{
+    const real_t values[] = {0,
+                             1,
+                             2,
+                             CF_PI,
+                             2 * CF_PI,
+                             CF_TRIG_LIMIT,
+                             2 * CF_TRIG_LIMIT,
+                             CLOSEDFORM_C(1e9),
+                             CLOSEDFORM_C(1e30),
+                             CF_REAL_MAX,
+                             CF_REAL_MAX * CLOSEDFORM_C(1e-76),
+                             1 / CF_REAL_MAX,
+                             2 * CF_REAL_MAX,
+                             CLOSEDFORM_NAN};
+    enum { COUNT = sizeof values / sizeof values[0] };
+    real_t signed_values[2 * COUNT], s[2 * COUNT], c[2 * COUNT];
+    volatile real_t sink = 0;
+    int calls = 0;
+
+    for (size_t i = 0; i < COUNT; ++i) {
+        signed_values[2 * i] = values[i];
+        signed_values[2 * i + 1] = -values[i];
+    }
+    for (size_t n = 0; n <= 2 * COUNT; ++n) cf_sincos_block(n, signed_values, s, c);
+    for (size_t i = 0; i + 8 <= 2 * COUNT; ++i) cf_sincos8(signed_values + i, s + i, c + i);
+    for (size_t i = 0; i < 2 * COUNT; ++i) {
+        const real_t a = signed_values[i];
+        cf_sincos(a, &s[i], &c[i]);
+        sink = sink + cf_sqrt(a) + cf_wrap(a) + (cf_is_finite(a) ? s[i] : c[i]);
+        for (size_t j = 0; j < 2 * COUNT; ++j, ++calls) {
+            const real_t b = signed_values[j];
+            sink = sink + cf_atan2(a, b) + cf_max(a, b) + cf_min(a, b);
+        }
+    }
+    printf("%d\n", calls);
+    return 0;
+}

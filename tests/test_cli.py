@@ -1,0 +1,326 @@
+"""The command line, from listing to an edited derivation, and the examples of the README."""
+
+import io
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from closedform import pipeline
+from closedform.cli import Progress, main
+
+README = Path(__file__).parents[1] / "README.md"
+
+SLIDER = '''"""A slider along x, with an offset."""
+
+import sympy as sp
+
+from closedform.derivation import Derivation, Paper
+
+d = Derivation("slider", "Slider", Paper("toy", "Toys", ("A. Nonymous",)), "One joint.", task=["x"])
+a = d.parameter("a", value=2, unit="m", meaning="offset")
+q1 = d.joint("q1", "prismatic")
+d.step("Position", "The joint and the offset add up.", {"x": a + q1}, equal=[(q1 + a, a + q1)])
+d.function("fk", "Position.", {"q": [q1]}, {"x": [a + q1]})
+'''
+
+
+@pytest.fixture
+def slider(tmp_path: Path) -> Path:
+    path = tmp_path / "slider.py"
+    path.write_text(SLIDER, "utf-8")
+    return path
+
+
+@pytest.fixture
+def only_planar(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A repository with one robot and a copy of what is generated; kept proofs are used."""
+    (planar,) = pipeline.find(["planar_2r"])
+    store = pipeline.default_store()
+    monkeypatch.setattr(pipeline, "sources", lambda: [planar])
+    monkeypatch.setattr(pipeline, "default_store", lambda: store)
+    folder = tmp_path / "generated"
+    printed = pipeline.run([planar]).files
+    pipeline.write(folder, printed)
+    monkeypatch.setattr(pipeline, "generated", lambda: folder)
+    monkeypatch.setattr(pipeline, "checkout", lambda: tmp_path)
+    return folder
+
+
+def times(folder: Path) -> dict[Path, int]:
+    return {path: path.stat().st_mtime_ns for path in folder.rglob("*") if path.is_file()}
+
+
+def test_list_names_every_derivation(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list"]) == 0
+    names = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
+    assert names == sorted(names)
+    assert {"planar_2r", "spherical_wrist"} <= set(names)
+    assert "papers" not in names
+
+
+@pytest.mark.parametrize("command", ["show", "derive"])
+def test_an_unknown_name_gets_a_suggestion(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, "planar2r"]) == 2
+    assert "did you mean planar_2r?" in capsys.readouterr().err
+    assert main([command, "xyz"]) == 2
+    assert "known: " in capsys.readouterr().err
+
+
+def test_a_wrong_call_has_exit_code_2() -> None:
+    for arguments in ([], ["derive", "--backend", "fortran"], ["derive", "-j", "0"]):
+        with pytest.raises(SystemExit) as stop:
+            main(arguments)
+        assert stop.value.code == 2
+
+
+def test_show_prints_text_and_latex(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "planar_2r"]) == 0
+    assert "Planar 2R arm" in capsys.readouterr().out
+    assert main(["show", "planar_2r", "--format", "latex"]) == 0
+    assert r"\begin{document}" in capsys.readouterr().out
+
+
+def test_a_script_outside_the_repository_is_derived(
+    slider: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = tmp_path / "deep" / "out"
+    assert main(["derive", str(slider)]) == 2
+    assert "-o DIR" in capsys.readouterr().err
+    assert main(["derive", str(slider), "-o", str(output)]) == 0
+    assert capsys.readouterr().out.startswith("slider  1 steps (1 identities)")
+    assert not (output / "c" / "extension.c").exists()
+    done = subprocess.run(
+        [sys.executable, "-c", "from out.numpy import slider; print(slider.fk([0.5]))"],
+        cwd=output.parent,
+        env={**os.environ, "PYTHONPATH": str(output.parent)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout == "[2.5]\n"
+    before = times(output)
+    assert main(["derive", str(slider), "-o", str(output)]) == 0
+    assert times(output) == before
+
+
+def test_backends_are_chosen(slider: Path, tmp_path: Path) -> None:
+    output = tmp_path / "out"
+    assert main(["derive", str(slider), "-o", str(output), "--backend", "c"]) == 0
+    assert sorted(path.name for path in output.iterdir()) == ["c"]
+    c = sorted(path.name for path in (output / "c").iterdir())
+    assert c == [
+        "CMakeLists.txt",
+        "closedform-config.cmake.in",
+        "closedform.h",
+        "slider.c",
+        "slider.h",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("(q1 + a, a + q1)", "(q1 - a, a + q1)", "slider: not proved: step 'Position'"),
+        ("value=2", "value=2.5", "slider: slider.py, line 8: TypeError: "),
+        ("[a + q1]})", "[a + 0.5*q1]})", "slider: "),
+        ('"slider",', '"sledge",', "slider: the derivation calls itself sledge"),
+        ("[a + q1]})", "[a + q1]})\nd = 3", "slider: slider.py must assign a Derivation to d"),
+        ("import sympy", "import simpy", "slider: slider.py, line 3: ModuleNotFoundError"),
+        ("[a + q1]", "[a + q1", "slider: SyntaxError"),
+    ],
+)
+def test_a_broken_derivation_gets_one_clear_line(
+    slider: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, message: str
+) -> None:
+    assert old in SLIDER
+    slider.write_text(SLIDER.replace(old, new), "utf-8")
+    assert main(["derive", str(slider), "-o", str(slider.parent / "out")]) == 1
+    error = capsys.readouterr().err
+    assert error.startswith(f"closedform: {message}")
+    assert "Traceback" not in error
+    assert not (slider.parent / "out").exists()
+
+
+def test_an_output_folder_that_cannot_be_made(
+    slider: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["derive", str(slider), "-o", str(slider / "out"), "--backend", "numpy"]) == 1
+    assert "cannot write to" in capsys.readouterr().err
+
+
+def test_a_proof_is_kept_until_something_it_depends_on_changes(
+    slider: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "lengths.py").write_text("OFFSET = 2\n", "utf-8")
+    slider.write_text(SLIDER.replace("import sympy", "import lengths\nimport sympy"), "utf-8")
+    store = pipeline.Store(tmp_path / "proofs")
+    chosen = pipeline.find([str(slider)])
+
+    def kept(**options: bool) -> bool:
+        (robot,) = pipeline.run(chosen, ("numpy",), store=store, **options).robots
+        return robot.stored
+
+    assert not kept()
+    assert kept()
+    assert not kept(fresh=True)
+    (tmp_path / "lengths.py").write_text("OFFSET = 3\n", "utf-8")
+    assert not kept()
+    (tmp_path / "proofs" / "slider.json").write_text("{", "utf-8")
+    assert not kept()
+
+
+def test_proofs_depend_on_nothing_outside_their_digest() -> None:
+    """What the digest leaves out is not imported by a proof."""
+    code = "import sys, closedform.prove; print(*(m for m in sys.modules if 'closedform' in m))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    left_out = {name.removesuffix(".py") for name in pipeline.TOOLS | pipeline.OUTPUT}
+    assert not left_out & {name.split(".")[1] for name in done.stdout.split() if "." in name}
+
+
+def test_processes_print_the_same(slider: Path, tmp_path: Path) -> None:
+    other = tmp_path / "sledge.py"
+    other.write_text(SLIDER.replace('"slider"', '"sledge"'), "utf-8")
+    chosen = pipeline.find([str(slider), str(other)])
+    reports: list[str] = []
+    results = [
+        pipeline.run(
+            chosen,
+            store=pipeline.Store(None),
+            jobs=jobs,
+            report=lambda name, what: reports.append(name),
+        )
+        for jobs in (1, 2)
+    ]
+    assert results[0].files == results[1].files
+    assert {"slider", "sledge"} <= set(reports)
+
+
+def test_check_finds_every_kind_of_difference(
+    only_planar: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check"]) == 0
+    (only_planar / "numpy" / "planar_2r.py").write_text("edited\n", "utf-8")
+    (only_planar / "c" / "planar_2r.h").unlink()
+    (only_planar / "latex" / "old_robot.tex").write_text("", "utf-8")
+    (only_planar / "c" / "_native.so").write_text("", "utf-8")
+    capsys.readouterr()
+    assert main(["check"]) == 1
+    output = capsys.readouterr()
+    found = [line.split(":")[0] for line in output.out.splitlines() if str(only_planar) in line]
+    assert found == ["missing", "differs", "extra"]
+    assert "-edited" in output.out
+    assert "run make" in output.err
+
+
+def test_derive_mends_the_generated_folder(only_planar: Path) -> None:
+    before = times(only_planar)
+    stale = only_planar / "numpy" / "old_robot.py"
+    stale.write_text("", "utf-8")
+    (only_planar / "c" / "planar_2r.c").write_text("edited\n", "utf-8")
+    assert main(["derive"]) == 0
+    assert not stale.exists()
+    after = times(only_planar)
+    assert {path for path in before if after[path] != before[path]} == {
+        only_planar / "c" / "planar_2r.c"
+    }
+    assert main(["check"]) == 0
+
+
+def test_errata_of_all_papers_and_of_one(
+    only_planar: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["errata"]) == 0
+    everything = capsys.readouterr().out
+    assert everything == (only_planar / "errata.md").read_text("utf-8")
+    assert main(["errata", "reddy-babu"]) == 0
+    assert capsys.readouterr().out == everything
+    assert main(["errata", "reddy"]) == 2
+    assert "did you mean reddy-babu?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("flags", "jobs"),
+    [("", 1), (" -j2 --jobserver-auth=3,4", 2), ("k -j8", 8), ("-j", os.cpu_count()), ("-n", 1)],
+)
+def test_make_decides_how_many_processes(
+    monkeypatch: pytest.MonkeyPatch, flags: str, jobs: int
+) -> None:
+    monkeypatch.setenv("MAKELEVEL", "1")
+    monkeypatch.setenv("MAKEFLAGS", flags)
+    assert pipeline.default_jobs() == jobs
+    monkeypatch.delenv("MAKELEVEL")
+    assert pipeline.default_jobs() == os.cpu_count()
+
+
+def test_progress_is_shown_only_when_it_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    for patience, shown in ((60.0, False), (0.0, True)):
+        stderr = io.StringIO()
+        monkeypatch.setattr(sys, "stderr", stderr)
+        monkeypatch.setattr("closedform.cli.PATIENCE", patience)
+        with Progress() as progress:
+            progress("planar_2r", "inverse: ik")
+            time.sleep(0.5)
+        assert ("planar_2r: inverse: ik" in stderr.getvalue()) == shown
+        assert stderr.getvalue().count("\n") == int(shown)
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", README.read_text("utf-8"), re.M | re.S)
+
+
+def test_the_python_example_of_the_readme_runs() -> None:
+    (code,) = blocks("python")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "'elbow_up': [0.3, -1.1]" in done.stdout
+
+
+def test_the_c_example_of_the_readme_runs(tmp_path: Path) -> None:
+    compiler = shutil.which("cc") or pytest.skip("there is no C compiler")
+    (code,) = blocks("c")
+    (tmp_path / "main.c").write_text(code, "utf-8")
+    c = pipeline.generated() / "c"
+    program = tmp_path / "main"
+    subprocess.run(
+        [
+            compiler,
+            "-std=c99",
+            f"-I{c}",
+            tmp_path / "main.c",
+            c / "planar_2r.c",
+            "-lm",
+            "-o",
+            program,
+        ],
+        check=True,
+    )
+    done = subprocess.run([program], capture_output=True, text=True, check=True)
+    assert len(done.stdout.splitlines()) == 2
+
+
+def test_the_commands_of_the_readme_run(
+    only_planar: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (commands,) = blocks("sh")
+    monkeypatch.chdir(tmp_path)
+    for line in commands.splitlines():
+        program, *arguments = shlex.split(line)
+        assert program == "closedform"
+        assert main(arguments) == 0, capsys.readouterr().err
+    assert (tmp_path / "my_robots" / "c" / "planar_2r.c").is_file()
+
+
+def test_the_readme_lists_every_mechanism() -> None:
+    text = README.read_text("utf-8")
+    assert all(f"| `{source.name}` |" in text for source in pipeline.sources())

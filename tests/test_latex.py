@@ -1,0 +1,261 @@
+"""The LaTeX article, the notebook cell, the errata and the terminal page."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+import sympy as sp
+
+from closedform.claims import Every, Identity, Undecidable
+from closedform.derivation import Continuum, Derivation, Inverse, Paper, Solved
+from closedform.emit.latex import document, errata, notebook
+from closedform.emit.render import render
+from closedform.emit.show import Prose, escape, loosen, markdown, mixed, show, symbol_name
+from closedform.functions import Program, branches, choose, real
+from closedform.lemmas import linear_pair
+from closedform.prove import ClaimResult, InverseResult, Proof, prove
+
+ROBOTS = ("planar_2r", "spherical_wrist")
+PAPER = Paper("odd", "Rods & 100 % of #1_x", ("A. Müller", "B_C"), "Proc. {X} ~ 2")
+
+
+@cache
+def derived(name: str) -> tuple[Derivation, Proof]:
+    if name == "awkward":
+        return awkward()
+    module = __import__(f"closedform.derivations.{name}", fromlist=["d"])
+    return module.d, prove(module.d)
+
+
+@cache
+def article(name: str) -> str:
+    return render("latex/robot.tex.jinja", document(*derived(name)))
+
+
+def awkward() -> tuple[Derivation, Proof]:
+    """A derivation with everything that is hard to print: long, wide, deep and odd characters."""
+    d = Derivation("awkward", "Arm & leg_1", PAPER, "It costs 5 % of l1^2, in {sets}: a < b.")
+    lengths = [d.parameter(n, value=1, unit="m", meaning="m_1 & n") for n in ("l1", "loff", "gs")]
+    theta1, theta2, theta2R = d.joint("theta1"), d.joint("theta2"), d.joint("theta2R")
+    d.joint("theta4", passive=True)
+    d.joint("theta5", coupling=-theta1 - theta2)
+    d.assembly_modes, d.singularities = ("up", "down"), ("A & B",)
+    d.task = ["x", "y"]
+    angles = [theta1, theta2, theta1 + theta2, theta1 - theta2, theta2R, theta1 + theta2R]
+    long = sum(
+        a * sp.sin(t) * sp.cos(u) ** 2 for a in lengths for t in angles for u in angles if t != u
+    )
+    wide = sp.Matrix(
+        4, 6, lambda i, j: sp.cos(theta1 * (i + j)) * lengths[j % 3] * (long if i == j else 1)
+    )
+    deep = sp.sqrt(long**2 + 1) / (long + sp.sqrt(lengths[0] ** 2 + long) / 2)
+    d.step(
+        "Everything_& more",
+        "Since sqrt(1 - theta1^2) <= 1 and theta1 = pi/6, 100 % of a_1 is {left}.",
+        {"x": long, r"J_{xy}": wide, "deep": deep, r"\det A = B": (long, 1)},
+        published=("(1)", "Table_I"),
+        equal=[(sp.sin(theta1) ** 2, 1 - sp.cos(theta1) ** 2)],
+    )
+    d.function("singularities", "Factors.", {"q": (theta1, theta2, theta2R)}, {"f": [long, theta1]})
+    d.function(
+        "deep", "Arrays.", {"q": (theta1, theta2, theta2R)}, {"A": [[[long, 1], [2, long]]] * 2}
+    )
+    px, py, sigma = real("px"), real("py"), real("sigma_up")
+    p = Program()
+    h = p.bound("h", sp.sqrt(px**2 + py**2), lengths[0], "within 100 % of reach_1")
+    flag = p.vanishes("on_axis", h, 1, "the hand is on the axis", free=(theta1,))
+    p.match(px - py, 1, "equal")
+    lemma = linear_pair(theta1, py, px)
+    d.solved.append(Solved("ik", theta1, lemma, sp.sin(theta1) * px - sp.cos(theta1) * py))
+    d.function(
+        "ik",
+        "Inverse.",
+        {"x": (px, py)},
+        {
+            "q": [
+                choose(flag, 0, lemma[theta1]),
+                sigma * long.subs({theta1: px, theta2: py, theta2R: h}),
+            ]
+        },
+        program=p,
+        branches=branches((sigma, {+1: "up", -1: "down"})),
+        result="Solutions",
+        notes=("A note & more.",),
+    )
+    zero = sp.Integer(0)
+    continuum = Continuum(flag, {px: zero, py: zero}, theta1, r"\theta_2 = \pi, \theta_1 any")
+    d.inverses.append(Inverse("ik", (theta1, theta2), (px, py), (theta1, theta2), (continuum,)))
+    checks = {"part": Undecidable("a figure")}
+    d.claim("eq. (1) & 50 %", r"$\sin θ_1 = \frac{a}{b}$ with 5 % of “θ1”", Every(checks), "p. 3_4")
+    d.claim("eq. (2)", "x_1 = {y}", Identity(theta1, theta2), "p. 3_4")
+    printed = d.claims[0].printed
+    results = (
+        ClaimResult("eq. (1) & 50 %", "p. 3_4", printed, "not decidable here", "a < b", ""),
+        ClaimResult(
+            "eq. (2)", "p. 3_4", "x_1 = {y}", "refuted", "at theta1 = 2*pi/3: 1, not 0",
+            rf"[1,2] = {sp.latex(long)},\ [2,2] = {sp.latex(sp.sqrt(px) / 2)}",
+        ),
+        ClaimResult("eq. (3)", "", "fine", "proved", "", ""),
+    )  # fmt: skip
+    inverse = InverseResult("ik", 2, 1, 2, "generic", ("px - l1",), (lemma.name,))
+    steps = tuple(s.title for s in d.steps)
+    return d, Proof("awkward", "odd", steps, 1, (inverse,), results)
+
+
+@pytest.mark.parametrize("name", [*ROBOTS, "awkward"])
+def test_no_python_shows_through(name: str) -> None:
+    text = article(name)
+    for sign in ("None", "Symbol(", "{{", "}}}}}", "Piecewise", "Matrix(", "StrEnum", "/work/"):
+        assert sign not in text
+    assert "\\date{}" in text
+
+
+@pytest.mark.parametrize("name", [*ROBOTS, "awkward"])
+def test_every_claim_step_and_function_is_printed(name: str) -> None:
+    derivation, proof = derived(name)
+    text = article(name)
+    for claim in proof.claims:
+        assert escape(claim.label) in text
+        assert mixed(claim.printed) in text
+    for step in derivation.steps:
+        assert f"\\subsection{{{escape(step.title)}}}" in text
+    for function in derivation.functions:
+        assert f"\\texttt{{{escape(function.name)}(" in text
+        for label in function.branches.labels if function.branches else ():
+            assert escape(label) in text or label == "only"
+    page = show(derivation, proof)
+    assert all(claim.label in re.sub(r"\s+", " ", page) for claim in proof.claims)
+
+
+@pytest.mark.parametrize("name", [*ROBOTS, "awkward"])
+def test_article_compiles_and_fits(name: str, tmp_path: Path) -> None:
+    if shutil.which("pdflatex") is None:
+        pytest.skip("pdflatex is not installed")
+    (tmp_path / f"{name}.tex").write_text(article(name), encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", f"{name}.tex"]
+    for _ in range(2):
+        run = subprocess.run(command, cwd=tmp_path, capture_output=True, check=False)
+        log = run.stdout.decode("utf-8", "replace")
+        assert run.returncode == 0, log[-2000:]
+    assert (tmp_path / f"{name}.pdf").exists()
+    assert "undefined references" not in log
+    too_wide = [float(w) for w in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
+    assert max(too_wide, default=0) < 20
+    assert "Overfull \\vbox" not in log
+
+
+def test_output_does_not_depend_on_the_hash_seed() -> None:
+    script = (
+        "import sys; sys.path.insert(0, 'tests')\n"
+        "from test_latex import *\n"
+        "d, p = derived('awkward')\n"
+        "print(article('awkward'), notebook(d), show(d, p))\n"
+        "print(render('errata.md.jinja', errata([d], [p])))\n"
+    )
+    printed = []
+    for seed in ("0", "4321"):
+        run = subprocess.run(
+            [sys.executable, "-c", script],
+            cwd=Path(__file__).parents[1],
+            env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONIOENCODING": "utf-8"},
+            capture_output=True,
+            check=True,
+        )
+        printed.append(run.stdout)
+    assert printed[0] == printed[1]
+    assert len(printed[0]) > 10_000
+
+
+def test_errata_lists_what_is_not_simply_proved() -> None:
+    text = render("errata.md.jinja", errata(*zip(*map(derived, (*ROBOTS, "awkward")), strict=True)))
+    for name in (*ROBOTS, "awkward"):
+        for claim in derived(name)[1].claims:
+            assert (f"**{markdown(claim.label)}** ({claim.kind}" in text) == (
+                claim.kind != "proved"
+            )
+    assert text.count("## Kinematic Attitudes") == 1
+    assert "| refuted | 1 |" in text
+    assert "at theta1 = 2·pi/3: 1, not 0" in text
+    assert "entry (2,2): $`\\frac{\\sqrt{p_x}}{2}`$" in text
+    assert not re.search(r"\n\n\n", text)
+
+
+def test_without_proof_nothing_is_called_proved() -> None:
+    derivation, _ = derived("planar_2r")
+    assert "roved" not in show(derivation, None)
+    text = show(derivation, None, "latex")
+    assert "Sound:" not in text
+    assert "Claims of the paper" not in text
+
+
+def test_terminal_page_is_narrow() -> None:
+    for name in (*ROBOTS, "awkward"):
+        assert max(map(len, show(*derived(name)).splitlines())) <= 100
+
+
+@pytest.mark.parametrize("name", [*ROBOTS, "awkward"])
+def test_notebook_balances(name: str) -> None:
+    text = notebook(derived(name)[0])
+    assert text.startswith("$\\displaystyle")
+    assert text.endswith("$")
+    assert text.count("{") == text.count("}")
+    assert text.count("\\begin") == text.count("\\end")
+
+
+@pytest.mark.parametrize(
+    ("name", "latex"),
+    [
+        ("theta1", r"\theta_{1}"),
+        ("theta2R", r"\theta_{2\mathrm{R}}"),
+        ("sigma_elbow", r"\sigma_{\mathrm{elbow}}"),
+        ("R11", "R_{11}"),
+        ("px", "p_{x}"),
+        ("T12", "T_{12}"),
+        ("rS", r"r_{\mathrm{S}}"),
+        ("c_theta4", r"c_{\theta_{4}}"),
+        ("qdot1", r"\dot{q}_{1}"),
+        ("below", r"\mathrm{below}"),
+        ("psi_max", r"\psi_{\mathrm{max}}"),
+        ("lamda", r"\lambda"),
+        ("L0", "L_{0}"),
+    ],
+)
+def test_symbol_names(name: str, latex: str) -> None:
+    assert symbol_name(name) == latex
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        ("theta1 = pi/6 holds", r"$\theta_{1} = \pi/6$ holds"),
+        ("a = l1, l2", "$a = l_{1}$, $l_{2}$"),
+        ("the sqrt(1 - D^2) of it", r"the $\sqrt{1 - D^{2}}$ of it"),
+        ("|l1 - l2| <= l1", r"$|l_{1} - l_{2}| \le  l_{1}$"),
+        ("half-angle and a 2R arm (see eq. (9))", "half-angle and a 2R arm (see eq. (9))"),
+        ("difference = [0.29 +/- 1.5e-6]", r"$\mathrm{difference} = [0.29 \pm  1.5\cdot 10^{-6}]$"),
+        ("100 % of it_", r"100 \% of it\_"),
+        ("A step, and I", "A step, and I"),
+    ],
+)
+def test_prose(text: str, latex: str) -> None:
+    assert Prose(derived("planar_2r")[0])(text) == latex
+
+
+def test_parentheses_that_tex_can_break() -> None:
+    assert loosen(r"\left(a + b \right) c") == "(a + b) c"
+    assert loosen(r"\left(\frac{a}{b} \right)") == r"\bigl(\frac{a}{b}\bigr)"
+    matrix = r"\left[\begin{matrix}a\end{matrix}\right]"
+    assert loosen(matrix) == matrix
+
+
+def test_special_characters() -> None:
+    assert escape("50 % & {a_b} ~ ^ \\ # $") == (
+        r"50 \% \& \{a\_b\} \textasciitilde{} \textasciicircum{} \textbackslash{} \# \$"
+    )
+    assert escape("θ1 ≥ 0°") == r"$\theta_{1}$ $\ge$ 0$^\circ$"
+    assert mixed("5 % of $θ_1$") == r"5 \% of $\displaystyle \theta _1$"

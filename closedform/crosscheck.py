@@ -200,9 +200,13 @@ class _Truth:
         revolute = {j.symbol for j in derivation.joints if j.kind == "revolute"}
         self.angular = np.array([u in revolute for u in inverse.unknowns])
         place = (*inverse.unknowns, *function.symbols, *parameters)
-        equations = [f - x for f, x in zip(inverse.forward, inverse.targets, strict=True)]
-        self._equations = Evaluator(place, equations)
-        self._scales = [sp.lambdify(place, magnitude(f), "math") for f in inverse.forward]
+        self._equations = Evaluator(place, inverse.equations)
+        self._turns = len(inverse.angles)
+        self._scales = [
+            sp.lambdify(place, magnitude(f), "math")
+            for f, x in zip(inverse.forward, inverse.targets, strict=True)
+            if x not in inverse.angles
+        ]
         self._is_image = tuple(inverse.targets) == function.symbols
         if self._is_image:
             self._forward = Evaluator((*inverse.unknowns, *parameters), inverse.forward)

@@ -109,7 +109,8 @@ class Inverse:
     """What an inverse must satisfy: ``forward`` in the ``unknowns`` equals the ``targets``.
 
     Targets that depend on each other (the entries of a rotation) have a ``parametrisation``: the
-    same number of expressions in free symbols.
+    same number of expressions in free symbols.  Of the targets in ``angles`` only the sine and the
+    cosine count.
     """
 
     function: str
@@ -118,6 +119,18 @@ class Inverse:
     forward: tuple[sp.Expr, ...]
     continua: tuple[Continuum, ...] = ()
     parametrisation: tuple[sp.Expr, ...] = ()
+    angles: tuple[sp.Symbol, ...] = ()
+
+    @property
+    def equations(self) -> tuple[sp.Expr, ...]:
+        """What vanishes at a solution."""
+        return tuple(
+            equation
+            for f, x in zip(self.forward, self.targets, strict=True)
+            for equation in (
+                (sp.cos(f) - sp.cos(x), sp.sin(f) - sp.sin(x)) if x in self.angles else (f - x,)
+            )
+        )
 
 
 @dataclass(frozen=True)

@@ -179,10 +179,7 @@ def _prove_sound(
     for label, signs in function.cases():
         solution = dict(zip(inverse.unknowns, function.values(signs), strict=True))
         difference = sp.Matrix(
-            [
-                substitute(substitute(f, solution) - x, given)
-                for f, x in zip(inverse.forward, inverse.targets, strict=True)
-            ]
+            [substitute(substitute(e, solution), given) for e in inverse.equations]
         )
         bounds = tuple(substitute(b, given) for b in function.bounds(signs))
         where = (
@@ -200,10 +197,7 @@ def _prove_continuum(
         values = function.at(signs, {continuum.flag: True}, continuum.locus)
         solution = dict(zip(inverse.unknowns, values, strict=True))
         difference = sp.Matrix(
-            [
-                substitute(substitute(f, solution) - x, continuum.locus)
-                for f, x in zip(inverse.forward, inverse.targets, strict=True)
-            ]
+            [substitute(substitute(e, solution), continuum.locus) for e in inverse.equations]
         )
         where = f"{derivation.name}.{function.name}, {continuum.flag}, branch {label}"
         _require(difference, (), where)
@@ -228,8 +222,7 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
 def _count(inverse: Inverse) -> tuple[int, str]:
     given = _targets(inverse)
     equations = []
-    for f, x in zip(inverse.forward, inverse.targets, strict=True):
-        equation = substitute(f - x, given)
+    for equation in (substitute(e, given) for e in inverse.equations):
         if equation.has(*inverse.unknowns):
             equations.append(equation)
         else:

@@ -46,7 +46,7 @@ def awkward() -> tuple[Derivation, Proof]:
     d.joint("theta5", coupling=-theta1 - theta2)
     d.assembly_modes, d.singularities = ("up", "down"), ("A & B",)
     d.task = ["x", "y"]
-    angles = [theta1, theta2, theta1 + theta2, theta1 - theta2, theta2R, theta1 + theta2R]
+    angles = [theta1, theta1 + theta2, theta1 - theta2, theta2R]
     long = sum(
         a * sp.sin(t) * sp.cos(u) ** 2 for a in lengths for t in angles for u in angles if t != u
     )
@@ -157,16 +157,16 @@ def test_output_does_not_depend_on_the_hash_seed() -> None:
         "print(article('awkward'), notebook(d), show(d, p))\n"
         "print(render('errata.md.jinja', errata([d], [p])))\n"
     )
-    printed = []
-    for seed in ("0", "4321"):
-        run = subprocess.run(
+    runs = [
+        subprocess.Popen(
             [sys.executable, "-c", script],
             cwd=Path(__file__).parents[1],
             env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONIOENCODING": "utf-8"},
-            capture_output=True,
-            check=True,
+            stdout=subprocess.PIPE,
         )
-        printed.append(run.stdout)
+        for seed in ("0", "4321")
+    ]
+    printed = [run.communicate()[0] for run in runs]
     assert printed[0] == printed[1]
     assert len(printed[0]) > 10_000
 

@@ -15,6 +15,7 @@ from typing import Any
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
+from closedform.claims import REFUTED
 from closedform.derivation import Continuum, Derivation, Inverse, Joint, Step
 from closedform.emit.show import Prose, errata, escape, loosen, mixed, symbol_name, upright
 from closedform.emit.text import citation
@@ -241,7 +242,7 @@ class Page:
                 {
                     "where": escape(claim.where) if claim.where != where else "",
                     "label": escape(claim.label),
-                    "verdict": claim.kind,
+                    "verdict": rf"\textbf{{{claim.kind}}}" if claim.kind == REFUTED else claim.kind,
                     "printed": mixed(claim.printed),
                     "evidence": self.prose(claim.evidence),
                     "corrected": mixed(self.prose.correction(claim.corrected)),
@@ -342,7 +343,7 @@ def blocks(equations: Sequence[tuple[str, str]]) -> list[str]:
     for fits, group in groupby(equations, lambda e: measure(e[0] + e[1]) + 4 <= FITS):
         if fits:
             rows = " \\\\\n".join(f"{left} &= {right}" for left, right in group)
-            done.append(f"\\begin{{align*}}\n{rows}\n\\end{{align*}}")
+            done.append(f"\\display\n\\begin{{align*}}\n{rows}\n\\end{{align*}}")
         else:
             done += [rf"\longformula{{{left} = {right}}}" for left, right in group]
     return done

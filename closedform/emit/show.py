@@ -128,7 +128,8 @@ class Prose:
         symbols += [s for f in functions for s in f.symbols]
         symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
         names = {str(s) for s in symbols} | set(derivation.task)
-        self.known = GREEK | {n for n in names if len(n) < 3 or re.search(r"\d|_", n)}
+        self.known = GREEK | set(SYMBOL_NAMES)
+        self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
 
     def __call__(self, text: str) -> str:
         parts = PROSE.split(text)
@@ -151,8 +152,11 @@ class Prose:
         if "$" in text or re.search(r"^[^\\]*\b[a-z]{2,} [a-z]{2,}\b[^\\]*$", text):
             return text
         text = loosen(text)
-        for name in sorted(n for n in self.known if len(n) == 2 and n.isalpha() and n not in GREEK):
-            text = re.sub(rf"(?<![\\A-Za-z]){name}(?![A-Za-z])", f"{name[0]}_{name[1]}", text)
+        for name in sorted(
+            n for n in self.known - GREEK if len(n) > 1 and sp.latex(sp.Symbol(n)) == n
+        ):
+            better = symbol_name(name).replace("\\", r"\\")
+            text = re.sub(rf"(?<![\\A-Za-z_]){name}(?![A-Za-z])", better, text)
         text = re.sub(r"_\{(\w)\}", r"_\1", text)
         text = re.sub(
             r"\\(sin|cos|tan)(\^\{\w+\})?\{\((\\?\w+(?:_\{\w+\})?)\)\}", r"\\\1\2 \3", text
@@ -210,7 +214,7 @@ def loosen(text: str) -> str:
                 if r"\frac" not in inside and r"\sqrt" not in inside:
                     size = "", ""
                 parts[j], parts[i] = size[0] + left[5:], size[1] + part[6:]
-    return re.sub(r"(\S) ([)\]])", r"\1\2", "".join(parts))
+    return re.sub(r"(?<![\s\\]) (?=(?:\\bigr)?[)\]])", "", "".join(parts))
 
 
 def errata(derivations: Sequence[Derivation], proofs: Sequence[Proof]) -> dict[str, Any]:

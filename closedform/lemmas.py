@@ -65,7 +65,7 @@ def sine_cosine(
 ) -> Lemma:
     """``a sin x + b cos x = c``: two solutions where ``a^2 + b^2 >= c^2``.
 
-    With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``, and half the angle
+    With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``; half the angle
     ``x - atan2(a, b)`` has the tangent ``sqrt(h - c) / sqrt(h + c)``.  x is free where
     ``a = b = c = 0``.
     """
@@ -143,8 +143,8 @@ def zyz_angles(
 
     The third column of R gives the first two angles.  The last is *not* read from the third row, as
     the textbooks do: near ``middle = 0`` that row knows nothing of it.  It follows from the
-    rotation that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row is
-    ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
+    rotation that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row
+    is ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
 
     Where ``sin(middle) = 0`` only ``first + last`` (or ``first - last``) is determined; the
     convention is ``first = 0``.

@@ -12,6 +12,7 @@ import jinja2
 
 from closedform.derivation import Derivation
 from closedform.emit import c, latex, numpy
+from closedform.emit.errata import errata
 from closedform.lower import lower
 from closedform.prove import Proof
 
@@ -69,5 +70,5 @@ def shared_files(
         for name in ("closedform.h", "extension.c", "CMakeLists.txt", "closedform-config.cmake.in"):
             printed[Path("c", name)] = render(f"c/{name}.jinja", context)
     if "latex" in backends:
-        printed[Path("errata.md")] = render("errata.md.jinja", latex.errata(derivations, proofs))
+        printed[Path("errata.md")] = render("errata.md.jinja", errata(derivations, proofs))
     return printed

@@ -43,9 +43,9 @@
 #define CF_INDEPENDENT
 #endif
 
-/* Before the definition of a function that has lanes: with CLOSEDFORM_DISPATCH the compiler builds
- * it for AVX-512, AVX2 and the baseline, and the loader picks one. Clang, which has no such thing in
- * C, is told to keep quiet where its flags leave a loop of CF_INDEPENDENT scalar. */
+/* Before the definition of a function: with CLOSEDFORM_DISPATCH the compiler builds it for AVX-512,
+ * AVX2 and the baseline, and the loader picks one. Clang, not asked for clones, is told instead to
+ * keep quiet where its flags leave a loop of CF_INDEPENDENT scalar. */
 #if defined(__clang__)
 #define CLOSEDFORM_DISPATCHED _Pragma("clang diagnostic ignored \"-Wpass-failed\"")
 #elif defined(CLOSEDFORM_DISPATCH) && defined(__x86_64__) && defined(__GLIBC__) && \
@@ -217,7 +217,7 @@ CF_INLINE real_t cf_atan_poly(real_t z)
 #endif
 
 /* Sine and cosine for |x| <= CF_TRIG_LIMIT, without a branch. Beyond it, and for NaN, the values
- * are unspecified: use cf_sincos8 or cf_sincos_block, or test with cf_trig_excess. */
+ * are unspecified: use cf_sincos_block, or test with cf_trig_excess. */
 CF_INLINE void cf_sincos(real_t x, real_t *s, real_t *c)
 {
     const real_t ax = cf_abs(x);
@@ -261,7 +261,8 @@ CF_RARE void cf_sincos_fixup(size_t n, const real_t *x, real_t *s, real_t *c)
     }
 }
 
-/* Sine and cosine of any n angles; the arrays must not overlap. */
+/* Sine and cosine of any n angles; the arrays must not overlap. With a constant n the angles of one
+ * call become one vector, and cost little more than one angle. */
 CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
                                real_t *CF_RESTRICT c)
 {
@@ -271,13 +272,6 @@ CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF
         excess |= cf_trig_excess(x[i]);
     }
     if (excess & CF_SIGN) cf_sincos_fixup(n, x, s, c);
-}
-
-/* The same for the angles of one call, padded to 8: as vectors they cost little more than one. */
-CF_INLINE void cf_sincos8(const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
-                          real_t *CF_RESTRICT c)
-{
-    cf_sincos_block(8, x, s, c);
 }
 
 /* C99 atan2, with its signed zeros, infinities and NaN, in [-CF_PI, CF_PI]; one division, no

@@ -34,9 +34,9 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_fk(const planar_2r_params *params, const real_t q[2],
     real_t x[2])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[0], q[1] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t angles[2] = { q[0], q[1] };
+    cf_sincos_block(2, angles, sines, cosines);
     planar_2r_fk_kernel(params, sines, cosines, x);
 }
 
@@ -96,9 +96,9 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_pose(const planar_2r_params *params, const real_t q[2],
     real_t T[16])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[0], q[1] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t angles[2] = { q[0], q[1] };
+    cf_sincos_block(2, angles, sines, cosines);
     planar_2r_pose_kernel(params, sines, cosines, T);
 }
 
@@ -146,6 +146,7 @@ CF_INLINE void planar_2r_orientation_kernel(const real_t q[2], real_t phi[1])
     phi[0] = theta1 + theta2;
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
     real_t phi[1])
 {
@@ -195,9 +196,9 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_jacobian(const planar_2r_params *params, const real_t q[2],
     real_t J[6])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[0], q[1] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t angles[2] = { q[0], q[1] };
+    cf_sincos_block(2, angles, sines, cosines);
     planar_2r_jacobian_kernel(params, sines, cosines, J);
 }
 
@@ -241,9 +242,9 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
     real_t det[1])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[1], cosines[1];
+    const real_t angles[1] = { q[1] };
+    cf_sincos_block(1, angles, sines, cosines);
     planar_2r_determinant_kernel(params, sines, det);
 }
 
@@ -281,9 +282,9 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
     real_t w[1])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[1], cosines[1];
+    const real_t angles[1] = { q[1] };
+    cf_sincos_block(1, angles, sines, cosines);
     planar_2r_manipulability_kernel(params, sines, w);
 }
 
@@ -319,9 +320,9 @@ void planar_2r_singularities(const planar_2r_params *params, const real_t q[2],
     real_t factors[1])
 {
     (void)params;
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[1], cosines[1];
+    const real_t angles[1] = { q[1] };
+    cf_sincos_block(1, angles, sines, cosines);
     planar_2r_singularities_kernel(sines, factors);
 }
 
@@ -387,6 +388,7 @@ CF_INLINE void planar_2r_ik_kernel(const planar_2r_params *params, const real_t 
     status[1] = t19;
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
     real_t q[4], uint8_t status[2])
 {
@@ -492,6 +494,7 @@ CF_INLINE void planar_2r_ik_pose_kernel(const planar_2r_params *params, const re
     status[0] = cf_select(invalid, CLOSEDFORM_C(3.0), t33);
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
     real_t q[2], uint8_t status[1])
 {
@@ -535,6 +538,7 @@ CF_INLINE void planar_2r_workspace_radii_kernel(const planar_2r_params *params, 
     radii[1] = l1 + l2;
 }
 
+CLOSEDFORM_DISPATCHED
 void planar_2r_workspace_radii(const planar_2r_params *params, real_t radii[2])
 {
     planar_2r_workspace_radii_kernel(params, radii);

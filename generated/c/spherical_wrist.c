@@ -43,9 +43,9 @@ void spherical_wrist_fk(const spherical_wrist_params *params, const real_t
     q[3], real_t R[9])
 {
     (void)params;
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[0], q[2] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[4], cosines[4];
+    const real_t angles[4] = { q[1], q[0], q[2] };
+    cf_sincos_block(4, angles, sines, cosines);
     spherical_wrist_fk_kernel(sines, cosines, R);
 }
 
@@ -117,9 +117,9 @@ CLOSEDFORM_DISPATCHED
 void spherical_wrist_pose(const spherical_wrist_params *params, const real_t
     q[3], real_t T[16])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[0], q[2] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[4], cosines[4];
+    const real_t angles[4] = { q[1], q[0], q[2] };
+    cf_sincos_block(4, angles, sines, cosines);
     spherical_wrist_pose_kernel(params, sines, cosines, T);
 }
 
@@ -184,9 +184,9 @@ void spherical_wrist_jacobian_space(const spherical_wrist_params *params, const 
     q[3], real_t J[9])
 {
     (void)params;
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[0], q[1] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t angles[2] = { q[0], q[1] };
+    cf_sincos_block(2, angles, sines, cosines);
     spherical_wrist_jacobian_space_kernel(sines, cosines, J);
 }
 
@@ -243,9 +243,9 @@ void spherical_wrist_jacobian_body(const spherical_wrist_params *params, const r
     q[3], real_t J[9])
 {
     (void)params;
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[2] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t angles[2] = { q[1], q[2] };
+    cf_sincos_block(2, angles, sines, cosines);
     spherical_wrist_jacobian_body_kernel(sines, cosines, J);
 }
 
@@ -290,9 +290,9 @@ void spherical_wrist_determinant(const spherical_wrist_params *params, const rea
     q[3], real_t det[1])
 {
     (void)params;
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[1], cosines[1];
+    const real_t angles[1] = { q[1] };
+    cf_sincos_block(1, angles, sines, cosines);
     spherical_wrist_determinant_kernel(sines, det);
 }
 
@@ -328,9 +328,9 @@ void spherical_wrist_singularities(const spherical_wrist_params *params, const r
     q[3], real_t factors[1])
 {
     (void)params;
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[1], cosines[1];
+    const real_t angles[1] = { q[1] };
+    cf_sincos_block(1, angles, sines, cosines);
     spherical_wrist_singularities_kernel(sines, factors);
 }
 
@@ -404,6 +404,7 @@ CF_INLINE void spherical_wrist_ik_kernel(const real_t R[9], real_t q[6], real_t 
     status[1] = t23;
 }
 
+CLOSEDFORM_DISPATCHED
 void spherical_wrist_ik(const spherical_wrist_params *params, const real_t
     R[9], real_t q[6], uint8_t status[2])
 {

@@ -93,8 +93,8 @@ d.step(
 d.step(
     "Manipulability and singular set",
     "Yoshikawa's measure sqrt(det(J J^T)) of the square Jacobian is the modulus of the "
-    "determinant.  It vanishes exactly where sin(theta2) does (for links that have a length): arm "
-    "is stretched or folded, and the hand cannot move along it.",
+    "determinant.  It vanishes exactly where sin(theta2) does (for links that have a length): the "
+    "arm is stretched or folded, and the hand cannot move along it.",
     {"w": manipulability, r"w^2": sp.factor(det**2)},
     equal=[((J[:2, :] * J[:2, :].T).det(), det**2)],
 )

@@ -120,8 +120,7 @@ def test_back_ends_agree(robot: str, data: st.DataObject) -> None:
     lead = data.draw(hnp.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=4))
     q = data.draw(hnp.arrays(float, (*lead, n), elements=st.floats(-1e3, 1e3)))
     for name in numpy.__all__:
-        first = next(iter(inspect.signature(getattr(numpy, name)).parameters)) if name.islower() else ""
-        if first == "q":
+        if name.islower() and "q" in inspect.signature(getattr(numpy, name)).parameters:
             a, b = getattr(numpy, name)(q), getattr(c, name)(q)
             np.testing.assert_allclose(a, b, rtol=0, atol=1e-13 * (1 + np.abs(q).max(initial=0)))
     a, b = numpy.ik(numpy.fk(q)), c.ik(numpy.fk(q))

@@ -358,8 +358,8 @@ class _Emission:
             text = f"{argument.name}[{k}]" if argument else f"params->{name}"
             angles.append(text if divisor == 1 else f"{text} / CLOSEDFORM_C({divisor}.0)")
         return [
-            f"const real_t angles[{self._n_lanes}] = {{ {', '.join(angles)} }};",
-            f"cf_sincos_block({self._n_lanes}, angles, sines, cosines);",
+            f"const real_t lanes[{self._n_lanes}] = {{ {', '.join(angles)} }};",
+            f"cf_sincos_block({self._n_lanes}, lanes, sines, cosines);",
         ]
 
     def _angle_blocks(self) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import sympy as sp
 from sympy.core.alphabets import greeks
 
 from closedform.derivation import Derivation

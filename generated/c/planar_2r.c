@@ -35,8 +35,8 @@ void planar_2r_fk(const planar_2r_params *params, const real_t q[2],
     real_t x[2])
 {
     real_t sines[2], cosines[2];
-    const real_t angles[2] = { q[0], q[1] };
-    cf_sincos_block(2, angles, sines, cosines);
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_block(2, lanes, sines, cosines);
     planar_2r_fk_kernel(params, sines, cosines, x);
 }
 
@@ -97,8 +97,8 @@ void planar_2r_pose(const planar_2r_params *params, const real_t q[2],
     real_t T[16])
 {
     real_t sines[2], cosines[2];
-    const real_t angles[2] = { q[0], q[1] };
-    cf_sincos_block(2, angles, sines, cosines);
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_block(2, lanes, sines, cosines);
     planar_2r_pose_kernel(params, sines, cosines, T);
 }
 
@@ -197,8 +197,8 @@ void planar_2r_jacobian(const planar_2r_params *params, const real_t q[2],
     real_t J[6])
 {
     real_t sines[2], cosines[2];
-    const real_t angles[2] = { q[0], q[1] };
-    cf_sincos_block(2, angles, sines, cosines);
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_block(2, lanes, sines, cosines);
     planar_2r_jacobian_kernel(params, sines, cosines, J);
 }
 
@@ -243,8 +243,8 @@ void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
     real_t det[1])
 {
     real_t sines[1], cosines[1];
-    const real_t angles[1] = { q[1] };
-    cf_sincos_block(1, angles, sines, cosines);
+    const real_t lanes[1] = { q[1] };
+    cf_sincos_block(1, lanes, sines, cosines);
     planar_2r_determinant_kernel(params, sines, det);
 }
 
@@ -283,8 +283,8 @@ void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
     real_t w[1])
 {
     real_t sines[1], cosines[1];
-    const real_t angles[1] = { q[1] };
-    cf_sincos_block(1, angles, sines, cosines);
+    const real_t lanes[1] = { q[1] };
+    cf_sincos_block(1, lanes, sines, cosines);
     planar_2r_manipulability_kernel(params, sines, w);
 }
 
@@ -321,8 +321,8 @@ void planar_2r_singularities(const planar_2r_params *params, const real_t q[2],
 {
     (void)params;
     real_t sines[1], cosines[1];
-    const real_t angles[1] = { q[1] };
-    cf_sincos_block(1, angles, sines, cosines);
+    const real_t lanes[1] = { q[1] };
+    cf_sincos_block(1, lanes, sines, cosines);
     planar_2r_singularities_kernel(sines, factors);
 }
 

@@ -44,8 +44,8 @@ void spherical_wrist_fk(const spherical_wrist_params *params, const real_t
 {
     (void)params;
     real_t sines[4], cosines[4];
-    const real_t angles[4] = { q[1], q[0], q[2] };
-    cf_sincos_block(4, angles, sines, cosines);
+    const real_t lanes[4] = { q[1], q[0], q[2] };
+    cf_sincos_block(4, lanes, sines, cosines);
     spherical_wrist_fk_kernel(sines, cosines, R);
 }
 
@@ -118,8 +118,8 @@ void spherical_wrist_pose(const spherical_wrist_params *params, const real_t
     q[3], real_t T[16])
 {
     real_t sines[4], cosines[4];
-    const real_t angles[4] = { q[1], q[0], q[2] };
-    cf_sincos_block(4, angles, sines, cosines);
+    const real_t lanes[4] = { q[1], q[0], q[2] };
+    cf_sincos_block(4, lanes, sines, cosines);
     spherical_wrist_pose_kernel(params, sines, cosines, T);
 }
 
@@ -185,8 +185,8 @@ void spherical_wrist_jacobian_space(const spherical_wrist_params *params, const 
 {
     (void)params;
     real_t sines[2], cosines[2];
-    const real_t angles[2] = { q[0], q[1] };
-    cf_sincos_block(2, angles, sines, cosines);
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_block(2, lanes, sines, cosines);
     spherical_wrist_jacobian_space_kernel(sines, cosines, J);
 }
 
@@ -244,8 +244,8 @@ void spherical_wrist_jacobian_body(const spherical_wrist_params *params, const r
 {
     (void)params;
     real_t sines[2], cosines[2];
-    const real_t angles[2] = { q[1], q[2] };
-    cf_sincos_block(2, angles, sines, cosines);
+    const real_t lanes[2] = { q[1], q[2] };
+    cf_sincos_block(2, lanes, sines, cosines);
     spherical_wrist_jacobian_body_kernel(sines, cosines, J);
 }
 
@@ -291,8 +291,8 @@ void spherical_wrist_determinant(const spherical_wrist_params *params, const rea
 {
     (void)params;
     real_t sines[1], cosines[1];
-    const real_t angles[1] = { q[1] };
-    cf_sincos_block(1, angles, sines, cosines);
+    const real_t lanes[1] = { q[1] };
+    cf_sincos_block(1, lanes, sines, cosines);
     spherical_wrist_determinant_kernel(sines, det);
 }
 
@@ -329,8 +329,8 @@ void spherical_wrist_singularities(const spherical_wrist_params *params, const r
 {
     (void)params;
     real_t sines[1], cosines[1];
-    const real_t angles[1] = { q[1] };
-    cf_sincos_block(1, angles, sines, cosines);
+    const real_t lanes[1] = { q[1] };
+    cf_sincos_block(1, lanes, sines, cosines);
     spherical_wrist_singularities_kernel(sines, factors);
 }
 

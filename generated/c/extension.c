@@ -355,8 +355,8 @@ const cf_function cf_functions[] = {
       1, planar_2r_pose_in, 1, planar_2r_pose_out,
       planar_2r_pose_one, planar_2r_pose_many },
     { "planar_2r.orientation",
-      "Angle phi of the last link against the x axis, the plain sum of the joint\n"
-      "    angles.\n"
+      "Angle phi of the last link against the x axis: the sum of the joint angles, in\n"
+      "    (-pi, pi].\n"
       "Source: eq. (5).\n"
       "q: shape (..., 2): theta1, theta2.\n"
       "Returns phi: shape (...).\n"

@@ -6,7 +6,7 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 4 add, 8 multiply, 2 sincos
  *   pose: 4 add, 8 multiply, 2 sincos
- *   orientation: 1 add
+ *   orientation: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
@@ -139,11 +139,15 @@ void planar_2r_pose_batch(size_t n, const planar_2r_params *params, const
     }
 }
 
-CF_INLINE void planar_2r_orientation_kernel(const real_t q[2], real_t phi[1])
+CF_INLINE void planar_2r_orientation_kernel(const real_t *sines, const real_t *cosines, real_t
+    phi[1])
 {
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    phi[0] = theta1 + theta2;
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t t1 = cf_atan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2);
+    phi[0] = cf_wrap(t1);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -151,7 +155,10 @@ void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
     real_t phi[1])
 {
     (void)params;
-    planar_2r_orientation_kernel(q, phi);
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_block(2, lanes, sines, cosines);
+    planar_2r_orientation_kernel(sines, cosines, phi);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -163,11 +170,15 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params, const
     (void)phi_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(m, q + start, sines[0], cosines[0]);
+        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i) {
-            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t phi_i[1];
-            planar_2r_orientation_kernel(q_i, phi_i);
+            planar_2r_orientation_kernel(sines_i, cosines_i, phi_i);
             phi[start + i] = phi_i[0];
         }
     }

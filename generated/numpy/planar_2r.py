@@ -5,7 +5,7 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 4 add, 8 multiply, 2 sincos
 #   pose: 4 add, 8 multiply, 2 sincos
-#   orientation: 1 add
+#   orientation: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
 #   jacobian: 4 add, 8 multiply, 2 sincos
 #   determinant: 2 multiply, 1 sincos
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
@@ -152,8 +152,13 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
 
 
 def _orientation(theta1, theta2):
+    s1 = np.sin(theta1)
+    c1 = np.cos(theta1)
+    s2 = np.sin(theta2)
+    c2 = np.cos(theta2)
+    t1 = np.arctan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2)
     return (
-        theta1 + theta2,
+        _runtime.wrap(t1),
     )
 
 
@@ -168,7 +173,7 @@ _ORIENTATION = _runtime.Kernel(
 
 
 def orientation(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Angle phi of the last link against the x axis, the plain sum of the joint angles.
+    """Angle phi of the last link against the x axis: the sum of the joint angles, in (-pi, pi].
 
     Source: eq. (5).
     q: shape (..., 2): theta1, theta2.

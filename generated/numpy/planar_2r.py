@@ -72,10 +72,8 @@ _DEFAULT = Parameters()
 
 
 def _fk(theta1, theta2, l1, l2):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
     return (
         l1 * c1 + l2 * (c1 * c2 - s1 * s2),
         l1 * s1 + l2 * (s1 * c2 + c1 * s2),
@@ -104,10 +102,8 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
 
 
 def _pose(theta1, theta2, l1, l2):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
     c12 = c1 * c2 - s1 * s2
     s12 = s1 * c2 + c1 * s2
     return (
@@ -152,10 +148,8 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
 
 
 def _orientation(theta1, theta2):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
     t1 = np.arctan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2)
     return (
         _runtime.wrap(t1),
@@ -184,10 +178,8 @@ def orientation(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 
 
 def _jacobian(theta1, theta2, l1, l2):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
     t1 = l2 * (s1 * c2 + c1 * s2)
     t2 = l2 * (c1 * c2 - s1 * s2)
     return (

@@ -64,12 +64,9 @@ _DEFAULT = Parameters()
 
 
 def _fk(theta4, theta5, theta6):
-    s5 = np.sin(theta5)
-    c5 = np.cos(theta5)
-    s4 = np.sin(theta4)
-    c4 = np.cos(theta4)
-    s6 = np.sin(theta6)
-    c6 = np.cos(theta6)
+    s5, c5 = _runtime.sincos(theta5)
+    s4, c4 = _runtime.sincos(theta4)
+    s6, c6 = _runtime.sincos(theta6)
     t1 = c4 * c6
     t2 = s4 * s6
     t3 = s4 * c6
@@ -109,12 +106,9 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
 
 
 def _pose(theta4, theta5, theta6, d6):
-    s5 = np.sin(theta5)
-    c5 = np.cos(theta5)
-    s4 = np.sin(theta4)
-    c4 = np.cos(theta4)
-    s6 = np.sin(theta6)
-    c6 = np.cos(theta6)
+    s5, c5 = _runtime.sincos(theta5)
+    s4, c4 = _runtime.sincos(theta4)
+    s6, c6 = _runtime.sincos(theta6)
     t1 = c4 * c6
     t2 = s4 * s6
     t3 = s4 * c6
@@ -162,10 +156,8 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
 
 
 def _jacobian_space(theta4, theta5, _theta6):
-    s4 = np.sin(theta4)
-    c4 = np.cos(theta4)
-    s5 = np.sin(theta5)
-    c5 = np.cos(theta5)
+    s4, c4 = _runtime.sincos(theta4)
+    s5, c5 = _runtime.sincos(theta5)
     return (
         0.0,
         -s4,
@@ -200,10 +192,8 @@ def jacobian_space(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = No
 
 
 def _jacobian_body(_theta4, theta5, theta6):
-    s5 = np.sin(theta5)
-    c5 = np.cos(theta5)
-    s6 = np.sin(theta6)
-    c6 = np.cos(theta6)
+    s5, c5 = _runtime.sincos(theta5)
+    s6, c6 = _runtime.sincos(theta6)
     return (
         -(s5 * c6),
         s6,

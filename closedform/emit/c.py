@@ -33,6 +33,8 @@ CALLS = {
     "min": "cf_min",
     "finite": "cf_is_finite",
     "wrap": "cf_wrap",
+    "poison": "cf_poison",
+    "status": "cf_status",
     "select": "cf_select",
 }
 RESERVED = frozenset(

@@ -25,6 +25,8 @@ CALLS = {
     "not": "np.logical_not",
     "finite": "np.isfinite",
     "wrap": "_runtime.wrap",
+    "poison": "_runtime.poison",
+    "status": "_runtime.status",
 }
 DTYPES = {"real": "np.float64", "status": "np.uint8", "bool": "np.bool_"}
 

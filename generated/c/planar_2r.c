@@ -11,8 +11,8 @@
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
  *   singularities: 1 sincos
- *   ik: 13 add, 35 compare and select, 3 atan2, 13 multiply, 5 sqrt
- *   ik_pose: 95 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+ *   ik: 13 add, 33 compare and select, 3 atan2, 13 multiply, 5 sqrt
+ *   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
  *   workspace_radii: 1 compare and select, 2 add
  */
 #include "planar_2r.h"
@@ -367,36 +367,34 @@ CF_INLINE void planar_2r_ik_kernel(const planar_2r_params *params, const real_t 
     const real_t py = x[1];
     const real_t r = cf_sqrt(px * px + py * py);
     const real_t t1 = l1 + l2;
-    const int t2 = r <= t1 * CLOSEDFORM_VANISHING;
-    const real_t t3 = cf_atan2(py, px);
-    const real_t t4 = t1 - r;
-    const real_t rA = cf_sqrt(cf_max(t4, CLOSEDFORM_C(0.0)));
-    const real_t t5 = l1 - l2;
-    const real_t t6 = r - t5;
-    const real_t rC = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0)));
+    const int at_base = r <= t1 * CLOSEDFORM_VANISHING;
+    const real_t t2 = cf_atan2(py, px);
+    const real_t t3 = t1 - r;
+    const real_t rA = cf_sqrt(cf_max(t3, CLOSEDFORM_C(0.0)));
+    const real_t t4 = l1 - l2;
+    const real_t t5 = r - t4;
+    const real_t rC = cf_sqrt(cf_max(t5, CLOSEDFORM_C(0.0)));
     const real_t rS = cf_sqrt(r + t1);
-    const real_t t7 = r + t5;
-    const real_t rB = cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
-    const real_t t8 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
-    const real_t t9 = cf_wrap(cf_select(t2, CLOSEDFORM_C(0.0), t3 - t8));
-    const int t10 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(l1);
-    const int t11 = t10 & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
-    const int invalid = !(t11 & (CLOSEDFORM_C(0.0) <= l2));
-    const real_t t12 = -(CLOSEDFORM_FEASIBILITY * t1);
-    const int unreachable = !((t12 <= t4) & (t12 <= t7) & (t12 <= t6));
-    const real_t t13 = cf_select(invalid | unreachable, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t14 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rS, rC * rB);
-    const real_t t15 = cf_wrap(cf_select(t2, CLOSEDFORM_C(0.0), t3 + t8));
-    const int t16 = t2 | (l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1));
-    const real_t t17 = cf_select(t16, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t18 = cf_select(unreachable, CLOSEDFORM_C(1.0), t17);
-    const real_t t19 = cf_select(invalid, CLOSEDFORM_C(3.0), t18);
-    q[0] = t9 + t13;
-    q[1] = cf_wrap(t14) + t13;
-    q[2] = t15 + t13;
-    q[3] = cf_wrap(-t14) + t13;
-    status[0] = t19;
-    status[1] = t19;
+    const real_t t6 = r + t4;
+    const real_t rB = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0)));
+    const real_t t7 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
+    const real_t t8 = cf_select(at_base, CLOSEDFORM_C(0.0), t2 - t7);
+    const int t9 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(l1);
+    const int t10 = t9 & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
+    const int invalid = !(t10 & (CLOSEDFORM_C(0.0) <= l2));
+    const real_t t11 = -(CLOSEDFORM_FEASIBILITY * t1);
+    const int unreachable = !((t11 <= t3) & (t11 <= t6) & (t11 <= t5));
+    const real_t t12 = cf_poison(invalid | unreachable);
+    const real_t t13 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rS, rC * rB);
+    const real_t t14 = cf_select(at_base, CLOSEDFORM_C(0.0), t2 + t7);
+    const int t15 = at_base | (l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1));
+    const real_t t16 = cf_status(invalid, unreachable, t15);
+    q[0] = cf_wrap(t8) + t12;
+    q[1] = cf_wrap(t13) + t12;
+    q[2] = cf_wrap(t14) + t12;
+    q[3] = cf_wrap(-t13) + t12;
+    status[0] = t16;
+    status[1] = t16;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -462,47 +460,41 @@ CF_INLINE void planar_2r_ik_pose_kernel(const planar_2r_params *params, const re
     const real_t T43 = T[14];
     const real_t T44 = T[15];
     const real_t t1 = l1 + l2;
-    const int t2 = l1 <= t1 * CLOSEDFORM_VANISHING;
+    const int no_first_link = l1 <= t1 * CLOSEDFORM_VANISHING;
     const real_t elbow_y = T24 - T21 * l2;
-    const real_t s1 = cf_select(t2, CLOSEDFORM_C(0.0), elbow_y / l1);
+    const real_t s1 = cf_select(no_first_link, CLOSEDFORM_C(0.0), elbow_y / l1);
     const real_t elbow_x = T14 - T11 * l2;
-    const real_t c1 = cf_select(t2, CLOSEDFORM_C(1.0), elbow_x / l1);
-    const int t3 = cf_is_finite(T11) & cf_is_finite(T12) & cf_is_finite(T13);
-    const int t4 = t3 & cf_is_finite(T14) & cf_is_finite(T21) & cf_is_finite(T22);
-    const int t5 = t4 & cf_is_finite(T23) & cf_is_finite(T24) & cf_is_finite(T31);
-    const int t6 = t5 & cf_is_finite(T32) & cf_is_finite(T33) & cf_is_finite(T34);
-    const int t7 = t6 & cf_is_finite(T41) & cf_is_finite(T42) & cf_is_finite(T43);
-    const int t8 = t7 & cf_is_finite(T44) & cf_is_finite(l1) & cf_is_finite(l2);
-    const int t9 = t8 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t10 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
-    const int t11 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
-    const int t12 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
-    const real_t t13 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
-    const int t14 = cf_abs(t13) <= CLOSEDFORM_ROTATION;
-    const real_t t15 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
-    const int t16 = cf_abs(t15) <= CLOSEDFORM_ROTATION;
-    const int t17 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
-    const int t18 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
-    const int t19 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
-    const int t20 = t9 & t10 & t11 & t12 & t14 & t16 & t17 & t18 & t19;
-    const int t21 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
-    const int t22 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t20 & t21 & t22);
-    const real_t t23 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
-    const real_t t24 = CLOSEDFORM_FEASIBILITY * t1;
-    const int t25 = cf_abs(l1 - t23) <= t24;
-    const int t26 = cf_abs(T34) <= t24;
-    const int t27 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
-    const int t28 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
-    const int t29 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
-    const int unreachable = !(t25 & t26 & t27 & t28 & t29);
-    const real_t t30 = cf_select(invalid | unreachable, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t31 = cf_atan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1);
-    const real_t t32 = cf_select(t2, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t33 = cf_select(unreachable, CLOSEDFORM_C(1.0), t32);
-    q[0] = cf_wrap(cf_atan2(s1, c1)) + t30;
-    q[1] = cf_wrap(-t31) + t30;
-    status[0] = cf_select(invalid, CLOSEDFORM_C(3.0), t33);
+    const real_t c1 = cf_select(no_first_link, CLOSEDFORM_C(1.0), elbow_x / l1);
+    const int t2 = cf_is_finite(T14) & cf_is_finite(T24) & cf_is_finite(T34);
+    const int t3 = t2 & cf_is_finite(l1) & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
+    const int t4 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
+    const int t5 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
+    const int t6 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
+    const int t7 = t3 & (CLOSEDFORM_C(0.0) <= l2) & t4 & t5 & t6;
+    const real_t t8 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
+    const int t9 = cf_abs(t8) <= CLOSEDFORM_ROTATION;
+    const real_t t10 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
+    const int t11 = cf_abs(t10) <= CLOSEDFORM_ROTATION;
+    const int t12 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
+    const int t13 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t14 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t15 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t16 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t7 & t9 & t11 & t12 & t13 & t14 & t15 & t16);
+    const real_t t17 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
+    const real_t t18 = CLOSEDFORM_FEASIBILITY * t1;
+    const int t19 = cf_abs(l1 - t17) <= t18;
+    const int t20 = cf_abs(T34) <= t18;
+    const int t21 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
+    const int t22 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
+    const int t23 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
+    const int unreachable = !(t19 & t20 & t21 & t22 & t23);
+    const real_t t24 = cf_poison(invalid | unreachable);
+    const real_t t25 = cf_atan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1);
+    const real_t t26 = cf_status(invalid, unreachable, no_first_link);
+    q[0] = cf_wrap(cf_atan2(s1, c1)) + t24;
+    q[1] = cf_wrap(-t25) + t24;
+    status[0] = t26;
 }
 
 CLOSEDFORM_DISPATCHED

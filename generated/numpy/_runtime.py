@@ -84,6 +84,18 @@ def wrap(angle: Any) -> Any:
     return angle - 2 * np.pi * (angle > np.pi) + 2 * np.pi * (angle <= -np.pi)
 
 
+def poison(failed: Any) -> Any:
+    """NaN where ``failed``, else zero: added to an answer, it is one selection for all entries."""
+    return 0.0 / np.logical_not(failed)
+
+
+def status(invalid: Any, unreachable: Any, singular: Any) -> Any:
+    """The status of a branch; an invalid input outweighs all, a free joint nothing."""
+    reached = np.logical_not(unreachable)
+    valid = np.uint8(1) * unreachable + np.uint8(2) * (singular & reached)
+    return np.uint8(3) * invalid + np.logical_not(invalid) * valid
+
+
 def evaluate(kernel: Kernel, args: Sequence[ArrayLike], params: Sequence[ArrayLike], out: Any) -> Any:
     """Apply a kernel to arrays whose leading axes broadcast; returns an array or a tuple."""
     arrays = [_core(kernel, spec, arg) for spec, arg in zip(kernel.inputs, args, strict=True)]

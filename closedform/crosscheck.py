@@ -134,7 +134,7 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
         for row in range(rows):
             values = [*map(float, sample.values[row]), *sample.parameters]
             for k, exact in enumerate(reference(values)):
-                scale = float(scales[k](*values))
+                scale = _scale(scales[k], values, backend)
                 error = _ulps(float(computed[row, k]), exact, scale, backend)
                 if error > WELL_CONDITIONED:
                     scale += _variation(reference, k, values, exact, backend) / backend.eps
@@ -143,6 +143,15 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     if not finding.worst <= backend.tolerances.ulps:
         finding.fail(f"{finding.worst:.3g} ulp: {finding.where}")
     return finding
+
+
+def _scale(magnitude: Callable[..., Any], values: Sequence[float], backend: Backend) -> float:
+    """The natural scale; infinite, so that nothing is compared, where the float type overflows."""
+    try:
+        with np.errstate(over="ignore", under="ignore"):
+            return float(magnitude(*map(backend.dtype, values)))
+    except OverflowError:
+        return math.inf
 
 
 def _variation(
@@ -202,7 +211,9 @@ class _Truth:
         place = (*inverse.unknowns, *function.symbols, *parameters)
         self._equations = Evaluator(place, inverse.equations)
         pairs = list(zip(inverse.forward, inverse.targets, strict=True))
-        self._is_turn = [t for _, x in pairs for t in ([True] * 2 if x in inverse.angles else [False])]
+        self._is_turn = [
+            t for _, x in pairs for t in [x in inverse.angles] * (1 + (x in inverse.angles))
+        ]
         lengths = [f for f, x in pairs if x not in inverse.angles]
         self._scales = [sp.lambdify(place, magnitude(f), "math") for f in lengths]
         self._is_image = tuple(inverse.targets) == function.symbols
@@ -340,11 +351,10 @@ def _check_known(
         finding.fail(f"{posture.tolist()} is not among {solutions.tolist()}; {where}")
 
 
-def _movement(
-    truth: _Truth, backend: Backend, sample: Sample, solutions: NDArray[Any]
-) -> float:
+def _movement(truth: _Truth, backend: Backend, sample: Sample, solutions: NDArray[Any]) -> float:
     """How far the answers move when every coordinate of the target moves by an ulp."""
-    signs = np.array([[(-1) ** ((k >> (i % 2)) & 1) for i in range(sample.values.shape[1])] for k in range(4)])
+    columns = np.arange(sample.values.shape[1])
+    signs = np.array([(-1) ** ((pattern >> (columns % 2)) & 1) for pattern in range(4)])
     nearby = Sample(sample.name, sample.values * (1 + signs * backend.eps), sample.parameters)
     moved = truth.gap(_call(backend, truth.function, nearby)[0], solutions)
     return float(np.max(moved, initial=0.0, where=np.isfinite(moved)))

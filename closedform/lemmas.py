@@ -144,8 +144,8 @@ def parallelogram(
     """The four-bar linkage with equal opposite sides: its two assemblies.
 
     The crank and the rod have the length ``crank``, the coupler and the fixed link the length
-    ``coupler``; the crank is at ``angle`` and the fixed link at ``frame`` in a common plane.  Unknown
-    are the ``turn`` of the coupler against the fixed link and the angle of the ``rod``.
+    ``coupler``; the crank is at ``angle`` and the fixed link at ``frame`` in a common plane.
+    Unknown are the ``turn`` of the coupler against the fixed link and the angle of the ``rod``.
 
     With the plus sign the linkage is a parallelogram, and the coupler does not turn; with the minus
     sign it is an antiparallelogram.  They meet where the linkage is flat.  The antiparallelogram

@@ -7,3 +7,9 @@ REDDY_BABU = Paper(
     "Kinematic Attitudes of a Planar Robot and a Spherical Wrist",
     ("S. Baswanth Kumar Reddy", "K. Rajesh Babu"),
 )
+
+SHI_ZHU_LI = Paper(
+    "shi-zhu-li",
+    "New Method for Kinematic Analysis of a Hybrid Manipulator",
+    ("Jun Shi", "Xiaorui Zhu", "Zexiang Li"),
+)

@@ -58,7 +58,7 @@ def batch_loops(source: str) -> dict[int, str]:
     for number, line in enumerate(source.splitlines(), 1):
         if definition := re.match(r"(?:CF_INLINE )?void (\w+)\(", line):
             function = definition[1]
-        if re.search(r"\bfor \(size_t i = 0; i < m;", line):
+        if re.search(r"\bfor \(size_t i = 0; i < length;", line):
             loops[number] = function
     return loops
 

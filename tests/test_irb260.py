@@ -242,9 +242,7 @@ def test_jacobians_by_differences(robot, q) -> None:
         ("jacobian_body", lambda slope: np.linalg.inv(T) @ slope),
     ):
         V = [velocity(slope) for slope in dT]
-        columns = [
-            np.concatenate([v[:, :3, 3], v[:, [2, 0, 1], [1, 2, 0]]], axis=-1) for v in V
-        ]
+        columns = [np.concatenate([v[:, :3, 3], v[:, [2, 0, 1], [1, 2, 0]]], axis=-1) for v in V]
         np.testing.assert_allclose(getattr(robot, name)(q), np.stack(columns, axis=-1), atol=1e-8)
 
 
@@ -278,7 +276,9 @@ def test_virtual_joint(robot, q) -> None:
 def test_point_velocity(robot, q) -> None:
     rates = np.random.default_rng(5).normal(size=(300, 4))
     v = robot.point_velocity(q, rates)
-    np.testing.assert_allclose(v, np.einsum("nij,nj->ni", robot.jacobian(q), rates)[:, :3], atol=1e-14)
+    np.testing.assert_allclose(
+        v, np.einsum("nij,nj->ni", robot.jacobian(q), rates)[:, :3], atol=1e-14
+    )
     h = 1e-6
     moved = (robot.fk(q + h * rates) - robot.fk(q - h * rates))[:, :3] / (2 * h)
     np.testing.assert_allclose(v, moved, atol=1e-8)
@@ -297,9 +297,7 @@ def test_workspace(robot) -> None:
     clear = np.abs(margin) > 1e-9
     np.testing.assert_array_equal(reached[clear], margin[clear] > 0)
     assert 0.2 < reached.mean() < 0.8
-    np.testing.assert_allclose(
-        robot.workspace_section(), [0.22, 0.434, 0.055, 1.355], rtol=1e-14
-    )
+    np.testing.assert_allclose(robot.workspace_section(), [0.22, 0.434, 0.055, 1.355], rtol=1e-14)
 
 
 @pytest.fixture(scope="module")

@@ -7,3 +7,10 @@ REDDY_BABU = Paper(
     "Kinematic Attitudes of a Planar Robot and a Spherical Wrist",
     ("S. Baswanth Kumar Reddy", "K. Rajesh Babu"),
 )
+
+CHABLAT_WENGER_ANGELES = Paper(
+    "chablat-wenger-angeles",
+    "The Kinematic Design of a 3-DOF Hybrid Manipulator",
+    ("Damien Chablat", "Philippe Wenger", "Jorge Angeles"),
+    "Integrated Design and Manufacturing in Mechanical Engineering, Compiègne, 1998",
+)

@@ -247,11 +247,12 @@ def _count_in_stages(inverse: Inverse) -> int:
         raise ProofError(f"{where} must take every equation and every unknown once")
     count, before = 1, 0
     for k, stage in enumerate(inverse.stages):
-        earlier = [inverse.equations[i] for s in inverse.stages[:k] for i in s.equations]
-        for equation in earlier:
-            _require(substitute(equation, stage.given), (), f"{where}: an earlier equation")
-        before += len(stage.unknowns)
         equations = [substitute(inverse.equations[i], stage.given) for i in stage.equations]
+        depends = [s for s in inverse.stages[:k] if any(e.has(*s.unknowns) for e in equations)]
+        for i in (i for s in depends for i in s.equations):
+            earlier = substitute(inverse.equations[i], stage.given)
+            _require(earlier, (), f"{where}: an earlier equation")
+        before += len(stage.unknowns)
         if any(e.has(*solved[before:]) for e in equations if solved[before:]):
             raise ProofError(f"{where}: an equation holds an unknown of a later stage")
         try:

@@ -2,6 +2,7 @@
 
 import sympy as sp
 from closedform.derivations import hybrid_five_bar_design as design
+from closedform.derivations.claims.hybrid_five_bar import FiveBar, state
 from closedform.derivations.papers import CHABLAT_WENGER_ANGELES
 from sympy import atan2, cos, sin, sqrt
 
@@ -376,6 +377,25 @@ d.inverses.append(
 
 # Conditioning, loci, workspace
 
-design.conditioning(d, theta5 - theta4)
+design.conditioning(d, A_p.subs(passive), theta5 - theta4)
 design.loci(d)
-design.workspace(d)
+volumes = design.workspace(d)
+
+# Claims of the paper
+
+state(
+    d,
+    FiveBar(
+        (L0, L1, L2),
+        (theta1, theta2, theta3, theta4, theta5),
+        (c, d_point),
+        (by_c, by_d),
+        k,
+        tuple(p),
+        tuple(loop),
+        A_p.subs(passive),
+        by_angles,
+        in_plane,
+        volumes,
+    ),
+)

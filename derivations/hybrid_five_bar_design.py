@@ -17,14 +17,13 @@ m, M = real("m", positive=True), real("M", positive=True)
 R, r = M + m, M - m
 
 
-def conditioning(d: Derivation, psi: sp.Expr) -> sp.Matrix:
-    """Singular values of A; ``psi`` is the angle between CP and DP. Returns A A^T."""
+def conditioning(d: Derivation, A: sp.Matrix, psi: sp.Expr) -> None:
+    """Singular values of A, given in the angles; ``psi`` is the angle from CP to DP."""
     c = cos(psi)
     gram = L2**2 * sp.Matrix([[1, 0, 0], [0, 1, c], [0, c, 1]])
     lam = real("lambda")
     h, e = real("h", nonnegative=True), real("e", nonnegative=True)
     by_chord = [(cos(psi), (e**2 - h**2) / L2**2), (L2, sqrt(h**2 + e**2))]
-    near, far = real("d_min", nonnegative=True), real("d_max", nonnegative=True)
     d.step(
         "Singular values and condition number of A",
         "k is at right angles to CP and DP, so A A^T has one entry off its diagonal, the product "
@@ -39,6 +38,7 @@ def conditioning(d: Derivation, psi: sp.Expr) -> sp.Matrix:
         },
         published=("(6)", "(7)", "(8)"),
         equal=[
+            (A * A.T, gram),
             (
                 (gram - lam * sp.eye(3)).det(),
                 (L2**2 - lam) * (L2**2 * (1 - c) - lam) * (L2**2 * (1 + c) - lam),
@@ -69,8 +69,6 @@ def conditioning(d: Derivation, psi: sp.Expr) -> sp.Matrix:
         "2 L2 < L0 - 2 L1 the loop never closes.)",
         {r"d_{min} > 0": L0 > 2 * L1, r"d_{max} < 2 L_2": L0 + 2 * L1 < 2 * L2},
     )
-    del near, far
-    return gram
 
 
 class Locus(NamedTuple):

@@ -201,6 +201,23 @@ static const cf_array hybrid_five_bar_workspace_contains_out[] = {
     { "inside", 0, { 0 }, 1, CF_BOOL },
 };
 
+static void hybrid_five_bar_workspace_volume_one(const double *params, const double *const *in, void *const *out)
+{
+    (void)in;
+    hybrid_five_bar_workspace_volume((const hybrid_five_bar_params *)params, out[0]);
+}
+
+static void hybrid_five_bar_workspace_volume_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    (void)in, (void)in_stride;
+    hybrid_five_bar_workspace_volume_batch(n, (const hybrid_five_bar_params *)params, out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_workspace_volume_out[] = {
+    { "volume", 0, { 0 }, 1, CF_REAL },
+};
+
 static const char *const planar_2r_fields[] = { "l1", "l2" };
 static const double planar_2r_values[] = PLANAR_2R_DEFAULTS;
 
@@ -651,6 +668,15 @@ const cf_function cf_functions[] = {
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_workspace_contains_in, 1, hybrid_five_bar_workspace_contains_out,
       hybrid_five_bar_workspace_contains_one, hybrid_five_bar_workspace_contains_many },
+    { "hybrid_five_bar.workspace_volume",
+      "Volume of the workspace.\n"
+      "Source: section 3.1, in closed form.\n"
+      "Returns volume: shape (...).\n"
+      "NaN for a length that is negative or not finite.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      0, NULL, 1, hybrid_five_bar_workspace_volume_out,
+      hybrid_five_bar_workspace_volume_one, hybrid_five_bar_workspace_volume_many },
     { "planar_2r.fk",
       "Position of the hand.\n"
       "Source: eqs. (1) and (2).\n"

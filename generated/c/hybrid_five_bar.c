@@ -15,6 +15,7 @@
  *   condition_number: 9 add, 29 compare and select, 3 divide, 11 multiply, 2 sincos, 3 sqrt
  *   ik: 29 add, 64 compare and select, 6 atan2, 14 multiply, 11 sqrt
  *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
+ *   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
  */
 #include "hybrid_five_bar.h"
 
@@ -1026,5 +1027,69 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
         CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i)
             inside[start + i] = (uint8_t)inside_real[0][i];
+    }
+}
+
+CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_params *params, real_t
+    volume[1])
+{
+    const real_t L0 = params->L0;
+    const real_t L1 = params->L1;
+    const real_t L2 = params->L2;
+    const real_t t1 = L1 + L2;
+    const real_t t2 = cf_max(t1, CLOSEDFORM_C(0.0)) * CLOSEDFORM_C(2.0);
+    const real_t longer = cf_max(L1, L2);
+    const real_t t3 = longer * CLOSEDFORM_C(2.0);
+    const real_t shorter = cf_min(L1, L2);
+    const real_t t4 = shorter * CLOSEDFORM_C(2.0);
+    const real_t t5 = L0 - t3;
+    const real_t t6 = t4 - t5;
+    const real_t t7 = shorter * CLOSEDFORM_C(4.0);
+    const real_t t8 = L0 + longer * CLOSEDFORM_C(4.0);
+    const real_t t9 = CLOSEDFORM_C(3.141592653589793) * (t6 * t6) * (t7 + t8);
+    const real_t t10 = t9 / CLOSEDFORM_C(12.0);
+    const real_t gap = longer - shorter;
+    const int t11 = L0 <= gap * CLOSEDFORM_C(2.0);
+    const real_t t12 = longer * longer;
+    const real_t t13 = shorter * shorter;
+    const real_t t14 = CLOSEDFORM_C(3.141592653589793) * t12 * t13 * CLOSEDFORM_C(8.0);
+    const real_t t15 = t14 / L0;
+    const real_t t16 = t4 + t5;
+    const real_t t17 = CLOSEDFORM_C(3.141592653589793) * (t16 * t16);
+    const real_t t18 = cf_select(t11, t15, t15 + t17 * (t7 - t8) / CLOSEDFORM_C(12.0));
+    const real_t t19 = L0 * L0 * L0 - L0 * CLOSEDFORM_C(12.0) * (t12 + t13);
+    const real_t t20 = shorter * CLOSEDFORM_C(16.0) * (t13 + t12 * CLOSEDFORM_C(3.0));
+    const real_t t21 = CLOSEDFORM_C(3.141592653589793) * (t19 + t20);
+    const real_t t22 = CLOSEDFORM_C(2.6666666666666665) * CLOSEDFORM_C(3.141592653589793);
+    const real_t t23 = cf_select(t11, t21 / CLOSEDFORM_C(6.0), t10 - t22 * (gap * gap * gap));
+    const real_t t24 = cf_select(t3 <= L0, t10, cf_select(t4 < L0, t18, t23));
+    const int t25 = cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t26 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1);
+    const real_t t27 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    const real_t t28 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t24) + t27;
+    volume[0] = t28;
+}
+
+void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params, real_t
+    volume[1])
+{
+    hybrid_five_bar_workspace_volume_kernel(params, volume);
+}
+
+CLOSEDFORM_DISPATCHED
+void hybrid_five_bar_workspace_volume_batch(size_t n, const hybrid_five_bar_params *params,
+    real_t *volume, size_t volume_stride)
+{
+    (void)volume_stride;
+    const hybrid_five_bar_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        CF_INDEPENDENT
+        for (size_t i = 0; i < m; ++i) {
+            real_t volume_i[1];
+            hybrid_five_bar_workspace_volume_kernel(&local, volume_i);
+            volume[start + i] = volume_i[0];
+        }
     }
 }

@@ -15,6 +15,7 @@
  *   condition_number: 9 add, 29 compare and select, 3 divide, 11 multiply, 2 sincos, 3 sqrt
  *   ik: 29 add, 64 compare and select, 6 atan2, 14 multiply, 11 sqrt
  *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
+ *   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
@@ -184,6 +185,17 @@ void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params, co
 void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_params *params,
     const real_t *p, size_t p_stride, uint8_t *inside,
     size_t inside_stride);
+
+/*
+ * Volume of the workspace.
+ * Source: section 3.1, in closed form.
+ * Returns volume: shape (...).
+ * NaN for a length that is negative or not finite.
+ */
+void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params, real_t
+    volume[1]);
+void hybrid_five_bar_workspace_volume_batch(size_t n, const hybrid_five_bar_params *params,
+    real_t *volume, size_t volume_stride);
 
 #ifdef __cplusplus
 }

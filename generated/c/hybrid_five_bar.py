@@ -34,6 +34,7 @@ __all__ = [
     "condition_number",
     "ik",
     "workspace_contains",
+    "workspace_volume",
 ]
 
 fk = _native.function("hybrid_five_bar.fk", Positions)
@@ -46,3 +47,4 @@ singularities = _native.function("hybrid_five_bar.singularities")
 condition_number = _native.function("hybrid_five_bar.condition_number")
 ik = _native.function("hybrid_five_bar.ik", Solutions)
 workspace_contains = _native.function("hybrid_five_bar.workspace_contains")
+workspace_volume = _native.function("hybrid_five_bar.workspace_volume")

@@ -14,6 +14,7 @@
 #   condition_number: 9 add, 29 compare and select, 3 divide, 11 multiply, 2 sincos, 3 sqrt
 #   ik: 29 add, 64 compare and select, 6 atan2, 14 multiply, 11 sqrt
 #   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
+#   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
 """Five-bar linkage on a revolute.
 
 The pivots A, the origin, and B lie L0 apart on the y axis.  The bars AC and BD of length L1 are
@@ -62,6 +63,7 @@ __all__ = [
     "condition_number",
     "ik",
     "workspace_contains",
+    "workspace_volume",
 ]
 
 
@@ -790,4 +792,57 @@ def workspace_contains(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any 
     Returns inside: shape (...).
     """
     result = _runtime.evaluate(_WORKSPACE_CONTAINS, (p,), params, out)
+    return result
+
+
+def _workspace_volume(L0, L1, L2):
+    t1 = L1 + L2
+    longer = np.maximum(L1, L2)
+    t2 = longer * 2.0
+    shorter = np.minimum(L1, L2)
+    t3 = shorter * 2.0
+    t4 = L0 - t2
+    t5 = t3 - t4
+    t6 = shorter * 4.0
+    t7 = L0 + longer * 4.0
+    t8 = 3.141592653589793 * (t5 * t5) * (t6 + t7) / 12.0
+    gap = longer - shorter
+    t9 = L0 <= gap * 2.0
+    t10 = longer * longer
+    t11 = shorter * shorter
+    t12 = 3.141592653589793 * t10 * t11 * 8.0 / L0
+    t13 = t3 + t4
+    t14 = 3.141592653589793 * (t13 * t13) * (t6 - t7) / 12.0
+    t15 = L0 * L0 * L0 - L0 * 12.0 * (t10 + t11) + shorter * 16.0 * (t11 + t10 * 3.0)
+    t16 = 2.6666666666666665 * 3.141592653589793 * (gap * gap * gap)
+    t17 = np.where(t9, 3.141592653589793 * t15 / 6.0, t8 - t16)
+    t18 = np.where(t3 < L0, np.where(t9, t12, t12 + t14), t17)
+    t19 = np.where(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, np.where(t2 <= L0, t8, t18))
+    t20 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t21 = t20 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    unreachable = np.logical_not(-(t1 * _runtime.FEASIBILITY) <= t1)
+    t22 = np.where(np.logical_not(t21) | unreachable, np.nan, 0.0)
+    return (
+        t19 + t22,
+    )
+
+
+_WORKSPACE_VOLUME = _runtime.Kernel(
+    "hybrid_five_bar.workspace_volume",
+    _workspace_volume,
+    (),
+    (_runtime.Array("volume", ()),),
+    Parameters._fields,
+    ('L0', 'L1', 'L2'),
+)
+
+
+def workspace_volume(params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """Volume of the workspace.
+
+    Source: section 3.1, in closed form.
+    Returns volume: shape (...).
+    NaN for a length that is negative or not finite.
+    """
+    result = _runtime.evaluate(_WORKSPACE_VOLUME, (), params, out)
     return result

@@ -11,7 +11,7 @@ from closedform.crosscheck import Backend, Finding, crosscheck, float_backend, m
 from closedform.derivation import Derivation
 from closedform.tolerances import DOUBLE
 
-ROBOTS = ("planar_2r", "spherical_wrist")
+ROBOTS = ("hybrid_five_bar", "planar_2r", "spherical_wrist")
 GENERATED = Path(__file__).parent.parent / "generated"
 
 

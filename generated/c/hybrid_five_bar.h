@@ -4,7 +4,7 @@
  * Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 22 add, 32 compare and select, 5 divide, 19 multiply, 3 sincos, 3 sqrt
+ *   fk: 22 add, 30 compare and select, 5 divide, 19 multiply, 3 sincos, 3 sqrt
  *   passive_angles: 16 add, 33 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 3
  *     sqrt
  *   jacobian_parallel: 27 add, 29 compare and select, 5 divide, 21 multiply, 3 sincos, 3 sqrt
@@ -13,7 +13,7 @@
  *   determinant: 20 add, 29 compare and select, 7 divide, 28 multiply, 2 sincos, 3 sqrt
  *   singularities: 26 add, 29 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
  *   condition_number: 9 add, 29 compare and select, 3 divide, 11 multiply, 2 sincos, 3 sqrt
- *   ik: 29 add, 64 compare and select, 6 atan2, 14 multiply, 11 sqrt
+ *   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
  *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
  *   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
  *

@@ -52,12 +52,12 @@ void irb260_joint4_batch(size_t n, const irb260_params *params, const real_t
     (void)params;
     (void)theta4_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t theta4_i[1];
@@ -94,9 +94,9 @@ void irb260_joints_from_motors_batch(size_t n, const irb260_params *params, cons
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t motors_i[4] = { motors[start + i], motors[motors_stride + start + i], motors[2 * motors_stride + start + i], motors[3 * motors_stride + start + i] };
             real_t q_i[4];
             irb260_joints_from_motors_kernel(motors_i, q_i);
@@ -135,9 +135,9 @@ void irb260_motors_from_joints_batch(size_t n, const irb260_params *params, cons
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[4] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i] };
             real_t motors_i[4];
             irb260_motors_from_joints_kernel(q_i, motors_i);
@@ -190,14 +190,14 @@ void irb260_fk_batch(size_t n, const irb260_params *params, const real_t
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[4][CLOSEDFORM_BLOCK], cosines[4][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + start, sines[2], cosines[2]);
-        cf_sincos_block(m, q + 3 * q_stride + start, sines[3], cosines[3]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[3], cosines[3]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[4] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i] };
             const real_t cosines_i[4] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i] };
             real_t x_i[4];
@@ -264,14 +264,14 @@ void irb260_pose_batch(size_t n, const irb260_params *params, const real_t
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[4][CLOSEDFORM_BLOCK], cosines[4][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 3 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + q_stride + start, sines[2], cosines[2]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[3], cosines[3]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[3], cosines[3]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[4] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i] };
             const real_t cosines_i[4] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i] };
             real_t T_i[16];
@@ -348,13 +348,13 @@ void irb260_jacobian_batch(size_t n, const irb260_params *params, const real_t
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t J_i[16];
@@ -439,13 +439,13 @@ void irb260_jacobian_space_batch(size_t n, const irb260_params *params, const re
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t J_i[24];
@@ -538,13 +538,13 @@ void irb260_jacobian_body_batch(size_t n, const irb260_params *params, const rea
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + 3 * q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t J_i[24];
@@ -629,13 +629,13 @@ void irb260_jacobian_motors_batch(size_t n, const irb260_params *params, const r
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t J_i[16];
@@ -692,12 +692,12 @@ void irb260_determinant_batch(size_t n, const irb260_params *params, const real_
     (void)det_stride;
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t det_i[1];
@@ -739,12 +739,12 @@ void irb260_singularities_batch(size_t n, const irb260_params *params, const rea
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t factors_i[2];
@@ -801,13 +801,13 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params, const re
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t qdot_i[4] = { qdot[start + i], qdot[qdot_stride + start + i], qdot[2 * qdot_stride + start + i], qdot[3 * qdot_stride + start + i] };
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
@@ -951,12 +951,12 @@ void irb260_ik_batch(size_t n, const irb260_params *params, const real_t
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, x + 3 * x_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, x + 3 * x_stride + start, sines[0], cosines[0]);
         real_t status_real[4][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t x_i[4] = { x[start + i], x[x_stride + start + i], x[2 * x_stride + start + i], x[3 * x_stride + start + i] };
             const real_t sines_i[1] = { sines[0][i] };
             const real_t cosines_i[1] = { cosines[0][i] };
@@ -985,16 +985,16 @@ void irb260_ik_batch(size_t n, const irb260_params *params, const real_t
             status_real[3][i] = status_i[3];
         }
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[2 * status_stride + start + i] = (uint8_t)status_real[2][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[3 * status_stride + start + i] = (uint8_t)status_real[3][i];
     }
 }
@@ -1025,9 +1025,9 @@ void irb260_workspace_section_batch(size_t n, const irb260_params *params, real_
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             real_t section_i[4];
             irb260_workspace_section_kernel(&local, section_i);
             section[start + i] = section_i[0];
@@ -1079,9 +1079,9 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params, const 
     (void)margin_stride;
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t p_i[3] = { p[start + i], p[p_stride + start + i], p[2 * p_stride + start + i] };
             real_t margin_i[1];
             irb260_workspace_margin_kernel(&local, p_i, margin_i);

@@ -56,13 +56,13 @@ void spherical_wrist_fk_batch(size_t n, const spherical_wrist_params *params,
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t R_i[9];
@@ -130,13 +130,13 @@ void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
 {
     const spherical_wrist_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t T_i[16];
@@ -197,12 +197,12 @@ void spherical_wrist_jacobian_space_batch(size_t n, const spherical_wrist_params
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t J_i[9];
@@ -256,12 +256,12 @@ void spherical_wrist_jacobian_body_batch(size_t n, const spherical_wrist_params 
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t J_i[9];
@@ -304,11 +304,11 @@ void spherical_wrist_determinant_batch(size_t n, const spherical_wrist_params *p
     (void)params;
     (void)det_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t det_i[1];
             spherical_wrist_determinant_kernel(sines_i, det_i);
@@ -342,11 +342,11 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
     (void)params;
     (void)factors_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t factors_i[1];
             spherical_wrist_singularities_kernel(sines_i, factors_i);
@@ -418,10 +418,10 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[2][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t R_i[9] = { R[start + i], R[R_stride + start + i], R[2 * R_stride + start + i], R[3 * R_stride + start + i], R[4 * R_stride + start + i], R[5 * R_stride + start + i], R[6 * R_stride + start + i], R[7 * R_stride + start + i], R[8 * R_stride + start + i] };
             real_t q_i[6];
             real_t status_i[2];
@@ -436,10 +436,10 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
             status_real[1][i] = status_i[1];
         }
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
     }
 }

@@ -216,7 +216,9 @@ def circle_intersection(
     are parted along the first axis.  Circles that touch meet in one point, to within rounding.
     """
     x, y = unknowns
-    apart = program.let(f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True)
+    apart = program.let(
+        f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True
+    )
     S = first + second + apart
     A = program.bound(f"slack{suffix}", first + second - apart, first + second, "the bars meet")
     touching = program.vanishes(f"touching{suffix}", A, first + second, "the bars are in line")

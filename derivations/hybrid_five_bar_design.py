@@ -5,9 +5,11 @@ from typing import NamedTuple
 import sympy as sp
 from sympy import cos, pi, sin, sqrt
 
+from closedform.algebra import positive_form
 from closedform.derivation import Derivation
 from closedform.functions import Program, real
-from closedform.loops import degree, eliminate, lens, positive_form
+from closedform.loops import degree, eliminate
+from closedform.volumes import lens
 
 L0, L1, L2 = lengths = tuple(real(name, positive=True) for name in ("L0", "L1", "L2"))
 y, rho = plane = real("y"), real("rho")
@@ -132,9 +134,9 @@ def loci(d: Derivation) -> Loci:
         "Locus of the parallel singularities",
         "DP is CP turned by psi; the vector CP is eliminated from its length and the lengths of AC "
         "and BD by resultants.  For psi = 0, C = D, what remains has degree 4: the circles of "
-        "radius L2 about the two points where C and D can meet (real if L0 <= 2 L1).  For psi = pi, "
-        "C, P, D in line, it is the curve of the midpoint of the coupler of a four-bar linkage, an "
-        "irreducible sextic.  The elimination adds a power of rho, and of L0, which are no part of "
+        "radius L2 about the two points where C and D can meet (real if L0 <= 2 L1).  For psi = "
+        "pi, C, P, D in line, it is the curve of the midpoint of the coupler of a four-bar linkage, "
+        "an irreducible sextic.  The elimination adds a power of rho, and of L0, which are no part of "
         "the locus.  L0 = 0 splits the sextic into the point A and the circle of squared radius "
         "L1^2 - L2^2, both twice.",
         {
@@ -285,10 +287,10 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     named = [(M, longer), (m, shorter)]
     apart, near, crossing, cut, far, none = (g.volume.subs(named) for g in found.values())
     volume = sp.Piecewise(
-        (none, L0 >= 2 * size),
-        (far, L0 >= 2 * longer),
-        (sp.Piecewise((crossing, L0 <= 2 * gap), (cut, True)), L0 > 2 * shorter),
-        (near, L0 <= 2 * gap),
+        (none, 2 * size <= L0),
+        (far, 2 * longer <= L0),
+        (sp.Piecewise((crossing, 2 * gap >= L0), (cut, True)), 2 * shorter < L0),
+        (near, 2 * gap >= L0),
         (apart, True),
     )
     d.function(

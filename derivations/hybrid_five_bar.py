@@ -343,6 +343,7 @@ d.function(
         "free; L1 = 0, both are.  0 is returned for theta1, and for the others unless L1 = 0.",
         "Ill-conditioned near the boundary of the workspace: the angles lose half the digits "
         "there, the loop still closes.  fk loses them again near a parallel singularity.",
+        "If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.",
     ),
 )
 d.function(

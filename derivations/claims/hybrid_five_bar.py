@@ -53,20 +53,20 @@ def kinematics(d: Derivation, bar: FiveBar) -> None:
         side, angle = ("c", "4") if label == "a" else ("d", "5")
         claim(
             f"eq. (1{label})",
-            rf"\dot{{\mathbf p}} = \dot{{\mathbf {side}}} + (\dot\theta_1\mathbf j + "
-            rf"\dot\theta_{angle}\mathbf k)\times(\mathbf p - \mathbf {side})",
+            rf"$\dot{{\mathbf p}} = \dot{{\mathbf {side}}} + (\dot\theta_1\mathbf j + "
+            rf"\dot\theta_{angle}\mathbf k)\times(\mathbf p - \mathbf {side})$",
             Identity(form, velocity(point)),
         )
     rows = sp.Matrix.vstack(*(bar.A[i, :] * forms[n] for i, n in ((0, 0), (1, 0), (2, 1))))
     driven = sp.Matrix([rates[t] for t in (t1, t2, t3)])
     claim(
         "eq. (2)",
-        r"\mathbf A\dot{\mathbf p} = \mathbf B\dot{\boldsymbol\theta}",
+        r"$\mathbf A\dot{\mathbf p} = \mathbf B\dot{\boldsymbol\theta}$",
         Identity(rows, bar.B * driven),
     )
     claim(
         "eq. (3)",
-        r"\mathbf A = [L_2\mathbf k^T;\ (\mathbf p-\mathbf c)^T;\ (\mathbf p-\mathbf d)^T]",
+        r"$\mathbf A = [L_2\mathbf k^T;\ (\mathbf p-\mathbf c)^T;\ (\mathbf p-\mathbf d)^T]$",
         Identity(
             sp.Matrix.vstack(
                 L2 * bar.k.T, *((point - e).T for e, point in (leg(bar, 0), leg(bar, 1)))
@@ -78,14 +78,14 @@ def kinematics(d: Derivation, bar: FiveBar) -> None:
     printed = L1 * L2 * sp.diag(sin(t2) + ratio * sin(t4), sin(t2 - t4), sin(t3 - t5))
     claim(
         "eq. (4)",
-        r"\mathbf B = L_1 L_2\,\mathrm{diag}(\sin\theta_2 + \lambda_1\sin\theta_4,\ "
-        r"\sin(\theta_2-\theta_4),\ \sin(\theta_3-\theta_5))",
+        r"$\mathbf B = L_1 L_2\,\mathrm{diag}(\sin\theta_2 + \lambda_1\sin\theta_4,\ "
+        r"\sin(\theta_2-\theta_4),\ \sin(\theta_3-\theta_5))$",
         Identity(printed, bar.B),
     )
     claim(
         "eq. (5)",
-        r"\dot{\boldsymbol\theta} = [\dot\theta_1, \dot\theta_2, \dot\theta_3]^T,\ "
-        r"\dot{\mathbf p} = [\dot x, \dot y, \dot z]^T",
+        r"$\dot{\boldsymbol\theta} = [\dot\theta_1, \dot\theta_2, \dot\theta_3]^T,\ "
+        r"\dot{\mathbf p} = [\dot x, \dot y, \dot z]^T$",
         Undecidable("names, no statement"),
     )
 
@@ -155,13 +155,13 @@ def parallel_singularities(d: Derivation, bar: FiveBar) -> None:
     c = cos(t4 - t5)
     claim(
         "eq. (6)",
-        r"\mathbf A\mathbf A^T = L_2^2[1, 0, 0;\ 0, 1, \cos(\theta_4-\theta_5);\ "
-        r"0, \cos(\theta_4-\theta_5), 1]",
+        r"$\mathbf A\mathbf A^T = L_2^2[1, 0, 0;\ 0, 1, \cos(\theta_4-\theta_5);\ "
+        r"0, \cos(\theta_4-\theta_5), 1]$",
         Identity(L2**2 * sp.Matrix([[1, 0, 0], [0, 1, c], [0, c, 1]]), bar.A * bar.A.T),
     )
     claim(
         "k(pi/2)",
-        r"these singularities occur whenever \theta_4 - \theta_5 = k(\pi/2)",
+        r"these singularities occur whenever $\theta_4 - \theta_5 = k(\pi/2)$",
         Refuted(
             Identity((bar.A * bar.A.T).subs(t4, t5 + pi / 2), L2**2 * sp.eye(3)),
             "for k = 1, CP and DP are at right angles and A A^T = L2^2 times the unit matrix",

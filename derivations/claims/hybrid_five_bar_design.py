@@ -233,14 +233,14 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
     t1, _, t3, t4, t5 = bar.angles
     claim(
         "eq. (7)",
-        r"\kappa(\mathbf M) = \sigma_1/\sigma_s",
+        r"$\kappa(\mathbf M) = \sigma_1/\sigma_s$",
         Undecidable("a definition"),
     )
     printed, right = Abs(cos(t4 - t3)), Abs(cos(t4 - t5))
     claim(
         "eigenvalues",
-        r"\alpha_1 = 1 - |\cos(\theta_4-\theta_3)|,\ \alpha_2 = 1,\ "
-        r"\alpha_3 = 1 + |\cos(\theta_4-\theta_3)|",
+        r"$\alpha_1 = 1 - |\cos(\theta_4-\theta_3)|,\ \alpha_2 = 1,\ "
+        r"\alpha_3 = 1 + |\cos(\theta_4-\theta_3)|$",
         Identity(
             [1 - printed, sp.S.One, 1 + printed],
             [L2**2 * (1 - right), L2**2, L2**2 * (1 + right)],
@@ -248,7 +248,7 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
     )
     claim(
         "eq. (8)",
-        r"\kappa(\mathbf A) = 1/|\tan((\theta_4-\theta_3)/2)|",
+        r"$\kappa(\mathbf A) = 1/|\tan((\theta_4-\theta_3)/2)|$",
         Every(
             {
                 "as printed": Identity(1 / Abs(tan((t4 - t3) / 2)), bar.kappa),
@@ -263,7 +263,7 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
     )
     claim(
         "minimum of 1",
-        r"\kappa(\mathbf A) attains its minimum of 1 when |\theta_3-\theta_4| = \pi/2",
+        r"$\kappa(\mathbf A)$ attains its minimum of 1 when $|\theta_3-\theta_4| = \pi/2$",
         Every(
             {
                 "as printed": Identity(bar.kappa.subs(t4, t3 + pi / 2), sp.S.One),
@@ -273,7 +273,7 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
     )
     claim(
         "infinity",
-        r"\kappa(\mathbf A) tends to infinity when \theta_3-\theta_4 = k\pi",
+        r"$\kappa(\mathbf A)$ tends to infinity when $\theta_3-\theta_4 = k\pi$",
         Every(
             {
                 "as printed": Identity(bar.det_A.subs(t4, t3 + pi), sp.S.Zero),

@@ -251,15 +251,18 @@ def circle_intersection(
 
     ``centres`` is the vector from the first to the second, and ``unknowns`` the vector from the
     first to the point.  With the factors of Heron's formula the height of the triangle is
-    ``sqrt(S A B C) / (2 d)``.  Where the radii are equal and the centres coincide, to within
-    rounding of ``scale``, the point is free on a circle; the convention is that of centres which
-    are parted along the first axis.  Circles that touch meet in one point, to within rounding.
+    ``sqrt(S A B C) / (2 d)``.  ``scale`` is the size of the coordinates, whose rounding
+    decides what counts as zero.  Where the radii are equal and the centres coincide, the point is free on a
+    circle; the convention is that of centres which are parted along the first axis.  Circles that
+    touch meet in one point.
     """
     x, y = unknowns
-    apart = program.let(f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True)
+    apart = program.let(
+        f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True
+    )
     S = first + second + apart
-    A = program.bound(f"slack{suffix}", first + second - apart, first + second, "the bars meet")
-    touching = program.vanishes(f"touching{suffix}", A, first + second, "the bars are in line")
+    A = program.bound(f"slack{suffix}", first + second - apart, scale, "the bars meet")
+    touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")
     flag = None
     d, along, height = apart, apart / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     n: tuple[sp.Expr, sp.Expr] = (centres[0] / apart, centres[1] / apart)
@@ -269,8 +272,8 @@ def circle_intersection(
         d = program.let(f"distance{suffix}", choose(flag, 0, apart), nonnegative=True)
         along = d / 2
     else:
-        B = program.bound(f"outer{suffix}", apart + first - second, first + second, "the bars meet")
-        C = program.bound(f"inner{suffix}", apart - first + second, first + second, "the bars meet")
+        B = program.bound(f"outer{suffix}", apart + first - second, scale, "the bars meet")
+        C = program.bound(f"inner{suffix}", apart - first + second, scale, "the bars meet")
         along = (apart + (first - second) * (first + second) / apart) / 2
         height = height * sp.sqrt(B) * sp.sqrt(C) / apart
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))

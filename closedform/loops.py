@@ -48,7 +48,9 @@ def eliminate(equations: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]) -> El
         raise ValueError(f"{len(unknowns)} unknowns need {len(unknowns) + 1} equations")
     remaining = [sp.expand(e) for e in equations]
     for unknown in unknowns:
-        with_it = sorted((e for e in remaining if e.has(unknown)), key=lambda e: sp.degree(e, unknown))
+        with_it = sorted(
+            (e for e in remaining if e.has(unknown)), key=lambda e: sp.degree(e, unknown)
+        )
         pivot, *others = with_it
         remaining = [e for e in remaining if not e.has(unknown)]
         remaining += [sp.resultant(pivot, e, unknown) for e in others]
@@ -60,25 +62,3 @@ def eliminate(equations: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]) -> El
 def degree(polynomial: sp.Expr, coordinates: Sequence[sp.Symbol]) -> int:
     """The total degree in the coordinates."""
     return int(sp.Poly(polynomial, *coordinates).total_degree())
-
-
-def lens(first: sp.Expr, second: sp.Expr, distance: sp.Expr) -> sp.Expr:
-    """The volume that two balls share whose surfaces meet: two caps, by integration."""
-    t = sp.Dummy("t", real=True)
-    plane = (distance**2 + first**2 - second**2) / (2 * distance)
-    caps = ((first, plane), (second, distance - plane))
-    volume = sum(sp.integrate(sp.pi * (r**2 - t**2), (t, start, r)) for r, start in caps)
-    return sp.factor(volume)
-
-
-def positive_form(expr: sp.Expr, slack: Sequence[tuple[sp.Symbol, sp.Expr]]) -> sp.Expr:
-    """``expr`` with symbols written in nonnegative ones, so that all its coefficients are positive.
-
-    Such a form proves that the expression is not negative where the new symbols are not.
-    """
-    top, bottom = sp.fraction(sp.together(sp.expand(expr.subs(slack))))
-    for part in (top, bottom):
-        polynomial = sp.Poly(part, sp.Dummy("one"), *sorted(part.free_symbols, key=str))
-        if any(c.is_negative for c in polynomial.coeffs()):
-            raise ValueError(f"{expr}: not evidently positive as {polynomial.as_expr()}")
-    return sp.expand(top) / bottom

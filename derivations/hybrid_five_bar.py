@@ -2,7 +2,8 @@
 
 import sympy as sp
 from closedform.derivations import hybrid_five_bar_design as design
-from closedform.derivations.claims.hybrid_five_bar import FiveBar, state
+from closedform.derivations.claims.five_bar_postures import FiveBar
+from closedform.derivations.claims.hybrid_five_bar import state
 from closedform.derivations.papers import CHABLAT_WENGER_ANGELES
 from sympy import atan2, cos, sin, sqrt
 
@@ -71,7 +72,10 @@ d.step(
         r"\rho": rho,
     },
     equal=[
-        (by_c, sp.Matrix([-rho * cos(theta1), L1 * cos(theta2) + L2 * cos(theta4), rho * sin(theta1)])),
+        (
+            by_c,
+            sp.Matrix([-rho * cos(theta1), L1 * cos(theta2) + L2 * cos(theta4), rho * sin(theta1)]),
+        ),
         (loop[0].subs(leg_c) + loop[1].subs(leg_c), sp.S.Zero),
         (loop[0].subs(leg_d) + loop[2].subs(leg_d), sp.S.Zero),
     ],
@@ -105,7 +109,9 @@ d.step(
     {
         r"h": chord.distance / 2,
         r"e": sqrt(L2 - half) * sqrt(L2 + half),
-        r"\overrightarrow{CP}": sp.Matrix([half * n[0] - sigma * height * n[1], half * n[1] + sigma * height * n[0]]),
+        r"\overrightarrow{CP}": sp.Matrix(
+            [half * n[0] - sigma * height * n[1], half * n[1] + sigma * height * n[0]]
+        ),
     },
 )
 d.function(
@@ -149,7 +155,11 @@ def on_the_loop(M: sp.Matrix) -> sp.Matrix:
 
 A_p, B_q = on_the_loop(A_loop), on_the_loop(B_loop)
 passive = dict(
-    zip((*CP, *DP, P_r), (*(L2 * g(t) for t in (theta4, theta5) for g in (cos, sin)), rho), strict=True)
+    zip(
+        (*CP, *DP, P_r),
+        (*(L2 * g(t) for t in (theta4, theta5) for g in (cos, sin)), rho),
+        strict=True,
+    )
 )
 by_angles = merge_angles(B_q.subs(passive).expand())
 d.step(
@@ -161,7 +171,28 @@ d.step(
     published=("(2)", "(3)", "(4)"),
     equal=[
         (A_p, sp.Matrix.vstack(L2 * k.T, in_space(*CP).T, in_space(*DP).T)),
-        (by_angles, sp.diag(L2 * rho, L1 * L2 * sin(theta4 - theta2), L1 * L2 * sin(theta5 - theta3))),
+        (
+            by_angles,
+            sp.diag(L2 * rho, L1 * L2 * sin(theta4 - theta2), L1 * L2 * sin(theta5 - theta3)),
+        ),
+    ],
+)
+
+L3, L4 = (real(name, positive=True) for name in ("L3", "L4"))
+unequal = [(L1, L3), (L2, L4)]
+other_leg = ((p - d_point).dot(p - d_point) - L2**2).subs(unequal) / 2
+A_other, B_other = velocity_matrices([other_leg], p, q)
+over_d = dict(zip(p, by_d.subs(unequal), strict=True))
+general = sp.Matrix.hstack(A_other, B_other).subs(over_d, simultaneous=True).applyfunc(normal)
+d.step(
+    "Velocity: unequal legs",
+    "With bars L3 and L4 over D only the last rows change.  L1 = L3, L2 = L4 is used from here on: "
+    "for the isosceles triangle over CD, for the one factor L2^2 of A A^T and so for the condition "
+    "number, and for the two hollow spheres of the workspace being of one size.",
+    {r"B_{33}": L3 * L4 * sin(theta5 - theta3)},
+    equal=[
+        (general[:, :3], bar(L4, theta5).T),
+        (general[:, 3:], sp.Matrix([[0, 0, L3 * L4 * sin(theta5 - theta3)]])),
     ],
 )
 
@@ -182,19 +213,19 @@ along_c, along_d = real("along_c"), real("along_d")
 A_inverse = (A_p.adjugate() / (L2 * product)).applyfunc(normal)
 J = A_inverse * sp.diag(L2 * P_r, along_c, along_d)
 driven = {along_c: B_q[1, 1], along_d: B_q[2, 2]}
-det_A = L2**3 * sin(theta5 - theta4)
-det_B = L1**2 * L2**3 * rho * sin(theta4 - theta2) * sin(theta5 - theta3)
-det_J = L1**2 * rho * sin(theta4 - theta2) * sin(theta5 - theta3) / sin(theta5 - theta4)
+det_a = L2**3 * sin(theta5 - theta4)
+det_b = L1**2 * L2**3 * rho * sin(theta4 - theta2) * sin(theta5 - theta3)
+det_j = L1**2 * rho * sin(theta4 - theta2) * sin(theta5 - theta3) / sin(theta5 - theta4)
 d.step(
     "Velocity: J and the determinants",
     "J = A^{-1} B.  All determinants factor: det A holds the sine between CP and DP alone, det B "
     "holds rho and the sine between the bars of each leg.",
-    {r"A^{-1}": A_inverse, r"\det A": det_A, r"\det B": det_B, r"\det J": det_J},
+    {r"A^{-1}": A_inverse, r"\det A": det_a, r"\det B": det_b, r"\det J": det_j},
     equal=[
         (A_p * J.subs(driven), B_q),
-        (A_p.det().subs(passive), det_A),
-        (B_q.det().subs(passive), det_B),
-        (J.subs(driven).det().subs(passive), det_J),
+        (A_p.det().subs(passive), det_a),
+        (B_q.det().subs(passive), det_b),
+        (J.subs(driven).det().subs(passive), det_j),
         (across(half, height), 2 * half * height),
     ],
 )
@@ -228,7 +259,7 @@ for name, summary, outputs, notes in (
     (
         "singularities",
         "Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2) and "
-        "L2 sin(theta5 - theta3), the serial ones, and L2^2 sin(theta5 - theta4), the parallel one.",
+        "L2 sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the parallel one.",
         {
             "factors": [
                 P_r,
@@ -272,14 +303,14 @@ triangle_d = two_link_triangle(w, L1, L2, reach_d, elbow5, base3, sigma3, suffix
 inside = Program(list(w.body))
 size = L0 + L1 + L2
 on_axis = w.vanishes("on_axis", r, size, "P is on the axis", free=(theta1,))
-at_A = w.vanishes("at_A", reach_c, size, "P is at A", free=(theta2,))
-at_B = w.vanishes("at_B", reach_d, size, "P is at B", free=(theta3,))
+at_a = w.vanishes("at_A", reach_c, size, "P is at A", free=(theta2,))
+at_b = w.vanishes("at_B", reach_d, size, "P is at B", free=(theta3,))
 w.vanishes("no_bar", L1, L1 + L2, "the driven bars have no length", free=(theta2, theta3))
 turn = linear_pair(theta1, tau * z, -tau * x)
 bearing_c, bearing_d = linear_pair(theta2, tau * r, y), linear_pair(theta3, tau * r, y - L0)
 legs = (
-    (bearing_c[theta2], triangle_c[base2], at_A),
-    (bearing_d[theta3], triangle_d[base3], at_B),
+    (bearing_c[theta2], triangle_c[base2], at_a),
+    (bearing_d[theta3], triangle_d[base3], at_b),
 )
 driven_angles = [choose(flag, 0, toward - base) for toward, base, flag in legs]
 d.step(
@@ -312,6 +343,7 @@ d.function(
         "free; L1 = 0, both are.  0 is returned for theta1, and for the others unless L1 = 0.",
         "Ill-conditioned near the boundary of the workspace: the angles lose half the digits "
         "there, the loop still closes.  fk loses them again near a parallel singularity.",
+        "If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.",
     ),
 )
 d.function(
@@ -334,13 +366,17 @@ def toward(theta: sp.Symbol, along: sp.Expr, passive_angle: sp.Symbol) -> sp.Exp
     elbow = passive_angle - theta
     reach = sp.Matrix([L1 + L2 * cos(elbow), L2 * sin(elbow)])
     off = z * sin(theta1) - x * cos(theta1)
-    return sin(theta) * (along * reach[0] + off * reach[1]) - cos(theta) * (off * reach[0] - along * reach[1])
+    return sin(theta) * (along * reach[0] + off * reach[1]) - cos(theta) * (
+        off * reach[0] - along * reach[1]
+    )
 
 
 d.solved += [
     Solved("ik", theta1, turn, k.dot(p), leg_c),
     Solved("ik", theta4, triangle_c, cosine_rule(x**2 + y**2 + z**2, theta4 - theta2), leg_c),
-    Solved("ik", theta5, triangle_d, cosine_rule(x**2 + (y - L0) ** 2 + z**2, theta5 - theta3), leg_d),
+    Solved(
+        "ik", theta5, triangle_d, cosine_rule(x**2 + (y - L0) ** 2 + z**2, theta5 - theta3), leg_d
+    ),
     Solved("ik", theta2, bearing_c, toward(theta2, y, theta4), leg_c),
     Solved("ik", theta3, bearing_d, toward(theta3, y - L0, theta5), leg_d),
 ]
@@ -356,14 +392,14 @@ d.inverses.append(
         (
             Continuum(on_axis, axis, theta1, r"\theta_2, \theta_3 \text{ as for any } \theta_1"),
             Continuum(
-                at_A,
+                at_a,
                 {**axis, y: sp.S.Zero, L2: L1},
                 theta2,
                 r"\theta_4 = \theta_2 + \pi",
                 also=(on_axis,),
             ),
             Continuum(
-                at_B, {**axis, y: L0, L2: L1}, theta3, r"\theta_5 = \theta_3 + \pi", also=(on_axis,)
+                at_b, {**axis, y: L0, L2: L1}, theta3, r"\theta_5 = \theta_3 + \pi", also=(on_axis,)
             ),
         ),
         images="fk",

@@ -5,9 +5,11 @@ from typing import NamedTuple
 import sympy as sp
 from sympy import cos, pi, sin, sqrt
 
+from closedform.algebra import positive_form
 from closedform.derivation import Derivation
 from closedform.functions import Program, real
-from closedform.loops import degree, eliminate, lens, positive_form
+from closedform.loops import degree, eliminate
+from closedform.volumes import lens
 
 L0, L1, L2 = lengths = tuple(real(name, positive=True) for name in ("L0", "L1", "L2"))
 y, rho = plane = real("y"), real("rho")
@@ -15,6 +17,8 @@ kappa = real("kappa", positive=True)
 m, M = real("m", positive=True), real("M", positive=True)
 """The shorter and the longer of L1 and L2."""
 R, r = M + m, M - m
+AP, BP = sp.Matrix([y, rho]), sp.Matrix([y - L0, rho])
+alpha, beta = (v.dot(v) + L2**2 - L1**2 for v in (AP, BP))
 
 
 def conditioning(d: Derivation, A: sp.Matrix, psi: sp.Expr) -> None:
@@ -87,7 +91,6 @@ def locus(c: sp.Expr, s: sp.Expr, denominator: sp.Expr = sp.S.One) -> Locus:
     X, Y = real("X"), real("Y")
     CP = sp.Matrix([X, Y])
     DP = sp.Matrix([[c, -s], [s, c]]) * CP
-    AP, BP = sp.Matrix([y, rho]), sp.Matrix([y - L0, rho])
     equations = [
         CP.dot(CP) - L2**2,
         AP.dot(AP) - 2 * AP.dot(CP) + L2**2 - L1**2,
@@ -98,12 +101,16 @@ def locus(c: sp.Expr, s: sp.Expr, denominator: sp.Expr = sp.S.One) -> Locus:
     return Locus(curve, degree(curve, plane), tuple(f for f in factors if f != curve))
 
 
-def by_cramer(c: sp.Expr, s: sp.Expr, denominator: sp.Expr = sp.S.One) -> sp.Expr:
+def by_cramer(
+    c: sp.Expr,
+    s: sp.Expr,
+    denominator: sp.Expr = sp.S.One,
+    alpha: sp.Expr = alpha,
+    beta: sp.Expr = beta,
+) -> sp.Expr:
     """The same curve by a second route: two equations are linear in CP, the third is its length."""
-    AP, BP = sp.Matrix([y, rho]), sp.Matrix([y - L0, rho])
     turned = sp.Matrix([[c, s], [-s, c]]) * BP
-    alpha = AP.dot(AP) + L2**2 - L1**2
-    beta = denominator * (BP.dot(BP) + L2**2 - L1**2)
+    beta = denominator * beta
     numerator = alpha * turned - beta * AP
     return numerator.dot(numerator) - 4 * L2**2 * sp.Matrix.hstack(AP, turned).det() ** 2
 
@@ -132,9 +139,9 @@ def loci(d: Derivation) -> Loci:
         "Locus of the parallel singularities",
         "DP is CP turned by psi; the vector CP is eliminated from its length and the lengths of AC "
         "and BD by resultants.  For psi = 0, C = D, what remains has degree 4: the circles of "
-        "radius L2 about the two points where C and D can meet (real if L0 <= 2 L1).  For psi = pi, "
-        "C, P, D in line, it is the curve of the midpoint of the coupler of a four-bar linkage, an "
-        "irreducible sextic.  The elimination adds a power of rho, and of L0, which are no part of "
+        "radius L2 about the two points where C and D can meet (real if L0 <= 2 L1).  For psi = "
+        "pi, C, P, D in line, it is the curve of the midpoint of the coupler of a four-bar linkage, "
+        "an irreducible sextic.  The elimination adds a power of rho, and of L0, which are no part of "
         "the locus.  L0 = 0 splits the sextic into the point A and the circle of squared radius "
         "L1^2 - L2^2, both twice.",
         {
@@ -154,19 +161,23 @@ def loci(d: Derivation) -> Loci:
         ],
     )
     n = k2 + 1
+    psi, named = real("psi"), (real("alpha"), real("beta"))
     d.step(
         "Isoconditioning loci",
         "kappa is the cotangent of psi/2 or its inverse, so cos psi = (kappa^2 - 1)/(kappa^2 + 1) "
-        "and sin psi = 2 kappa/(kappa^2 + 1), up to their signs.  Each choice gives a coupler "
+        "and sin psi = 2 kappa/(kappa^2 + 1), up to their signs.  F vanishes on the curve of one "
+        "psi.  Each choice gives a coupler "
         "curve, an irreducible sextic; the two signs of psi, the two assembly modes, are mirror "
         "images about AB.  Four sextics, of degree 24 together, are the locus of a condition "
         "number above 1; two, of degree 12, that of isotropy.  They do not hold theta1: in space "
         "they are surfaces of revolution about AB.",
         {
-            rf"\kappa = 1 \text{{ (degree {square.degree}, and its mirror image)}}": sp.Eq(
-                square.curve, 0
+            r"\alpha": alpha,
+            r"\beta": beta,
+            rf"F_\psi \text{{ (degree {general.degree})}}": by_cramer(
+                cos(psi), sin(psi), alpha=named[0], beta=named[1]
             ),
-            rf"\kappa \text{{ (degree {general.degree}, and three more)}}": sp.Eq(general.curve, 0),
+            r"\text{degrees}": [square.degree, 2 * square.degree, 4 * general.degree],
         },
         equal=[
             (square.curve, by_cramer(sp.S.Zero, sp.S.One)),
@@ -285,10 +296,10 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     named = [(M, longer), (m, shorter)]
     apart, near, crossing, cut, far, none = (g.volume.subs(named) for g in found.values())
     volume = sp.Piecewise(
-        (none, L0 >= 2 * size),
-        (far, L0 >= 2 * longer),
-        (sp.Piecewise((crossing, L0 <= 2 * gap), (cut, True)), L0 > 2 * shorter),
-        (near, L0 <= 2 * gap),
+        (none, 2 * size <= L0),
+        (far, 2 * longer <= L0),
+        (sp.Piecewise((crossing, 2 * gap >= L0), (cut, True)), 2 * shorter < L0),
+        (near, 2 * gap >= L0),
         (apart, True),
     )
     d.function(

@@ -907,8 +907,8 @@ const cf_function cf_functions[] = {
       hybrid_five_bar_determinant_one, hybrid_five_bar_determinant_many },
     { "hybrid_five_bar.singularities",
       "Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2)\n"
-      "    and L2 sin(theta5 - theta3), the serial ones, and L2^2 sin(theta5 - theta4),\n"
-      "    the parallel one.\n"
+      "    and L2 sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the\n"
+      "    parallel one.\n"
       "q: shape (..., 3): theta1, theta2, theta3.\n"
       "Returns factors: shape (..., 2, 4).\n"
       "Branches: left_of_CD, right_of_CD.\n"

@@ -127,7 +127,7 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
 
 /*
  * Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2) and L2
- *     sin(theta5 - theta3), the serial ones, and L2^2 sin(theta5 - theta4), the parallel one.
+ *     sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the parallel one.
  * q: shape (..., 3): theta1, theta2, theta3.
  * Returns factors: shape (..., 2, 4).
  * Branches: left_of_CD, right_of_CD.

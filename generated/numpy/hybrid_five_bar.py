@@ -557,7 +557,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2) and L2 sin(theta5 - theta3), the serial ones, and L2^2 sin(theta5 - theta4), the parallel one.
+    """Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2) and L2 sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the parallel one.
 
     q: shape (..., 3): theta1, theta2, theta3.
     Returns factors: shape (..., 2, 4).

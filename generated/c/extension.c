@@ -944,6 +944,7 @@ const cf_function cf_functions[] = {
       "Ill-conditioned near the boundary of the workspace: the angles lose half the\n"
       "    digits there, the loop still closes.  fk loses them again near a parallel\n"
       "    singularity.\n"
+      "If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_ik_in, 2, hybrid_five_bar_ik_out,

@@ -84,6 +84,8 @@ class Solved:
     unknown: sp.Symbol
     lemma: Lemma
     equation: sp.Expr
+    posture: Mapping[sp.Symbol, sp.Expr] | None = None
+    """The inputs in terms of joints, passive ones too, where the inverse does not say it itself."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,22 @@ class Continuum:
     free: sp.Symbol
     relation: str
     branches: tuple[str, ...] = ()
+    also: tuple[sp.Symbol, ...] = ()
+    """Other flags that are true on the locus."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One of several steps in which the solutions of a system are counted.
+
+    ``equations`` are places in the system; they hold no unknowns but those of this stage and of
+    earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
+    equations of the earlier stages hold identically.
+    """
+
+    unknowns: tuple[sp.Symbol, ...]
+    equations: tuple[int, ...]
+    given: Mapping[sp.Symbol, sp.Expr]
 
 
 @dataclass(frozen=True)
@@ -107,6 +125,10 @@ class Inverse:
     Targets that depend on each other (the entries of a rotation) have a ``parametrisation``: the
     same number of expressions in free symbols.  Of the targets in ``angles`` only the sine and the
     cosine count.
+
+    A closed loop gives equations in unknowns and inputs together: they are ``forward``, the
+    ``targets`` are zeros, and ``images`` names the function whose values, in each assembly mode,
+    are inputs with a known solution.  ``stages`` count the solutions step by step.
     """
 
     function: str
@@ -116,6 +138,8 @@ class Inverse:
     continua: tuple[Continuum, ...] = ()
     parametrisation: tuple[sp.Expr, ...] = ()
     angles: tuple[sp.Symbol, ...] = ()
+    images: str = ""
+    stages: tuple[Stage, ...] = ()
 
     @property
     def equations(self) -> tuple[sp.Expr, ...]:

@@ -196,7 +196,8 @@ def _prove_continuum(
     for label, signs in function.cases():
         if continuum.branches and label not in continuum.branches:
             continue
-        values = function.at(signs, {continuum.flag: True}, continuum.locus)
+        flags = dict.fromkeys((continuum.flag, *continuum.also), True)
+        values = function.at(signs, flags, continuum.locus)
         solution = dict(zip(inverse.unknowns, values, strict=True))
         difference = sp.Matrix(
             [substitute(substitute(e, solution), continuum.locus) for e in inverse.equations]
@@ -217,12 +218,15 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
             f"{derivation.name}.{inverse.function}: the equation solved for {solved.unknown} by "
             f"the lemma {solved.lemma.name!r} must follow from the forward map"
         )
-        _require(substitute(solved.equation, graph), (), where)
+        posture = graph if solved.posture is None else solved.posture
+        _require(substitute(solved.equation, posture), (), where)
         lemmas.append(solved.lemma.name)
     return tuple(dict.fromkeys(lemmas))
 
 
 def _count(inverse: Inverse) -> tuple[int, str]:
+    if inverse.stages:
+        return _count_in_stages(inverse), "step by step"
     given = _targets(inverse)
     equations = []
     for equation in (substitute(e, given) for e in inverse.equations):
@@ -235,6 +239,30 @@ def _count(inverse: Inverse) -> tuple[int, str]:
     except InfinitelyManyError as error:
         raise ProofError(f"{inverse.function}: {error}") from error
     return counted.count, counted.method
+
+
+def _count_in_stages(inverse: Inverse) -> int:
+    """The product of the counts, each over the field of the inputs and the earlier unknowns."""
+    where = f"{inverse.function}: the stages of the count"
+    used = [i for stage in inverse.stages for i in stage.equations]
+    solved = [u for stage in inverse.stages for u in stage.unknowns]
+    if sorted(used) != list(range(len(inverse.equations))) or set(solved) != set(inverse.unknowns):
+        raise ProofError(f"{where} must take every equation and every unknown once")
+    count, before = 1, 0
+    for k, stage in enumerate(inverse.stages):
+        equations = [substitute(inverse.equations[i], stage.given) for i in stage.equations]
+        depends = [s for s in inverse.stages[:k] if any(e.has(*s.unknowns) for e in equations)]
+        for i in (i for s in depends for i in s.equations):
+            earlier = substitute(inverse.equations[i], stage.given)
+            _require(earlier, (), f"{where}: an earlier equation")
+        before += len(stage.unknowns)
+        if any(e.has(*solved[before:]) for e in equations if solved[before:]):
+            raise ProofError(f"{where}: an equation holds an unknown of a later stage")
+        try:
+            count *= count_solutions(equations, stage.unknowns).count
+        except InfinitelyManyError as error:
+            raise ProofError(f"{where}: {error}") from error
+    return count
 
 
 def prove_lemma(

@@ -79,7 +79,7 @@ def test_a_wrong_inverse_is_found(robot: str, change) -> None:
     assert broken(robot, "ik", change)
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", ["planar_2r", "spherical_wrist"])
 def test_a_wrong_value_is_found(robot: str) -> None:
     assert broken(robot, "fk", lambda x: x * (1 + 1e-14))
     assert broken(robot, "determinant", lambda x: x + 1e-13)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import reduce
+from itertools import combinations
 
 import sympy as sp
 
@@ -158,16 +159,22 @@ def merge_angles(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
     improved = True
     while improved:
         improved = False
+        length = _terms(best)
         angles = sorted({f.args[0] for f in best.atoms(sp.sin, sp.cos)}, key=sp.default_sort_key)
-        for i, a in enumerate(angles):
-            for b in angles[i + 1 :]:
-                merged = _merge_pair(best, a, b)
-                if _terms(merged) < _terms(best):
-                    best, improved = merged, True
-                    break
-            if improved:
+        together = _angles_together(best)
+        for a, b in combinations(angles, 2):
+            if not any(a in met and b in met for met in together):
+                continue
+            merged = _merge_pair(best, a, b)
+            if _terms(merged) < length:
+                best, improved = merged, True
                 break
     return best
+
+
+def _angles_together(expr: sp.Expr) -> list[set[sp.Expr]]:
+    """The angles of each term: only such as meet in a product can be merged."""
+    return [{f.args[0] for f in t.atoms(sp.sin, sp.cos)} for t in sp.Add.make_args(expr)]
 
 
 def _merge_pair(expr: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:

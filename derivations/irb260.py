@@ -33,11 +33,12 @@ d = Derivation(
     "lower one), which turn about -x at home.  Two parallelograms along the arms keep the wrist "
     "bracket level; they act as a virtual joint theta4 = -(theta2 + theta3).  The hand turns by "
     "theta5 about z.  At home all angles are 0: the lower arm is upright, the upper arm points "
-    "along y.",
+    "along y.  The default dimensions are those of public models of the IRB 260; the paper gives "
+    "none.",
     task=["x", "y", "z", "yaw"],
     singularities=("base axis", "elbow"),
 )
-SOURCE = "public models of the IRB 260; the paper gives no dimensions"
+SOURCE = "public models, not the paper"
 
 
 def length(name: str, millimetres: int, meaning: str) -> sp.Symbol:
@@ -71,7 +72,7 @@ twists = [revolute_twist(w, p) for w, p in zip(axes, points, strict=True)]
 d.step(
     "Screws",
     "The axis of each joint at home, by its direction and a point on it, and its twist "
-    "(v; omega) with v = -omega x q.  A point of the axis does not move.",
+    "(v; omega) with v = -omega × q.  A point of the axis does not move.",
     {rf"\xi_{i}": twist.T for i, twist in enumerate(twists, 1)},
     published=("(1)", "(2)", "(3)", "(4)", "(5)", "(8)", "(9)"),
     equal=[
@@ -210,7 +211,7 @@ d.step(
 d.step(
     "Body Jacobian and task Jacobian",
     "The body Jacobian is the same twist seen from the hand.  The task Jacobian is the derivative "
-    "of (x, y, z, yaw); its first rows are the velocity of the hand's origin, v + omega x p.",
+    "of (x, y, z, yaw); its first rows are the velocity of the hand's origin, v + omega × p.",
     {"J_b": J_body, "J": J},
     equal=[(J_body[:, i], twist_of(inverse(pose) * pose.diff(angle))) for i, angle in enumerate(q)]
     + [(J[:3, i], J_space[:3, i] + J_space[3:, i].cross(position)) for i in range(4)]

@@ -62,9 +62,9 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
     ]
     d.step(
         "Inverse: the turret",
-        "The hand is in the plane of the arm, at the distance rho = +-r from the base axis: the "
-        "arm faces it (front, sigma_side = +1) or reaches over the axis (back, sigma_side = -1).  "
-        "On the axis itself theta1 is free; we return 0.",
+        "The hand is in the plane of the arm, at the distance r from the base axis: the arm faces "
+        "it (front, sigma_side = 1), rho = r, or reaches over the axis (back, sigma_side = -1), "
+        "rho = -r.  On the axis itself theta1 is free; we return 0.",
         {
             r"\rho": side * sqrt(px**2 + py**2),
             r"\theta_1": atan2(-side * px, side * py),
@@ -76,7 +76,7 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
         "Inverse: the elbow and the shoulder",
         "Seen from the shoulder the wrist is at u forward and h up.  The two arms and the line "
         "between these joints form a triangle, in which the angle of the elbow is theta3 + 90 "
-        "degrees: elbow_up (sigma_elbow = +1) is cos(theta3) >= 0, as at home, and elbow_down is "
+        "degrees: elbow_up (sigma_elbow = 1) is cos(theta3) >= 0, as at home, and elbow_down is "
         "cos(theta3) <= 0.  If the arms are equal and the wrist is on the shoulder, theta2 is "
         "free; we return 0.",
         {
@@ -101,7 +101,7 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
         source="solved from eq. (13); the paper leaves the inverse out",
         notes=(
             "front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= "
-            "0, where rho = y cos(theta1) - x sin(theta1).  elbow_up: cos(theta3) >= 0, as at "
+            "0, where rho = y*cos(theta1) - x*sin(theta1).  elbow_up: cos(theta3) >= 0, as at "
             "home; elbow_down: cos(theta3) <= 0.",
             "SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) "
             "and 0 is returned; equal arms folded with the wrist on the shoulder, theta2 is free "
@@ -178,14 +178,23 @@ def workspace(
     gaps = []
     for name, sign in (("front", 1), ("back", -1)):
         there = p.let(f"reach_{name}", sqrt((sign * r - l1 - l6) ** 2 + h**2), nonnegative=True)
-        gaps.append(sp.Min(l3 + l4 - there, there - inner))
+        gaps.append(p.let(f"margin_{name}", sp.Min(outer - there, there - inner)))
+    margin = sp.Max(*gaps)
     d.function(
         "workspace_margin",
         "How far a position is inside the workspace, in the plane of the arm; negative outside.",
         {"p": (px, py, pz)},
-        {"margin": sp.Max(*gaps)},
+        {"margin": margin},
         program=p,
-        notes=(
-            "Some configuration reaches the position exactly where the margin is not negative.",
-        ),
+    )
+    inside = Program(list(p.body))
+    inside.bound("margin", margin, sum(lengths), "the front or the back of the arm reaches it")
+    d.function(
+        "workspace_contains",
+        "Whether some configuration reaches a position, whatever the yaw.",
+        {"p": (px, py, pz)},
+        {"inside": sp.true},
+        program=inside,
+        notes=("True exactly where ik has a branch that is OK or SINGULAR.",),
+        boolean=True,
     )

@@ -300,6 +300,40 @@ def test_workspace(robot) -> None:
     np.testing.assert_allclose(robot.workspace_section(), [0.22, 0.434, 0.055, 1.355], rtol=1e-14)
 
 
+@pytest.mark.parametrize("params", [L, EQUAL, (0.0, 0.5, 0.7, 0.6, 0.0, 0.0)])
+def test_workspace_contains_what_the_inverse_reaches(robot, params) -> None:
+    """Also a hair inside and outside of every boundary, in front of the axis and behind it."""
+    l1, l2, l3, l4, l5, l6 = params
+    direction, bearing = np.random.default_rng(7).uniform(-np.pi, np.pi, (2, 300))
+    reached = 0
+    for radius in (l3 + l4, abs(l3 - l4)):
+        for off in (-0.3, -1e-6, -1e-11, -1e-13, 0.0, 1e-13, 1e-11, 1e-6, 0.3):
+            for facing in (1, -1):
+                reach = radius + off * sum(params)
+                rho = facing * (l1 + l6 + reach * np.cos(direction))
+                z = l2 - l5 + reach * np.sin(direction)
+                p = np.stack([-rho * np.sin(bearing), rho * np.cos(bearing), z], axis=-1)
+                status = robot.ik(np.concatenate([p, bearing[:, None]], axis=-1), params).status
+                inside = robot.workspace_contains(p, params)
+                assert inside.dtype == np.bool_ and inside.shape == (300,)
+                found = np.isin(status, (OK, SINGULAR)).any(axis=1)
+                np.testing.assert_array_equal(inside, found)
+                reached += found.sum()
+    assert 2000 < reached < 10000
+    assert not robot.workspace_contains([np.nan, 0.5, 1.0])
+    assert not robot.workspace_contains([0.1, 0.5, 1.0], (0.1, 0.6, -0.7, 0.6, 0.1, 0.1))
+
+
+def test_margin_is_the_distance_to_the_boundary_of_the_section(robot) -> None:
+    """With the shoulder on the base axis front and back are the same annulus."""
+    direction = np.random.default_rng(8).uniform(-1.2, 1.2, 200)
+    params = (0.0, 0.5, 0.7, 0.4, 0.2, 0.0)
+    for reach in (0.2, 0.31, 0.5, 1.0, 1.3):
+        rho, z = reach * np.cos(direction), 0.3 + reach * np.sin(direction)
+        margin = robot.workspace_margin(np.stack([0 * rho, rho, z], axis=-1), params)
+        np.testing.assert_allclose(margin, min(1.1 - reach, reach - 0.3), atol=1e-14)
+
+
 @pytest.fixture(scope="module")
 def table() -> np.ndarray:
     text = (files("closedform.generated") / "data" / "irb260_section_v.csv").read_text("utf-8")

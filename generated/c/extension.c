@@ -507,6 +507,25 @@ static const cf_array irb260_workspace_margin_out[] = {
     { "margin", 0, { 0 }, 1, CF_REAL },
 };
 
+static void irb260_workspace_contains_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_workspace_contains((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_workspace_contains_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_workspace_contains_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_workspace_contains_in[] = {
+    { "p", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array irb260_workspace_contains_out[] = {
+    { "inside", 0, { 0 }, 1, CF_BOOL },
+};
+
 static const char *const planar_2r_fields[] = { "l1", "l2" };
 static const double planar_2r_values[] = PLANAR_2R_DEFAULTS;
 
@@ -1081,7 +1100,7 @@ const cf_function cf_functions[] = {
       "Returns q: shape (..., 4, 4).\n"
       "Branches: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.\n"
       "front: the arm faces the hand, rho >= 0; back: it reaches over the base axis,\n"
-      "    rho <= 0, where rho = y cos(theta1) - x sin(theta1).  elbow_up: cos(theta3)\n"
+      "    rho <= 0, where rho = y*cos(theta1) - x*sin(theta1).  elbow_up: cos(theta3)\n"
       "    >= 0, as at home; elbow_down: cos(theta3) <= 0.\n"
       "SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is\n"
       "    determined) and 0 is returned; equal arms folded with the wrist on the\n"
@@ -1106,12 +1125,19 @@ const cf_function cf_functions[] = {
       "    outside.\n"
       "p: shape (..., 3): px, py, pz.\n"
       "Returns margin: shape (...).\n"
-      "Some configuration reaches the position exactly where the margin is not\n"
-      "    negative.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_workspace_margin_in, 1, irb260_workspace_margin_out,
       irb260_workspace_margin_one, irb260_workspace_margin_many },
+    { "irb260.workspace_contains",
+      "Whether some configuration reaches a position, whatever the yaw.\n"
+      "p: shape (..., 3): px, py, pz.\n"
+      "Returns inside: shape (...).\n"
+      "True exactly where ik has a branch that is OK or SINGULAR.\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_workspace_contains_in, 1, irb260_workspace_contains_out,
+      irb260_workspace_contains_one, irb260_workspace_contains_many },
     { "planar_2r.fk",
       "Position of the hand.\n"
       "Source: eqs. (1) and (2).\n"

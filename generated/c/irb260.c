@@ -19,6 +19,7 @@
  *   ik: 45 add, 83 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
  *   workspace_section: 1 compare and select, 4 add
  *   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
+ *   workspace_contains: 38 compare and select, 17 add, 6 multiply, 3 sqrt
  */
 #include "irb260.h"
 
@@ -1087,5 +1088,71 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params, const 
             irb260_workspace_margin_kernel(&local, p_i, margin_i);
             margin[start + i] = margin_i[0];
         }
+    }
+}
+
+CF_INLINE void irb260_workspace_contains_kernel(const irb260_params *params, const real_t p[3],
+    real_t inside[1])
+{
+    const real_t l1 = params->l1;
+    const real_t l2 = params->l2;
+    const real_t l3 = params->l3;
+    const real_t l4 = params->l4;
+    const real_t l5 = params->l5;
+    const real_t l6 = params->l6;
+    const real_t px = p[0];
+    const real_t py = p[1];
+    const real_t pz = p[2];
+    const int t1 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(pz);
+    const int t2 = t1 & cf_is_finite(l1) & cf_is_finite(l2) & cf_is_finite(l3);
+    const int t3 = t2 & cf_is_finite(l4) & cf_is_finite(l5) & cf_is_finite(l6);
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= l3) & (CLOSEDFORM_C(0.0) <= l4);
+    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= l5) & (CLOSEDFORM_C(0.0) <= l6);
+    const real_t t7 = l1 + l6;
+    const real_t t8 = l3 + l4;
+    const real_t t9 = -(CLOSEDFORM_FEASIBILITY * (l2 + l5 + t7 + t8));
+    const real_t h = pz - l2 + l5;
+    const real_t t10 = h * h;
+    const real_t r = cf_sqrt(px * px + py * py);
+    const real_t t11 = r + t7;
+    const real_t reach_back = cf_sqrt(t10 + t11 * t11);
+    const real_t t12 = cf_abs(l3 - l4);
+    const real_t t13 = r - t7;
+    const real_t reach_front = cf_sqrt(t10 + t13 * t13);
+    const real_t t14 = cf_max(cf_min(reach_back - t12, t8 - reach_back), cf_min(reach_front - t12, t8 - reach_front));
+    inside[0] = (!(!t6 | !(t9 <= t14))) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CLOSEDFORM_DISPATCHED
+void irb260_workspace_contains(const irb260_params *params, const real_t p[3],
+    uint8_t inside[1])
+{
+    real_t inside_real[1];
+    irb260_workspace_contains_kernel(params, p, inside_real);
+    for (size_t i = 0; i < 1; ++i)
+        inside[i] = (uint8_t)inside_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
+void irb260_workspace_contains_batch(size_t n, const irb260_params *params, const real_t
+    *p, size_t p_stride, uint8_t *inside, size_t
+    inside_stride)
+{
+    (void)inside_stride;
+    const irb260_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t inside_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t p_i[3] = { p[start + i], p[p_stride + start + i], p[2 * p_stride + start + i] };
+            real_t inside_i[1];
+            irb260_workspace_contains_kernel(&local, p_i, inside_i);
+            inside_real[0][i] = inside_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            inside[start + i] = (uint8_t)inside_real[0][i];
     }
 }

@@ -19,6 +19,7 @@
  *   ik: 45 add, 83 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
  *   workspace_section: 1 compare and select, 4 add
  *   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
+ *   workspace_contains: 38 compare and select, 17 add, 6 multiply, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
@@ -36,12 +37,12 @@ extern "C" {
 
 /* ABB IRB 260 palletiser: dimensions. */
 typedef struct {
-    real_t l1; /* from the base axis forward to the shoulder, in m (public models of the IRB 260; the paper gives no dimensions) */
-    real_t l2; /* from the base up to the shoulder, in m (public models of the IRB 260; the paper gives no dimensions) */
-    real_t l3; /* lower arm, from the shoulder to the elbow, in m (public models of the IRB 260; the paper gives no dimensions) */
-    real_t l4; /* upper arm, from the elbow to the wrist, in m (public models of the IRB 260; the paper gives no dimensions) */
-    real_t l5; /* from the wrist down to the hand, in m (public models of the IRB 260; the paper gives no dimensions) */
-    real_t l6; /* from the wrist forward to the axis of the hand, in m (public models of the IRB 260; the paper gives no dimensions) */
+    real_t l1; /* from the base axis forward to the shoulder, in m (public models, not the paper) */
+    real_t l2; /* from the base up to the shoulder, in m (public models, not the paper) */
+    real_t l3; /* lower arm, from the shoulder to the elbow, in m (public models, not the paper) */
+    real_t l4; /* upper arm, from the elbow to the wrist, in m (public models, not the paper) */
+    real_t l5; /* from the wrist down to the hand, in m (public models, not the paper) */
+    real_t l6; /* from the wrist forward to the axis of the hand, in m (public models, not the paper) */
 } irb260_params;
 
 /* The example dimensions: irb260_params p = IRB260_DEFAULTS; */
@@ -190,7 +191,7 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params, const re
  * Returns q: shape (..., 4, 4).
  * Branches: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.
  * front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0, where
- *     rho = y cos(theta1) - x sin(theta1).  elbow_up: cos(theta3) >= 0, as at home; elbow_down:
+ *     rho = y*cos(theta1) - x*sin(theta1).  elbow_up: cos(theta3) >= 0, as at home; elbow_down:
  *     cos(theta3) <= 0.
  * SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0 is
  *     returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
@@ -217,13 +218,24 @@ void irb260_workspace_section_batch(size_t n, const irb260_params *params, real_
  * How far a position is inside the workspace, in the plane of the arm; negative outside.
  * p: shape (..., 3): px, py, pz.
  * Returns margin: shape (...).
- * Some configuration reaches the position exactly where the margin is not negative.
  */
 void irb260_workspace_margin(const irb260_params *params, const real_t p[3],
     real_t margin[1]);
 void irb260_workspace_margin_batch(size_t n, const irb260_params *params, const real_t
     *p, size_t p_stride, real_t *margin, size_t
     margin_stride);
+
+/*
+ * Whether some configuration reaches a position, whatever the yaw.
+ * p: shape (..., 3): px, py, pz.
+ * Returns inside: shape (...).
+ * True exactly where ik has a branch that is OK or SINGULAR.
+ */
+void irb260_workspace_contains(const irb260_params *params, const real_t p[3],
+    uint8_t inside[1]);
+void irb260_workspace_contains_batch(size_t n, const irb260_params *params, const real_t
+    *p, size_t p_stride, uint8_t *inside, size_t
+    inside_stride);
 
 #ifdef __cplusplus
 }

@@ -39,6 +39,7 @@ __all__ = [
     "ik",
     "workspace_section",
     "workspace_margin",
+    "workspace_contains",
 ]
 
 joint4 = _native.function("irb260.joint4")
@@ -56,3 +57,4 @@ point_velocity = _native.function("irb260.point_velocity")
 ik = _native.function("irb260.ik", Solutions)
 workspace_section = _native.function("irb260.workspace_section")
 workspace_margin = _native.function("irb260.workspace_margin")
+workspace_contains = _native.function("irb260.workspace_contains")

@@ -18,13 +18,14 @@
 #   ik: 45 add, 83 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
 #   workspace_section: 1 compare and select, 4 add
 #   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
+#   workspace_contains: 38 compare and select, 17 add, 6 multiply, 3 sqrt
 """ABB IRB 260 palletiser.
 
 A turret (theta1, about z) carries a lower arm (theta2) and an upper arm (theta3, against the
 lower one), which turn about -x at home.  Two parallelograms along the arms keep the wrist
 bracket level; they act as a virtual joint theta4 = -(theta2 + theta3).  The hand turns by
 theta5 about z.  At home all angles are 0: the lower arm is upright, the upper arm points along
-y.
+y.  The default dimensions are those of public models of the IRB 260; the paper gives none.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from Jun Shi, Xiaorui Zhu, Zexiang Li: New Method for Kinematic Analysis of a Hybrid Manipulator.
@@ -71,6 +72,7 @@ __all__ = [
     "ik",
     "workspace_section",
     "workspace_margin",
+    "workspace_contains",
 ]
 
 
@@ -78,17 +80,17 @@ class Parameters(NamedTuple):
     """Dimensions; each field may be an array that broadcasts."""
 
     l1: Any = 0.1
-    """from the base axis forward to the shoulder, in m (public models of the IRB 260; the paper gives no dimensions)"""
+    """from the base axis forward to the shoulder, in m (public models, not the paper)"""
     l2: Any = 0.615
-    """from the base up to the shoulder, in m (public models of the IRB 260; the paper gives no dimensions)"""
+    """from the base up to the shoulder, in m (public models, not the paper)"""
     l3: Any = 0.705
-    """lower arm, from the shoulder to the elbow, in m (public models of the IRB 260; the paper gives no dimensions)"""
+    """lower arm, from the shoulder to the elbow, in m (public models, not the paper)"""
     l4: Any = 0.65
-    """upper arm, from the elbow to the wrist, in m (public models of the IRB 260; the paper gives no dimensions)"""
+    """upper arm, from the elbow to the wrist, in m (public models, not the paper)"""
     l5: Any = 0.181
-    """from the wrist down to the hand, in m (public models of the IRB 260; the paper gives no dimensions)"""
+    """from the wrist down to the hand, in m (public models, not the paper)"""
     l6: Any = 0.12
-    """from the wrist forward to the axis of the hand, in m (public models of the IRB 260; the paper gives no dimensions)"""
+    """from the wrist forward to the axis of the hand, in m (public models, not the paper)"""
 
 
 _DEFAULT = Parameters()
@@ -701,7 +703,7 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
     Returns q: shape (..., 4, 4).
     Branches: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.
     front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
-        where rho = y cos(theta1) - x sin(theta1).  elbow_up: cos(theta3) >= 0, as at home;
+        where rho = y*cos(theta1) - x*sin(theta1).  elbow_up: cos(theta3) >= 0, as at home;
         elbow_down: cos(theta3) <= 0.
     SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0 is
         returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
@@ -753,10 +755,10 @@ def _workspace_margin(px, py, pz, l1, l2, l3, l4, l5, l6):
     t5 = l3 + l4
     t6 = r - t2
     reach_front = np.sqrt(t1 + t6 * t6)
-    t7 = np.minimum(reach_front - t4, t5 - reach_front)
-    t8 = np.maximum(np.minimum(reach_back - t4, t5 - reach_back), t7)
+    margin_front = np.minimum(reach_front - t4, t5 - reach_front)
+    t7 = np.maximum(np.minimum(reach_back - t4, t5 - reach_back), margin_front)
     return (
-        t8,
+        t7,
     )
 
 
@@ -775,7 +777,52 @@ def workspace_margin(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = 
 
     p: shape (..., 3): px, py, pz.
     Returns margin: shape (...).
-    Some configuration reaches the position exactly where the margin is not negative.
     """
     result = _runtime.evaluate(_WORKSPACE_MARGIN, (p,), params, out)
+    return result
+
+
+def _workspace_contains(px, py, pz, l1, l2, l3, l4, l5, l6):
+    t1 = np.isfinite(px) & np.isfinite(py) & np.isfinite(pz)
+    t2 = t1 & np.isfinite(l1) & np.isfinite(l2) & np.isfinite(l3)
+    t3 = t2 & np.isfinite(l4) & np.isfinite(l5) & np.isfinite(l6)
+    t4 = t3 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= l3) & (0.0 <= l4)
+    invalid = np.logical_not(t4 & (0.0 <= l5) & (0.0 <= l6))
+    t5 = l1 + l6
+    t6 = l3 + l4
+    t7 = -(_runtime.FEASIBILITY * (l2 + l5 + t5 + t6))
+    h = pz - l2 + l5
+    t8 = h * h
+    r = np.sqrt(px * px + py * py)
+    t9 = r + t5
+    reach_back = np.sqrt(t8 + t9 * t9)
+    t10 = np.abs(l3 - l4)
+    margin_back = np.minimum(reach_back - t10, t6 - reach_back)
+    t11 = r - t5
+    reach_front = np.sqrt(t8 + t11 * t11)
+    margin_front = np.minimum(reach_front - t10, t6 - reach_front)
+    unreachable = np.logical_not(t7 <= np.maximum(margin_back, margin_front))
+    return (
+        np.logical_not(invalid | unreachable),
+    )
+
+
+_WORKSPACE_CONTAINS = _runtime.Kernel(
+    "irb260.workspace_contains",
+    _workspace_contains,
+    (_runtime.Array("p", (3,)),),
+    (_runtime.Array("inside", (), np.bool_),),
+    Parameters._fields,
+    ('l1', 'l2', 'l3', 'l4', 'l5', 'l6'),
+)
+
+
+def workspace_contains(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """Whether some configuration reaches a position, whatever the yaw.
+
+    p: shape (..., 3): px, py, pz.
+    Returns inside: shape (...).
+    True exactly where ik has a branch that is OK or SINGULAR.
+    """
+    result = _runtime.evaluate(_WORKSPACE_CONTAINS, (p,), params, out)
     return result

@@ -64,6 +64,7 @@ def double_parallelogram(
         "bracket stays level.  This is the virtual joint.  With a loop crossed, the bracket turns "
         "as the arm moves.  The assemblies of the upper loop meet where this loop is flat, too.",
         {
+            "0": sp.Matrix(upper.equations),
             r"\theta_4 = \phi_1 + \phi_2 - \theta_2 - \theta_3": bracket - theta2 - theta3,
             r"1 - \cos\phi_{2,\text{crossed}}": meet,
         },
@@ -82,6 +83,7 @@ def double_parallelogram(
         "the angle of the motor.  The paper is silent about this, and its theta3 is the angle "
         "against the lower arm.",
         {
+            "0": sp.Matrix(drive.equations),
             r"\theta_2 + \theta_3 - m_3 = \phi_3": upper_arm - m3,
             r"M = \partial(\theta_1, \theta_2, \theta_3, \theta_5) / \partial m": M,
             r"M^{-1}": M.inv(),

@@ -14,7 +14,7 @@ import sympy as sp
 from closedform.claims import Every, Identity, Undecidable
 from closedform.derivation import Continuum, Derivation, Inverse, Paper, Solved
 from closedform.emit.errata import errata, markdown
-from closedform.emit.latex import document, notebook
+from closedform.emit.latex import decimal, document, notebook
 from closedform.emit.prose import Prose, escape, loosen, mixed, symbol_name
 from closedform.emit.render import render
 from closedform.emit.show import show
@@ -23,6 +23,7 @@ from closedform.lemmas import linear_pair
 from closedform.prove import ClaimResult, InverseResult, Proof, prove
 
 ROBOTS = ("planar_2r", "spherical_wrist")
+GENERATED = Path(__file__).parents[1] / "generated" / "latex"
 PAPER = Paper("odd", "Rods & 100 % of #1_x", ("A. Müller", "B_C"), "Proc. {X} ~ 2")
 
 
@@ -151,6 +152,19 @@ def test_article_compiles_and_fits(name: str, tmp_path: Path) -> None:
     assert "Overfull \\vbox" not in log
 
 
+@pytest.mark.parametrize("tex", sorted(GENERATED.glob("*.tex")), ids=lambda path: path.stem)
+def test_generated_articles_fit(tex: Path, tmp_path: Path) -> None:
+    if shutil.which("pdflatex") is None:
+        pytest.skip("pdflatex is not installed")
+    command = ["pdflatex", "-interaction=nonstopmode", f"-output-directory={tmp_path}", str(tex)]
+    for _ in range(2):
+        run = subprocess.run(command, capture_output=True, check=False)
+    log = run.stdout.decode("utf-8", "replace")
+    assert run.returncode == 0, log[-2000:]
+    too_wide = [float(w) for w in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
+    assert max(too_wide, default=0) < 2
+
+
 def test_output_does_not_depend_on_the_hash_seed() -> None:
     script = (
         "import sys; sys.path.insert(0, 'tests')\n"
@@ -242,10 +256,37 @@ def test_symbol_names(name: str, latex: str) -> None:
         ("difference = [0.29 +/- 1.5e-6]", r"$\mathrm{difference} = [0.29 \pm  1.5\cdot 10^{-6}]$"),
         ("100 % of it_", r"100 \% of it\_"),
         ("A step, and I", "A step, and I"),
+        ("the arm's end; x' = 1", r"the arm's end; $x$' = 1"),
+        ("v = -omega × q", r"$v = -\omega \times  q$"),
+        ("a twist (v; omega_z)", r"a twist ($v$; $\omega_{z}$)"),
+        ("(front, sigma_side = 1)", r"(front, $\sigma_{\mathrm{side}} = 1$)"),
+        ("free (theta1 + theta2 is given)", r"free ($\theta_{1} + \theta_{2}$ is given)"),
+        ("(theta1 + theta2)/2 = gamma7", r"$(\theta_{1} + \theta_{2})/2 = \gamma_{7}$"),
     ],
 )
 def test_prose(text: str, latex: str) -> None:
     assert Prose(derived("planar_2r")[0])(text) == latex
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [("123/200", "0.615"), ("12", "12"), ("1/3", "1/3"), ("-5/2", "-2.5"), ("1/8192", "1/8192")],
+)
+def test_defaults_are_decimals_where_these_are_exact(value: str, text: str) -> None:
+    assert decimal(sp.Rational(value)) == text
+
+
+def test_a_proof_names_the_bounds_it_assumes() -> None:
+    """The explicit forms would fill lines that TeX cannot break."""
+    sound = next(line for line in article("planar_2r").splitlines() if line.startswith("Sound:"))
+    assert re.findall(r"style (\w+) \\ge 0", sound) == ["A", "C", "B"]
+
+
+def test_only_a_single_matrix_shrinks() -> None:
+    matrix = r"\begin{bmatrix} a & b \end{bmatrix}"
+    assert mixed(f"${matrix}$") == rf"\fit{{$\displaystyle {matrix}$}}"
+    assert r"\fit" not in mixed(f"${matrix} = {matrix}$")
+    assert r"\fit" not in mixed("$a$ and $b$")
 
 
 def test_parentheses_that_tex_can_break() -> None:

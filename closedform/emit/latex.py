@@ -221,7 +221,11 @@ class Page:
     def proved(self, result: InverseResult) -> dict[str, Any]:
         symbols = {s.name: s for f in self.derivation.functions for s in f.symbols}
         symbols |= {p.name: p.symbol for p in self.derivation.parameters}
-        given = [rf"{self.math(sp.sympify(a, symbols))} \ge 0" for a in result.assumptions]
+        named = self.named_bounds(self.derivation[result.function])
+        assumed = dict.fromkeys(
+            self.math(named.get(a) or sp.sympify(a, symbols)) for a in result.assumptions
+        )
+        given = [rf"{e} \ge 0" for e in assumed]
         how = {
             "generic": "a Groebner basis over the field of parameters and targets",
             "specialised": "Groebner bases, the same at several rational points",
@@ -232,6 +236,15 @@ class Page:
             "how": how.get(result.method, escape(result.method)),
             "lemmas": result.lemmas,
             "continua": result.continua,
+        }
+
+    def named_bounds(self, function: Function) -> dict[str, sp.Symbol]:
+        """The name of each bound by its explicit form, in whichever branch."""
+        names = [s.symbol for s in function.body if isinstance(s, Bound)]
+        return {
+            str(explicit): name
+            for _, signs in function.cases()
+            for explicit, name in zip(function.bounds(signs), names, strict=True)
         }
 
     def claims(self) -> list[dict[str, Any]]:
@@ -330,6 +343,12 @@ class Page:
         return [whole, *(equation for _, _, equation in sorted(named))]
 
 
+def decimal(value: sp.Rational) -> str:
+    """A rational as a decimal where that is exact and short, else as a fraction."""
+    digits = next((k for k in range(7) if (value * 10**k).is_Integer), None)
+    return str(value) if digits is None else f"{float(value):.{digits}f}"
+
+
 def element(base: str, index: str) -> str:
     """The name of an entry of a matrix or a vector."""
     if subscript := re.fullmatch(r"(.+?)_\{?([^{}]+)\}?", base):
@@ -380,8 +399,8 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         "reference": escape(derivation.paper.reference),
         "mechanism": text(derivation.mechanism),
         "parameters": [
-            (page.math(p.symbol), escape(p.name), escape(p.unit), p.value, text(p.meaning),
-             text(p.source)) for p in derivation.parameters
+            (page.math(p.symbol), escape(p.name), escape(p.unit), decimal(p.value),
+             text(p.meaning), text(p.source)) for p in derivation.parameters
         ],
         "joints": [page.joint(j) for j in derivation.joints],
         "steps": [page.step(s) for s in derivation.steps],

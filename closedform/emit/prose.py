@@ -7,7 +7,7 @@ import re
 import sympy as sp
 from sympy.core.alphabets import greeks
 
-from closedform.derivation import Derivation
+from closedform.derivation import Derivation, Step
 from closedform.functions import Bound, Let
 
 GREEK = {*greeks, *(g.capitalize() for g in greeks), "lambda", "varphi"}
@@ -44,13 +44,14 @@ NUMBER = r"\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![A-Za-z])"
 POWER = rf"(?:\*\*|\^)(?:\{{[^}}]*\}}|-?\w+|{PAREN})"
 BALL = r"\[[^]]*\+/-[^]]*\]"
 ATOM = rf"[-+]?(?:{FUNCTIONS}{PAREN}|{NAME}|{NUMBER}|{PAREN}|\|[^|]+\||{BALL})(?:{POWER})?"
-RELATION = r"(?:\s*(?:<=|>=|!=|=|[*/])\s*|\s+[-+<>]\s+)"
-PROSE = re.compile(rf"(?<![\w-])({ATOM}(?:{RELATION}{ATOM})*)(?!-?\w)")
+RELATION = r"(?:\s*(?:<=|>=|!=|=|[*/×])\s*|\s+[-+<>]\s+)"
+PROSE = re.compile(rf"(?<![\w'’-])({ATOM}(?:{RELATION}{ATOM})*)(?!-?\w)")
 TOKEN = re.compile(
     rf"({FUNCTIONS})({PAREN})|(?:\*\*|\^)({PAREN}|\{{[^}}]*\}}|-?\w+)|({NUMBER})|({NAME})"
-    r"|(\+/-|<=|>=|!=|[*<>])|(.)"
+    r"|(\+/-|<=|>=|!=|[*<>×])|(.)"
 )
-SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,"}
+SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,", "×": r"\times "}
+GREEK_NAME = re.compile(rf"(?:{'|'.join(sorted(GREEK))})\d*(?:_\w+)?")
 
 
 def symbol_name(name: str) -> str:
@@ -94,11 +95,16 @@ def escape(text: str) -> str:
 
 
 def mixed(text: str) -> str:
-    """Text with formulas between dollar signs."""
+    """Text with formulas between dollar signs; a formula that is one matrix shrinks to fit."""
     parts = text.split("$")
     for i, part in enumerate(parts):
         formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
-        parts[i] = rf"$\displaystyle {formula}$" if i % 2 else escape(part)
+        formula = rf"$\displaystyle {formula}$"
+        if part.count(r"\begin") == 1 and re.fullmatch(
+            r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part
+        ):
+            formula = rf"\fit{{{formula}}}"
+        parts[i] = formula if i % 2 else escape(part)
     return "".join(parts)
 
 
@@ -110,23 +116,34 @@ class Prose:
         symbols = [p.symbol for p in derivation.parameters] + [j.symbol for j in derivation.joints]
         symbols += [s for f in functions for s in f.symbols]
         symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
+        symbols += [s for step in derivation.steps for s in _symbols(step)]
         names = {str(s) for s in symbols} | set(derivation.task)
         self.known = GREEK | set(SYMBOL_NAMES)
         self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
 
     def __call__(self, text: str) -> str:
-        parts = PROSE.split(text)
         return "".join(
-            f"${self.formula(part)}$" if i % 2 and self._is_formula(part) else escape(part)
-            for i, part in enumerate(parts)
+            self._part(part) if i % 2 else escape(part) for i, part in enumerate(PROSE.split(text))
         )
 
+    def _part(self, text: str) -> str:
+        """A formula, or text; in parentheses that hold words there may be formulas."""
+        if self._is_formula(text):
+            return f"${self.formula(text)}$"
+        return f"({self(text[1:-1])})" if re.fullmatch(PAREN, text) else escape(text)
+
+    def _is_symbol(self, name: str) -> bool:
+        return name in self.known or bool(GREEK_NAME.fullmatch(name))
+
     def _is_formula(self, text: str) -> bool:
+        names = re.findall(rf"(?<![\w.]){NAME}", text)
+        words = [n for n in names if len(n) > 1 and n[1] != "_" and not self._is_symbol(n)]
+        if re.fullmatch(PAREN, text) and any(not re.fullmatch(FUNCTIONS, n) for n in words):
+            return False
         if re.search(rf"\b{FUNCTIONS}\(", text):
             return True
-        names = re.findall(rf"(?<![\w.]){NAME}", text)
         related = bool(re.search(r"[=<>*^|]|\+/-| [-+] |\w/\w", text))
-        if any(n in self.known or re.fullmatch("[^aAI]|[A-Za-z]_.+", n) for n in names):
+        if any(self._is_symbol(n) or re.fullmatch("[^aAI]|[A-Za-z]_.+", n) for n in names):
             return related or not text.startswith("(")
         return related and "=" in text if names else related or text[0] == "-"
 
@@ -167,11 +184,18 @@ class Prose:
             elif number:
                 done.append(re.sub(r"e\+?(-?)0*(\d+)", r"\\cdot 10^{\1\2}", number))
             elif name:
-                short = name in self.known or len(name) == 1 or name[1] == "_"
+                short = self._is_symbol(name) or len(name) == 1 or name[1] == "_"
                 done.append(symbol_name(name) if short else rf"\mathrm{{{name}}}")
             else:
                 done.append(SIGNS.get(sign, sign) or other)
         return "".join(done)
+
+
+def _symbols(step: Step) -> set[sp.Symbol]:
+    """The symbols of what a step shows."""
+    shown = [value for _, value in step.shown]
+    parts = [p for v in shown for p in (v if isinstance(v, list | tuple) else [v])]
+    return {s for p in parts if isinstance(p, sp.Basic | sp.MatrixBase) for s in p.free_symbols}
 
 
 def upright(text: str) -> str:

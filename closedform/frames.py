@@ -183,14 +183,17 @@ def _merge_pair(expr: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
     candidates = [expr]
     for sign in (1, -1):
         C, S = sp.cos(a + sign * b), sp.sin(a + sign * b)
-        for first in (C + sign * sa * sb, None):
-            rewritten = expr
-            if first is not None:
-                rewritten = sp.expand(rewritten.subs(ca * cb, first))
+        for rewritten in (_replaced(expr, ca * cb, C + sign * sa * sb), expr):
             for second in ((sa * cb, S - sign * ca * sb), (ca * sb, sign * (S - sa * cb))):
-                candidates.append(sp.expand(rewritten.subs(*second)))
+                candidates.append(_replaced(rewritten, *second))
             candidates.append(rewritten)
-    return min(candidates, key=_terms)
+    return min(dict.fromkeys(candidates), key=_terms)
+
+
+def _replaced(expr: sp.Expr, product: sp.Expr, sum_: sp.Expr) -> sp.Expr:
+    """An expanded expression with a product replaced, and expanded again where it occurred."""
+    replaced = expr.subs(product, sum_)
+    return expr if replaced == expr else sp.expand(replaced)
 
 
 def _terms(expr: sp.Expr) -> int:

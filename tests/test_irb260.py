@@ -75,8 +75,10 @@ def wrapped(angle: np.ndarray) -> np.ndarray:
 
 
 def missed(robot, solutions, x, params=L) -> float:
-    """The largest miss of all reachable branches: metres and radians."""
+    """The largest miss of all reachable branches, metres and radians; their angles are wrapped."""
     found = np.isin(solutions.status, (OK, SINGULAR))
+    angles = solutions.q[found]
+    assert (angles > -np.pi).all() and (angles <= np.pi).all()
     error = robot.fk(np.where(found[..., None], solutions.q, 0.0), params) - x[..., None, :]
     error[..., 3] = wrapped(error[..., 3])
     return float(np.abs(error[found]).max(initial=0.0))
@@ -267,12 +269,14 @@ def test_impossible_input(robot) -> None:
 
 
 def test_arms_without_length(robot) -> None:
-    for l3, l4 in [(0.0, 0.7), (0.7, 0.0), (0.0, 0.0)]:
+    for l3, l4, theta2 in [(0.0, 0.7, 0.4), (0.7, 0.0, 0.4), (0.7, 1e-17, 0.6), (0.0, 0.0, 0.4)]:
         params = (0.1, 0.6, l3, l4, 0.2, 0.1)
-        x = robot.fk([0.3, 0.4, 0.5, 0.6], params)
+        x = robot.fk([0.3, theta2, 0.5, 0.6], params)
         solutions = robot.ik(x, params)
         assert (solutions.status[:2] == SINGULAR).all()
         assert missed(robot, solutions, x, params) < 1e-15
+        np.testing.assert_array_equal(solutions.q[:2, 2], -np.pi / 2)
+        np.testing.assert_array_equal(solutions.q[0], solutions.q[1])
 
 
 def test_jacobians_by_differences(robot, q) -> None:

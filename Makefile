@@ -6,13 +6,15 @@ BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 DERIVING := $(shell find closedform derivations templates -name '*.py' -o -name '*.jinja')
-PRINTED := $(shell find generated -name '*.py' -o -name '*.c' -o -name '*.h' -o -name '*.tex')
+PRINTED := $(shell find generated -type f ! -name '*.so' ! -path '*/__pycache__/*')
 C_SOURCES := $(wildcard generated/c/*.[ch] closedform/extension/*.[ch])
 PORTABLE := $(filter-out generated/c/extension.c,$(wildcard generated/c/*.c))
 PDFS := $(patsubst generated/latex/%.tex,build/pdf/%.pdf,$(wildcard generated/latex/*.tex))
+COMPILERS := $(foreach cc,gcc clang,$(foreach type,double float,warnings-$(cc)-$(type)))
 WARNINGS := -std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
 
-.PHONY: all test check lint types regenerated warnings format pdf bench clean distclean help
+.PHONY: all test check lint types regenerated warnings $(COMPILERS) \
+	format pdf bench clean distclean help
 .DELETE_ON_ERROR:
 
 all: build/native.stamp  ## derive, prove, generate and build; one line a robot (the default)
@@ -21,7 +23,7 @@ all: build/native.stamp  ## derive, prove, generate and build; one line a robot 
 .venv/installed.stamp: pyproject.toml setup.py
 	@test -n "$(PYTHON)" || { echo "closedform needs Python 3.11 or later: make PYTHON=..."; exit 1; }
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --no-compile --editable '.[dev]'
 	@touch $@
 
 # The list of what was proved. Files in generated/ are written only where they change.
@@ -49,14 +51,15 @@ types: .venv/installed.stamp
 regenerated: all
 	$(BIN)/closedform check
 
-warnings: $(foreach cc,gcc clang,$(foreach type,double float,warnings-$(cc)-$(type)))
+warnings: $(COMPILERS)
 
 # Optimised, because without it a compiler does not see every use of an unset variable.
-warnings-gcc-float warnings-clang-float: FLOAT := -DCLOSEDFORM_FLOAT
-warnings-gcc-% warnings-clang-%: build/derived.txt
-	@command -v $(word 2,$(subst -, ,$@)) >/dev/null || { echo "$@: no such compiler, skipped"; exit 0; }; \
-	set -e; for source in $(PORTABLE); do \
-		$(word 2,$(subst -, ,$@)) $(WARNINGS) $(FLOAT) -O1 -c -o /dev/null $$source; done; \
+$(filter %-float,$(COMPILERS)): FLOAT := -DCLOSEDFORM_FLOAT
+$(COMPILERS): warnings-%: build/derived.txt
+	@compiler=$(firstword $(subst -, ,$*)); \
+	command -v $$compiler >/dev/null || { echo "$@: there is no $$compiler, skipped"; exit 0; }; \
+	for source in $(PORTABLE); do \
+		$$compiler $(WARNINGS) $(FLOAT) -O1 -c -o /dev/null $$source || exit 1; done; \
 	echo "$@: clean"
 
 format: .venv/installed.stamp  ## lay out the Python that is written by hand
@@ -70,7 +73,7 @@ build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
 		echo "make pdf needs pdflatex; on Debian: apt install texlive-latex-recommended"; exit 1; }
 	@mkdir -p $(@D)
 	@for pass in 1 2; do pdflatex -interaction=nonstopmode -halt-on-error -output-directory=$(@D) $< \
-		> $(@D)/$*.out || { tail -n 30 $(@D)/$*.out; exit 1; }; done
+		> $(@D)/$*.txt || { tail -n 30 $(@D)/$*.txt; exit 1; }; done
 	@echo $@
 
 bench: all  ## time the generated code; the numbers also go to build/benchmarks.json

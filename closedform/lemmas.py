@@ -65,7 +65,7 @@ def sine_cosine(
 ) -> Lemma:
     """``a sin x + b cos x = c``: two solutions where ``a^2 + b^2 >= c^2``.
 
-    With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``, and half the angle
+    With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``; half the angle
     ``x - atan2(a, b)`` has the tangent ``sqrt(h - c) / sqrt(h + c)``.  x is free where
     ``a = b = c = 0``.
     """
@@ -92,6 +92,7 @@ def two_link_triangle(
     base: sp.Symbol,
     sigma: sp.Symbol,
     *,
+    scale: sp.Expr | None = None,
     suffix: str = "",
 ) -> Lemma:
     """The triangle of two links of lengths ``first``, ``second`` whose ends are ``reach`` apart.
@@ -102,9 +103,11 @@ def two_link_triangle(
 
         tan(elbow / 2) = sqrt(S A) / sqrt(B C),   tan(base / 2) = sqrt(A C) / sqrt(S B).
 
-    The elbow is free where a link has no length, and the base where the reach is zero.
+    The elbow is free where a link has no length, and the base where the reach is zero.  ``scale``
+    is the natural scale of the lengths: by default that of the links, more where the reach is a
+    difference of larger lengths.
     """
-    scale = first + second
+    scale = first + second if scale is None else scale
     S = program.let(f"S{suffix}", first + second + reach, nonnegative=True)
     A = program.bound(f"A{suffix}", first + second - reach, scale, "nearer than full stretch")
     B = program.bound(f"B{suffix}", reach + first - second, scale, "farther than the fold")
@@ -129,6 +132,43 @@ def two_link_triangle(
     )
 
 
+def parallelogram(
+    crank: sp.Expr,
+    coupler: sp.Expr,
+    angle: sp.Expr,
+    frame: sp.Expr,
+    turn: sp.Symbol,
+    rod: sp.Symbol,
+    sigma: sp.Symbol,
+) -> Lemma:
+    """The four-bar linkage with equal opposite sides: its two assemblies.
+
+    The crank and the rod have the length ``crank``, the coupler and the fixed link the length
+    ``coupler``; the crank is at ``angle`` and the fixed link at ``frame`` in a common plane.
+    Unknown are the ``turn`` of the coupler against the fixed link and the angle of the ``rod``.
+
+    With the plus sign the linkage is a parallelogram, and the coupler does not turn; with the minus
+    sign it is an antiparallelogram.  They meet where the linkage is flat.  The antiparallelogram
+    has a free turn where it is flat with equal sides.
+    """
+    bend = angle - frame
+    half = sp.atan2(crank * sp.sin(bend), crank * sp.cos(bend) - coupler)
+    turned = (1 - sigma) * half
+    return Lemma(
+        "parallelogram",
+        r"l\,e^{i\theta} + a\,e^{i(\gamma + \varphi)} = a\,e^{i\gamma} + l\,e^{i\beta} "
+        r"\;\Rightarrow\; (\varphi, \beta) = (0, \theta) \text{ or } "
+        r"\tan\frac{\varphi}{2} = \frac{l\sin(\theta - \gamma)}{l\cos(\theta - \gamma) - a},\ "
+        r"\beta = 2\gamma + \varphi - \theta",
+        tuple(
+            crank * (f(angle) - f(rod)) + coupler * (f(frame + turn) - f(frame))
+            for f in (sp.cos, sp.sin)
+        ),
+        {turn: turned, rod: sigma * angle + (1 - sigma) * frame + turned},
+        2,
+    )
+
+
 def zyz_angles(
     program: Program,
     R: sp.Matrix,
@@ -143,8 +183,8 @@ def zyz_angles(
 
     The third column of R gives the first two angles.  The last is *not* read from the third row, as
     the textbooks do: near ``middle = 0`` that row knows nothing of it.  It follows from the
-    rotation that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row is
-    ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
+    rotation that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row
+    is ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
 
     Where ``sin(middle) = 0`` only ``first + last`` (or ``first - last``) is determined; the
     convention is ``first = 0``.
@@ -211,10 +251,10 @@ def circle_intersection(
 
     ``centres`` is the vector from the first to the second, and ``unknowns`` the vector from the
     first to the point.  With the factors of Heron's formula the height of the triangle is
-    ``sqrt(S A B C) / (2 d)``.  ``scale`` is the size of the coordinates, whose rounding
-    decides what counts as zero.  Where the radii are equal and the centres coincide, the point is free on a
-    circle; the convention is that of centres which are parted along the first axis.  Circles that
-    touch meet in one point.
+    ``sqrt(S A B C) / (2 d)``.  ``scale`` is the size of the coordinates, whose rounding decides
+    what counts as zero.  Where the radii are equal and the centres coincide, the point is free on
+    a circle; the convention is that of centres which are parted along the first axis.  Circles
+    that touch meet in one point.
     """
     x, y = unknowns
     apart = program.let(

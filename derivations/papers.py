@@ -14,3 +14,9 @@ CHABLAT_WENGER_ANGELES = Paper(
     ("Damien Chablat", "Philippe Wenger", "Jorge Angeles"),
     "Integrated Design and Manufacturing in Mechanical Engineering, Compiègne, 1998",
 )
+
+SHI_ZHU_LI = Paper(
+    "shi-zhu-li",
+    "New Method for Kinematic Analysis of a Hybrid Manipulator",
+    ("Jun Shi", "Xiaorui Zhu", "Zexiang Li"),
+)

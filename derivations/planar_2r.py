@@ -72,9 +72,9 @@ d.function(
 )
 d.function(
     "orientation",
-    "Angle phi of the last link against the x axis, the plain sum of the joint angles.",
+    "Angle phi of the last link against the x axis: the sum of the joint angles, in (-pi, pi].",
     {"q": q},
-    {"phi": phi},
+    {"phi": atan2(sin(phi), cos(phi))},
     source="eq. (5)",
 )
 
@@ -93,8 +93,8 @@ d.step(
 d.step(
     "Manipulability and singular set",
     "Yoshikawa's measure sqrt(det(J J^T)) of the square Jacobian is the modulus of the "
-    "determinant.  It vanishes exactly where sin(theta2) does (for links that have a length): the arm is "
-    "stretched or folded, and the hand cannot move along the arm.",
+    "determinant.  It vanishes exactly where sin(theta2) does (for links that have a length): the "
+    "arm is stretched or folded, and the hand cannot move along it.",
     {"w": manipulability, r"w^2": sp.factor(det**2)},
     equal=[((J[:2, :] * J[:2, :].T).det(), det**2)],
 )
@@ -194,7 +194,7 @@ d.inverses.append(
                 at_base,
                 {px: sp.Integer(0), py: sp.Integer(0), l2: l1},
                 theta1,
-                r"\theta_2 = \pi, \theta_1 any",
+                r"\theta_2 = \pi",
             ),
         ),
     )

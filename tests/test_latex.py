@@ -13,9 +13,11 @@ import sympy as sp
 
 from closedform.claims import Every, Identity, Undecidable
 from closedform.derivation import Continuum, Derivation, Inverse, Paper, Solved
-from closedform.emit.latex import document, errata, notebook
+from closedform.emit.errata import errata, markdown
+from closedform.emit.latex import document, notebook
+from closedform.emit.prose import Prose, escape, loosen, mixed, symbol_name
 from closedform.emit.render import render
-from closedform.emit.show import Prose, escape, loosen, markdown, mixed, show, symbol_name
+from closedform.emit.show import show
 from closedform.functions import Program, branches, choose, real
 from closedform.lemmas import linear_pair
 from closedform.prove import ClaimResult, InverseResult, Proof, prove

@@ -11,6 +11,7 @@ from closedform.lemmas import (
     Lemma,
     circle_intersection,
     linear_pair,
+    parallelogram,
     sine_cosine,
     two_link_triangle,
     zyz_angles,
@@ -41,12 +42,23 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         second = r1 if name == "circles of one size" else r2
         lemma, _ = circle_intersection(program, (a, b), r1, second, (x, y), sigma, r1 + r2)
         return lemma, program, {}
+    if name == "parallelogram":
+        crank, coupler = (real(n, positive=True) for n in ("l", "a"))
+        return parallelogram(crank, coupler, z, real("gamma"), x, y, sigma), program, {}
     R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
     given = dict(zip(R, rotation_parametrisation(), strict=True))
     return zyz_angles(program, R, x, y, z, sigma), program, given
 
 
-NAMES = ["linear pair", "sine and cosine", "triangle", "zyz", "circles", "circles of one size"]
+NAMES = [
+    "linear pair",
+    "sine and cosine",
+    "triangle",
+    "parallelogram",
+    "zyz",
+    "circles",
+    "circles of one size",
+]
 
 
 @pytest.mark.parametrize("name", NAMES)

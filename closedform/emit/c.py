@@ -1,8 +1,8 @@
 """Prints a derivation as C99: one header and one source a robot, and the table for Python.
 
 Each function has one kernel over scalars, without trigonometry: the sines and cosines of its angles
-are arguments.  The single call takes them in lanes of eight, the batch in blocks, and the compiler
-inlines the kernel into both.
+are arguments.  The single call takes them as the lanes of a vector, the batch in blocks, and the
+compiler inlines the kernel into both.
 """
 
 from __future__ import annotations
@@ -33,9 +33,12 @@ CALLS = {
     "min": "cf_min",
     "finite": "cf_is_finite",
     "wrap": "cf_wrap",
+    "poison": "cf_poison",
+    "status": "cf_status",
     "select": "cf_select",
 }
-RESERVED = frozenset(
+LOCALS = frozenset(("params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start"))
+RESERVED = LOCALS | frozenset(
     [
         "auto",
         "break",
@@ -71,13 +74,6 @@ RESERVED = frozenset(
         "void",
         "volatile",
         "while",
-        "params",
-        "sines",
-        "cosines",
-        "n",
-        "i",
-        "m",
-        "start",
     ]
 )
 
@@ -218,6 +214,8 @@ class _Emission:
             for k, entry in enumerate(a.entries)
         }
         names = [a.name for a in (*self.inputs, *self.outputs)]
+        if taken := LOCALS.intersection(names):
+            raise ValueError(f"{function.name}: the C code uses the name {', '.join(taken)} itself")
         self.printer = CPrinter(program, reserved={*RESERVED, *names})
         self.values = self.printer.run()
         read = program.used_inputs(below_angles=False)
@@ -290,8 +288,8 @@ class _Emission:
             ),
             copies_params=bool(self.parameters),
             n_angles=n_angles,
-            n_lanes=-(-n_angles // LANES) * LANES,
-            lanes=tuple(self._lanes()),
+            n_lanes=self._n_lanes,
+            lanes=tuple(self._lanes()) if n_angles else (),
             angle_blocks=tuple(self._angle_blocks()),
             loads=tuple(self._loads(trig)),
             stores=tuple(self._stores()),
@@ -345,19 +343,22 @@ class _Emission:
         argument, k = self.places.get(name, (None, 0))
         return name, argument, k, divisor
 
+    @property
+    def _n_lanes(self) -> int:
+        """The angles, and zeros up to whole vectors: 2, 4 or a multiple of 8 numbers."""
+        n = len(self.program.angles)
+        return 1 << (n - 1).bit_length() if n <= LANES else -(-n // LANES) * LANES
+
     def _lanes(self) -> list[str]:
-        lines = []
         angles = []
         for node in self.program.angles:
             name, argument, k, divisor = self._angle(node)
             text = f"{argument.name}[{k}]" if argument else f"params->{name}"
             angles.append(text if divisor == 1 else f"{text} / CLOSEDFORM_C({divisor}.0)")
-        for group, first in enumerate(range(0, len(angles), LANES)):
-            listed = ", ".join(angles[first : first + LANES])
-            lines.append(f"const real_t angles_{group}[{LANES}] = {{ {listed} }};")
-        for group, first in enumerate(range(0, len(angles), LANES)):
-            lines.append(f"cf_sincos8(angles_{group}, sines + {first}, cosines + {first});")
-        return lines
+        return [
+            f"const real_t lanes[{self._n_lanes}] = {{ {', '.join(angles)} }};",
+            f"cf_sincos_block({self._n_lanes}, lanes, sines, cosines);",
+        ]
 
     def _angle_blocks(self) -> list[str]:
         lines = []
@@ -371,9 +372,9 @@ class _Emission:
                 )
                 source = f"angle_{j}"
                 lines.append(f"real_t {source}[CLOSEDFORM_BLOCK];")
-                lines.append("for (size_t i = 0; i < m; ++i)")
+                lines.append("for (size_t i = 0; i < length; ++i)")
                 lines.append(f"    {source}[i] = {place} / CLOSEDFORM_C({divisor}.0);")
-            lines.append(f"cf_sincos_block(m, {source}, sines[{j}], cosines[{j}]);")
+            lines.append(f"cf_sincos_block(length, {source}, sines[{j}], cosines[{j}]);")
         return lines
 
     def _stores(self) -> list[str]:

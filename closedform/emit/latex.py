@@ -1,4 +1,4 @@
-"""Prints a derivation as a LaTeX article, as a notebook cell, and the papers' errata as Markdown.
+"""Prints a derivation as a LaTeX article and as a notebook cell.
 
 Python prepares the formulas and the sentences; the templates lay them out.  A formula that fits is
 aligned; a longer one is set in a paragraph, where TeX itself breaks it at operators.  For that the
@@ -17,12 +17,12 @@ from sympy.printing.latex import LatexPrinter
 
 from closedform.claims import REFUTED
 from closedform.derivation import Continuum, Derivation, Inverse, Joint, Step
-from closedform.emit.show import Prose, errata, escape, loosen, mixed, symbol_name, upright
+from closedform.emit.prose import Prose, escape, loosen, mixed, symbol_name, upright
 from closedform.emit.text import citation
 from closedform.functions import Array, Bound, Function, Let, Match, Statement, Vanishes, real
 from closedform.prove import InverseResult, Proof
 
-__all__ = ["document", "errata", "notebook"]
+__all__ = ["document", "notebook"]
 
 FITS = 84.0
 """Widest formula that is set on one line, in average letters of 10 pt."""

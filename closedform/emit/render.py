@@ -12,10 +12,12 @@ import jinja2
 
 from closedform.derivation import Derivation
 from closedform.emit import c, latex, numpy
+from closedform.emit.errata import errata
+from closedform.emit.table import csv
 from closedform.lower import lower
 from closedform.prove import Proof
 
-BACKENDS = ("numpy", "c", "latex")
+BACKENDS = ("numpy", "c", "latex", "data")
 
 
 @cache
@@ -51,6 +53,9 @@ def robot_files(
     if "latex" in backends:
         context = latex.document(derivation, proof)
         printed[Path("latex", f"{name}.tex")] = render("latex/robot.tex.jinja", context)
+    if "data" in backends:
+        for table in derivation.tables:
+            printed[Path("data", f"{table.name}.csv")] = csv(derivation, table)
     return printed
 
 
@@ -69,5 +74,5 @@ def shared_files(
         for name in ("closedform.h", "extension.c", "CMakeLists.txt", "closedform-config.cmake.in"):
             printed[Path("c", name)] = render(f"c/{name}.jinja", context)
     if "latex" in backends:
-        printed[Path("errata.md")] = render("errata.md.jinja", latex.errata(derivations, proofs))
+        printed[Path("errata.md")] = render("errata.md.jinja", errata(derivations, proofs))
     return printed

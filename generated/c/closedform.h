@@ -43,9 +43,9 @@
 #define CF_INDEPENDENT
 #endif
 
-/* Before the definition of a function that has lanes: with CLOSEDFORM_DISPATCH the compiler builds
- * it for AVX-512, AVX2 and the baseline, and the loader picks one. Clang, which has no such thing in
- * C, is told to keep quiet where its flags leave a loop of CF_INDEPENDENT scalar. */
+/* Before the definition of a function: with CLOSEDFORM_DISPATCH the compiler builds it for AVX-512,
+ * AVX2 and the baseline, and the loader picks one. Clang, not asked for clones, is told instead to
+ * keep quiet where its flags leave a loop of CF_INDEPENDENT scalar. */
 #if defined(__clang__)
 #define CLOSEDFORM_DISPATCHED _Pragma("clang diagnostic ignored \"-Wpass-failed\"")
 #elif defined(CLOSEDFORM_DISPATCH) && defined(__x86_64__) && defined(__GLIBC__) && \
@@ -119,6 +119,20 @@ CF_INLINE real_t cf_select(int condition, real_t a, real_t b)
 {
     const cf_word mask = (cf_word)0 - (cf_word)condition;
     return cf_from_word((cf_to_word(a) & mask) | (cf_to_word(b) & ~mask));
+}
+
+/* NaN where `failed`, else zero: added to an answer, it is one selection for all entries. */
+CF_INLINE real_t cf_poison(int failed)
+{
+    return cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+}
+
+/* The status of a branch; an invalid input outweighs all, a free joint nothing. */
+CF_INLINE real_t cf_status(int invalid, int unreachable, int singular)
+{
+    const real_t reached = cf_select(singular, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
+    const real_t valid = cf_select(unreachable, CLOSEDFORM_C(1.0), reached);
+    return cf_select(invalid, CLOSEDFORM_C(3.0), valid);
 }
 
 CF_INLINE real_t cf_sqrt(real_t x) { return CF_LIBM(sqrt)(x); }
@@ -217,7 +231,7 @@ CF_INLINE real_t cf_atan_poly(real_t z)
 #endif
 
 /* Sine and cosine for |x| <= CF_TRIG_LIMIT, without a branch. Beyond it, and for NaN, the values
- * are unspecified: use cf_sincos8 or cf_sincos_block, or test with cf_trig_excess. */
+ * are unspecified: use cf_sincos_block, or test with cf_trig_excess. */
 CF_INLINE void cf_sincos(real_t x, real_t *s, real_t *c)
 {
     const real_t ax = cf_abs(x);
@@ -261,7 +275,8 @@ CF_RARE void cf_sincos_fixup(size_t n, const real_t *x, real_t *s, real_t *c)
     }
 }
 
-/* Sine and cosine of any n angles; the arrays must not overlap. */
+/* Sine and cosine of any n angles; the arrays must not overlap. With a constant n the angles of one
+ * call become one vector, and cost little more than one angle. */
 CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
                                real_t *CF_RESTRICT c)
 {
@@ -271,13 +286,6 @@ CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF
         excess |= cf_trig_excess(x[i]);
     }
     if (excess & CF_SIGN) cf_sincos_fixup(n, x, s, c);
-}
-
-/* The same for the angles of one call, padded to 8: as vectors they cost little more than one. */
-CF_INLINE void cf_sincos8(const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
-                          real_t *CF_RESTRICT c)
-{
-    cf_sincos_block(8, x, s, c);
 }
 
 /* C99 atan2, with its signed zeros, infinities and NaN, in [-CF_PI, CF_PI]; one division, no

@@ -4,16 +4,16 @@
  * Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 22 add, 32 compare and select, 5 divide, 19 multiply, 3 sincos, 3 sqrt
- *   passive_angles: 16 add, 33 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 3
+ *   fk: 22 add, 30 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
+ *   passive_angles: 16 add, 33 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
  *     sqrt
- *   jacobian_parallel: 27 add, 29 compare and select, 5 divide, 21 multiply, 3 sincos, 3 sqrt
- *   jacobian_serial: 24 add, 29 compare and select, 5 divide, 25 multiply, 2 sincos, 3 sqrt
- *   jacobian: 35 add, 29 compare and select, 17 divide, 44 multiply, 3 sincos, 3 sqrt
- *   determinant: 20 add, 29 compare and select, 7 divide, 28 multiply, 2 sincos, 3 sqrt
- *   singularities: 26 add, 29 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
- *   condition_number: 9 add, 29 compare and select, 3 divide, 11 multiply, 2 sincos, 3 sqrt
- *   ik: 29 add, 64 compare and select, 6 atan2, 14 multiply, 11 sqrt
+ *   jacobian_parallel: 27 add, 29 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
+ *   jacobian_serial: 24 add, 29 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
+ *   jacobian: 35 add, 29 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
+ *   determinant: 20 add, 29 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
+ *   singularities: 26 add, 29 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
+ *   condition_number: 9 add, 29 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
+ *   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
  *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
  *   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
  */
@@ -40,47 +40,47 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const hybrid_five_bar_params *params, c
     const real_t C_y = L1 * c2;
     const real_t t2 = C_y - (L0 + L1 * c3);
     const real_t apart = cf_sqrt(t1 * t1 + t2 * t2);
-    const int t3 = apart <= CLOSEDFORM_VANISHING * (L0 + L1 + L2);
-    const real_t distance = cf_select(t3, CLOSEDFORM_C(0.0), apart);
-    const real_t t4 = cf_select(t3, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t5 = distance * t4 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(t3, CLOSEDFORM_C(1.0), -(t2 / apart));
-    const real_t t6 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t7 = t6 - apart;
-    const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t8 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t6 * CLOSEDFORM_VANISHING, CLOSEDFORM_C(0.0), t8);
-    const real_t t9 = n_1 * height;
-    const real_t P_r = C_r - (t5 - t9);
-    const int t10 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t11 = t10 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int invalid = !(t12 & (CLOSEDFORM_C(0.0) <= L2));
-    const int unreachable = !(-(t6 * CLOSEDFORM_FEASIBILITY) <= t7);
-    const real_t t13 = cf_select(invalid | unreachable, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t14 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t15 = t4 * height;
-    const real_t P_r_right_of_CD = C_r - (t5 + t9);
-    const real_t t16 = cf_select(t3, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t17 = cf_select(unreachable, CLOSEDFORM_C(1.0), t16);
-    const real_t t18 = cf_select(invalid, CLOSEDFORM_C(3.0), t17);
-    p[0] = -(P_r * c1) + t13;
-    p[1] = C_y + (t14 + t15) + t13;
-    p[2] = P_r * s1 + t13;
-    p[3] = -(c1 * P_r_right_of_CD) + t13;
-    p[4] = C_y + (t14 - t15) + t13;
-    p[5] = s1 * P_r_right_of_CD + t13;
-    status[0] = t18;
-    status[1] = t18;
+    const real_t t3 = L0 + L1 + L2;
+    const real_t t4 = t3 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t4;
+    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t5 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
+    const real_t t7 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t8 = t7 - apart;
+    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t9);
+    const real_t t10 = n_1 * height;
+    const real_t P_r = C_r - (t6 - t10);
+    const int t11 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int t12 = t11 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int invalid = !(t13 & (CLOSEDFORM_C(0.0) <= L2));
+    const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
+    const real_t t14 = cf_poison(invalid | unreachable);
+    const real_t t15 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t16 = t5 * height;
+    const real_t P_r_right_of_CD = C_r - (t6 + t10);
+    const real_t t17 = cf_status(invalid, unreachable, coincide);
+    p[0] = -(P_r * c1) + t14;
+    p[1] = C_y + (t15 + t16) + t14;
+    p[2] = P_r * s1 + t14;
+    p[3] = -(c1 * P_r_right_of_CD) + t14;
+    p[4] = C_y + (t15 - t16) + t14;
+    p[5] = s1 * P_r_right_of_CD + t14;
+    status[0] = t17;
+    status[1] = t17;
 }
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_fk(const hybrid_five_bar_params *params, const real_t
     q[3], real_t p[6], uint8_t status[2])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[2], q[0] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[1], q[2], q[0] };
+    cf_sincos_block(4, lanes, sines, cosines);
     real_t status_real[2];
     hybrid_five_bar_fk_kernel(params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
@@ -94,14 +94,14 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[2], cosines[2]);
         real_t status_real[2][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
@@ -118,10 +118,10 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
             status_real[1][i] = status_i[1];
         }
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
     }
 }
@@ -143,45 +143,47 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const hybrid_five_bar_param
     const real_t t1 = L1 * s2 - L1 * s3;
     const real_t t2 = L1 * c2 - (L0 + L1 * c3);
     const real_t apart = cf_sqrt(t1 * t1 + t2 * t2);
-    const int t3 = apart <= CLOSEDFORM_VANISHING * (L0 + L1 + L2);
-    const real_t distance = cf_select(t3, CLOSEDFORM_C(0.0), apart);
-    const real_t t4 = cf_select(t3, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t5 = distance * t4 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(t3, CLOSEDFORM_C(1.0), -(t2 / apart));
-    const real_t t6 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t7 = t6 - apart;
-    const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t8 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t6 * CLOSEDFORM_VANISHING, CLOSEDFORM_C(0.0), t8);
-    const real_t t9 = n_1 * height;
-    const real_t DP_r_right_of_CD = t5 - t9;
-    const real_t t10 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t11 = t4 * height;
-    const real_t CP_y = t10 + t11;
-    const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t14 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t6 * CLOSEDFORM_FEASIBILITY) <= t7);
-    const real_t t15 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t16 = cf_wrap(-cf_atan2(DP_r_right_of_CD, CP_y)) + t15;
-    const real_t DP_r = t5 + t9;
-    const real_t CP_y_right_of_CD = t10 - t11;
-    const real_t t17 = cf_wrap(cf_atan2(DP_r, -CP_y_right_of_CD)) + t15;
-    const real_t t18 = cf_wrap(-cf_atan2(DP_r, CP_y_right_of_CD)) + t15;
-    const real_t t19 = cf_wrap(cf_atan2(DP_r_right_of_CD, -CP_y)) + t15;
-    theta[0] = t16;
-    theta[1] = t17;
-    theta[2] = t18;
-    theta[3] = t19;
+    const real_t t3 = L0 + L1 + L2;
+    const real_t t4 = t3 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t4;
+    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t5 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
+    const real_t t7 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t8 = t7 - apart;
+    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t9);
+    const real_t t10 = n_1 * height;
+    const real_t DP_r_right_of_CD = t6 - t10;
+    const real_t t11 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t12 = t5 * height;
+    const real_t CP_y = t11 + t12;
+    const int t13 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int t14 = t13 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t15 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
+    const real_t t16 = cf_poison(failed);
+    const real_t t17 = cf_wrap(-cf_atan2(DP_r_right_of_CD, CP_y)) + t16;
+    const real_t DP_r = t6 + t10;
+    const real_t CP_y_right_of_CD = t11 - t12;
+    const real_t t18 = cf_wrap(cf_atan2(DP_r, -CP_y_right_of_CD)) + t16;
+    const real_t t19 = cf_wrap(-cf_atan2(DP_r, CP_y_right_of_CD)) + t16;
+    const real_t t20 = cf_wrap(cf_atan2(DP_r_right_of_CD, -CP_y)) + t16;
+    theta[0] = t17;
+    theta[1] = t18;
+    theta[2] = t19;
+    theta[3] = t20;
 }
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params, const real_t
     q[3], real_t theta[4])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[2] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[1], q[2] };
+    cf_sincos_block(2, lanes, sines, cosines);
     hybrid_five_bar_passive_angles_kernel(params, q, sines, cosines, theta);
 }
 
@@ -192,12 +194,12 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
@@ -230,62 +232,64 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const hybrid_five_bar_pa
     const int t1 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t2 = t1 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const real_t t4 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t5 = L1 * s2 - L1 * s3;
-    const real_t t6 = L1 * c2 - (L0 + L1 * c3);
-    const real_t apart = cf_sqrt(t5 * t5 + t6 * t6);
-    const real_t t7 = t4 - apart;
-    const int failed = !(t3 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t4 * CLOSEDFORM_FEASIBILITY) <= t7);
-    const real_t t8 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t9 = L2 * s1 + t8;
-    const real_t t10 = CLOSEDFORM_C(0.0) + t8;
-    const real_t t11 = L2 * c1 + t8;
-    const int t12 = apart <= CLOSEDFORM_VANISHING * (L0 + L1 + L2);
-    const real_t distance = cf_select(t12, CLOSEDFORM_C(0.0), apart);
-    const real_t t13 = cf_select(t12, CLOSEDFORM_C(0.0), t5 / apart);
-    const real_t t14 = distance * t13 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(t12, CLOSEDFORM_C(1.0), -(t6 / apart));
-    const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t15 = cf_sqrt(slack) * cf_sqrt(apart + t4) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t4 * CLOSEDFORM_VANISHING, CLOSEDFORM_C(0.0), t15);
-    const real_t t16 = n_1 * height;
-    const real_t DP_r_right_of_CD = t14 - t16;
-    const real_t t17 = DP_r_right_of_CD * c1;
-    const real_t t18 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t19 = t13 * height;
-    const real_t CP_y = t18 + t19;
-    const real_t t20 = DP_r_right_of_CD * s1;
-    const real_t DP_r = t14 + t16;
-    const real_t t21 = DP_r * c1;
-    const real_t CP_y_right_of_CD = t18 - t19;
-    const real_t t22 = DP_r * s1;
-    A[0] = t9;
-    A[1] = t10;
-    A[2] = t11;
-    A[3] = t17 + t8;
-    A[4] = CP_y + t8;
-    A[5] = -t20 + t8;
-    A[6] = -t21 + t8;
-    A[7] = -CP_y_right_of_CD + t8;
-    A[8] = t22 + t8;
-    A[9] = t9;
-    A[10] = t10;
-    A[11] = t11;
-    A[12] = t21 + t8;
-    A[13] = CP_y_right_of_CD + t8;
-    A[14] = -t22 + t8;
-    A[15] = -t17 + t8;
-    A[16] = -CP_y + t8;
-    A[17] = t20 + t8;
+    const real_t t4 = L0 + L1 + L2;
+    const real_t t5 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t6 = L1 * s2 - L1 * s3;
+    const real_t t7 = L1 * c2 - (L0 + L1 * c3);
+    const real_t apart = cf_sqrt(t6 * t6 + t7 * t7);
+    const real_t t8 = t5 - apart;
+    const int failed = !(t3 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t8);
+    const real_t t9 = cf_poison(failed);
+    const real_t t10 = L2 * s1 + t9;
+    const real_t t11 = CLOSEDFORM_C(0.0) + t9;
+    const real_t t12 = L2 * c1 + t9;
+    const real_t t13 = t4 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t13;
+    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t14 = cf_select(coincide, CLOSEDFORM_C(0.0), t6 / apart);
+    const real_t t15 = distance * t14 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t7 / apart));
+    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t16 = cf_sqrt(slack) * cf_sqrt(apart + t5) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), t16);
+    const real_t t17 = n_1 * height;
+    const real_t DP_r_right_of_CD = t15 - t17;
+    const real_t t18 = DP_r_right_of_CD * c1;
+    const real_t t19 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t20 = t14 * height;
+    const real_t CP_y = t19 + t20;
+    const real_t t21 = DP_r_right_of_CD * s1;
+    const real_t DP_r = t15 + t17;
+    const real_t t22 = DP_r * c1;
+    const real_t CP_y_right_of_CD = t19 - t20;
+    const real_t t23 = DP_r * s1;
+    A[0] = t10;
+    A[1] = t11;
+    A[2] = t12;
+    A[3] = t18 + t9;
+    A[4] = CP_y + t9;
+    A[5] = -t21 + t9;
+    A[6] = -t22 + t9;
+    A[7] = -CP_y_right_of_CD + t9;
+    A[8] = t23 + t9;
+    A[9] = t10;
+    A[10] = t11;
+    A[11] = t12;
+    A[12] = t22 + t9;
+    A[13] = CP_y_right_of_CD + t9;
+    A[14] = -t23 + t9;
+    A[15] = -t18 + t9;
+    A[16] = -CP_y + t9;
+    A[17] = t21 + t9;
 }
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params, const real_t
     q[3], real_t A[18])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[0], q[1], q[2] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[0], q[1], q[2] };
+    cf_sincos_block(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_parallel_kernel(params, q, sines, cosines, A);
 }
 
@@ -296,13 +300,13 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
@@ -351,43 +355,45 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_para
     const real_t t2 = L1 * c3;
     const real_t t3 = C_y - (L0 + t2);
     const real_t apart = cf_sqrt(t1 * t1 + t3 * t3);
-    const int t4 = apart <= CLOSEDFORM_VANISHING * (L0 + L1 + L2);
-    const real_t distance = cf_select(t4, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = cf_select(t4, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(t4, CLOSEDFORM_C(1.0), -(t3 / apart));
-    const real_t t7 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t8 = t7 - apart;
-    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t7 * CLOSEDFORM_VANISHING, CLOSEDFORM_C(0.0), t9);
-    const real_t t10 = n_1 * height;
-    const real_t DP_r_right_of_CD = t6 - t10;
-    const int t11 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t12 = t11 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t13 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t7 * CLOSEDFORM_FEASIBILITY) <= t8);
-    const real_t t14 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t15 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t16 = t5 * height;
-    const real_t CP_y = t15 + t16;
-    const real_t CP_y_right_of_CD = t15 - t16;
-    const real_t DP_r = t6 + t10;
-    B[0] = L2 * (C_r - DP_r_right_of_CD) + t14;
-    B[1] = -(C_r * CP_y + C_y * DP_r_right_of_CD) + t14;
-    B[2] = D_r * CP_y_right_of_CD + t2 * DP_r + t14;
-    B[3] = L2 * (C_r - DP_r) + t14;
-    B[4] = -(C_r * CP_y_right_of_CD + C_y * DP_r) + t14;
-    B[5] = D_r * CP_y + t2 * DP_r_right_of_CD + t14;
+    const real_t t4 = L0 + L1 + L2;
+    const real_t t5 = t4 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t5;
+    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t t8 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t9 = t8 - apart;
+    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
+    const real_t t11 = n_1 * height;
+    const real_t DP_r_right_of_CD = t7 - t11;
+    const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t14 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const real_t t15 = cf_poison(failed);
+    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t17 = t6 * height;
+    const real_t CP_y = t16 + t17;
+    const real_t CP_y_right_of_CD = t16 - t17;
+    const real_t DP_r = t7 + t11;
+    B[0] = L2 * (C_r - DP_r_right_of_CD) + t15;
+    B[1] = -(C_r * CP_y + C_y * DP_r_right_of_CD) + t15;
+    B[2] = D_r * CP_y_right_of_CD + t2 * DP_r + t15;
+    B[3] = L2 * (C_r - DP_r) + t15;
+    B[4] = -(C_r * CP_y_right_of_CD + C_y * DP_r) + t15;
+    B[5] = D_r * CP_y + t2 * DP_r_right_of_CD + t15;
 }
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params, const real_t
     q[3], real_t B[6])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[2] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[1], q[2] };
+    cf_sincos_block(2, lanes, sines, cosines);
     hybrid_five_bar_jacobian_serial_kernel(params, q, sines, cosines, B);
 }
 
@@ -398,12 +404,12 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
@@ -442,67 +448,69 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *par
     const real_t t2 = L1 * c3;
     const real_t t3 = C_y - (L0 + t2);
     const real_t apart = cf_sqrt(t1 * t1 + t3 * t3);
-    const int t4 = apart <= CLOSEDFORM_VANISHING * (L0 + L1 + L2);
-    const real_t distance = cf_select(t4, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = cf_select(t4, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(t4, CLOSEDFORM_C(1.0), -(t3 / apart));
-    const real_t t7 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t8 = t7 - apart;
-    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t7 * CLOSEDFORM_VANISHING, CLOSEDFORM_C(0.0), t9);
-    const real_t t10 = n_1 * height;
-    const real_t DP_r_right_of_CD = t6 - t10;
+    const real_t t4 = L0 + L1 + L2;
+    const real_t t5 = t4 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t5;
+    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t t8 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t9 = t8 - apart;
+    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
+    const real_t t11 = n_1 * height;
+    const real_t DP_r_right_of_CD = t7 - t11;
     const real_t P_r = C_r - DP_r_right_of_CD;
-    const int t11 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t12 = t11 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t13 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t7 * CLOSEDFORM_FEASIBILITY) <= t8);
-    const real_t t14 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t15 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t16 = t5 * height;
-    const real_t CP_y = t15 + t16;
-    const real_t t17 = C_r * CP_y + C_y * DP_r_right_of_CD;
-    const real_t CP_y_right_of_CD = t15 - t16;
-    const real_t t18 = CP_y_right_of_CD * c1;
+    const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t14 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const real_t t15 = cf_poison(failed);
+    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t17 = t6 * height;
+    const real_t CP_y = t16 + t17;
+    const real_t t18 = C_r * CP_y + C_y * DP_r_right_of_CD;
+    const real_t CP_y_right_of_CD = t16 - t17;
+    const real_t t19 = CP_y_right_of_CD * c1;
     const real_t side = distance * height;
-    const real_t DP_r = t6 + t10;
+    const real_t DP_r = t7 + t11;
     const real_t along_d = D_r * CP_y_right_of_CD + t2 * DP_r;
-    const real_t t19 = CP_y * c1;
-    const real_t t20 = CLOSEDFORM_C(0.0) + t14;
-    const real_t t21 = CP_y_right_of_CD * s1;
-    const real_t t22 = CP_y * s1;
+    const real_t t20 = CP_y * c1;
+    const real_t t21 = CLOSEDFORM_C(0.0) + t15;
+    const real_t t22 = CP_y_right_of_CD * s1;
+    const real_t t23 = CP_y * s1;
     const real_t P_r_right_of_CD = C_r - DP_r;
-    const real_t t23 = C_r * CP_y_right_of_CD + C_y * DP_r;
+    const real_t t24 = C_r * CP_y_right_of_CD + C_y * DP_r;
     const real_t along_d_right_of_CD = D_r * CP_y + t2 * DP_r_right_of_CD;
-    J[0] = P_r * s1 + t14;
-    J[1] = t17 * t18 / side + t14;
-    J[2] = -(along_d * t19 / side) + t14;
-    J[3] = t20;
-    J[4] = -(DP_r * t17 / side) + t14;
-    J[5] = DP_r_right_of_CD * along_d / side + t14;
-    J[6] = P_r * c1 + t14;
-    J[7] = -(t17 * t21 / side) + t14;
-    J[8] = along_d * t22 / side + t14;
-    J[9] = s1 * P_r_right_of_CD + t14;
-    J[10] = -(t23 * t19 / side) + t14;
-    J[11] = along_d_right_of_CD * t18 / side + t14;
-    J[12] = t20;
-    J[13] = DP_r_right_of_CD * t23 / side + t14;
-    J[14] = -(DP_r * along_d_right_of_CD / side) + t14;
-    J[15] = c1 * P_r_right_of_CD + t14;
-    J[16] = t23 * t22 / side + t14;
-    J[17] = -(along_d_right_of_CD * t21 / side) + t14;
+    J[0] = P_r * s1 + t15;
+    J[1] = t18 * t19 / side + t15;
+    J[2] = -(along_d * t20 / side) + t15;
+    J[3] = t21;
+    J[4] = -(DP_r * t18 / side) + t15;
+    J[5] = DP_r_right_of_CD * along_d / side + t15;
+    J[6] = P_r * c1 + t15;
+    J[7] = -(t18 * t22 / side) + t15;
+    J[8] = along_d * t23 / side + t15;
+    J[9] = s1 * P_r_right_of_CD + t15;
+    J[10] = -(t24 * t20 / side) + t15;
+    J[11] = along_d_right_of_CD * t19 / side + t15;
+    J[12] = t21;
+    J[13] = DP_r_right_of_CD * t24 / side + t15;
+    J[14] = -(DP_r * along_d_right_of_CD / side) + t15;
+    J[15] = c1 * P_r_right_of_CD + t15;
+    J[16] = t24 * t23 / side + t15;
+    J[17] = -(along_d_right_of_CD * t22 / side) + t15;
 }
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params, const real_t
     q[3], real_t J[18])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[2], q[0] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[1], q[2], q[0] };
+    cf_sincos_block(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_kernel(params, q, sines, cosines, J);
 }
 
@@ -513,13 +521,13 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
@@ -568,44 +576,46 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *
     const real_t t2 = L1 * c3;
     const real_t t3 = C_y - (L0 + t2);
     const real_t apart = cf_sqrt(t1 * t1 + t3 * t3);
-    const int t4 = apart <= CLOSEDFORM_VANISHING * (L0 + L1 + L2);
-    const real_t distance = cf_select(t4, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = cf_select(t4, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(t4, CLOSEDFORM_C(1.0), -(t3 / apart));
-    const real_t t7 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t8 = t7 - apart;
-    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t7 * CLOSEDFORM_VANISHING, CLOSEDFORM_C(0.0), t9);
-    const real_t t10 = n_1 * height;
-    const real_t DP_r_right_of_CD = t6 - t10;
-    const real_t t11 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t12 = t5 * height;
-    const real_t CP_y = t11 + t12;
-    const real_t t13 = (C_r - DP_r_right_of_CD) * (C_r * CP_y + C_y * DP_r_right_of_CD);
-    const real_t CP_y_right_of_CD = t11 - t12;
-    const real_t DP_r = t6 + t10;
+    const real_t t4 = L0 + L1 + L2;
+    const real_t t5 = t4 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t5;
+    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t t8 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t9 = t8 - apart;
+    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
+    const real_t t11 = n_1 * height;
+    const real_t DP_r_right_of_CD = t7 - t11;
+    const real_t t12 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t13 = t6 * height;
+    const real_t CP_y = t12 + t13;
+    const real_t t14 = (C_r - DP_r_right_of_CD) * (C_r * CP_y + C_y * DP_r_right_of_CD);
+    const real_t CP_y_right_of_CD = t12 - t13;
+    const real_t DP_r = t7 + t11;
     const real_t side = distance * height;
-    const real_t t14 = t13 * (D_r * CP_y_right_of_CD + t2 * DP_r) / side;
-    const int t15 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t16 = t15 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t17 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t7 * CLOSEDFORM_FEASIBILITY) <= t8);
-    const real_t t18 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t19 = (C_r - DP_r) * (C_r * CP_y_right_of_CD + C_y * DP_r);
-    const real_t t20 = t19 * (D_r * CP_y + t2 * DP_r_right_of_CD) / side;
-    det[0] = -t14 + t18;
-    det[1] = t20 + t18;
+    const real_t t15 = t14 * (D_r * CP_y_right_of_CD + t2 * DP_r) / side;
+    const int t16 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int t17 = t16 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t18 = t17 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t18 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const real_t t19 = cf_poison(failed);
+    const real_t t20 = (C_r - DP_r) * (C_r * CP_y_right_of_CD + C_y * DP_r);
+    const real_t t21 = t20 * (D_r * CP_y + t2 * DP_r_right_of_CD) / side;
+    det[0] = -t15 + t19;
+    det[1] = t21 + t19;
 }
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_determinant(const hybrid_five_bar_params *params, const real_t
     q[3], real_t det[2])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[2] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[1], q[2] };
+    cf_sincos_block(2, lanes, sines, cosines);
     hybrid_five_bar_determinant_kernel(params, q, sines, cosines, det);
 }
 
@@ -616,12 +626,12 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
@@ -651,46 +661,48 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params
     const real_t t1 = C_r - L1 * s3;
     const real_t t2 = L1 * c2 - (L0 + L1 * c3);
     const real_t apart = cf_sqrt(t1 * t1 + t2 * t2);
-    const int t3 = apart <= CLOSEDFORM_VANISHING * (L0 + L1 + L2);
-    const real_t distance = cf_select(t3, CLOSEDFORM_C(0.0), apart);
-    const real_t t4 = cf_select(t3, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t5 = distance * t4 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(t3, CLOSEDFORM_C(1.0), -(t2 / apart));
-    const real_t t6 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t7 = t6 - apart;
-    const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t8 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t6 * CLOSEDFORM_VANISHING, CLOSEDFORM_C(0.0), t8);
-    const real_t t9 = n_1 * height;
-    const real_t DP_r_right_of_CD = t5 - t9;
-    const int t10 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t11 = t10 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t12 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t6 * CLOSEDFORM_FEASIBILITY) <= t7);
-    const real_t t13 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t14 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t15 = t4 * height;
-    const real_t CP_y = t14 + t15;
-    const real_t DP_r = t5 + t9;
-    const real_t CP_y_right_of_CD = t14 - t15;
+    const real_t t3 = L0 + L1 + L2;
+    const real_t t4 = t3 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t4;
+    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t5 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
+    const real_t t7 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t8 = t7 - apart;
+    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t9);
+    const real_t t10 = n_1 * height;
+    const real_t DP_r_right_of_CD = t6 - t10;
+    const int t11 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int t12 = t11 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t13 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
+    const real_t t14 = cf_poison(failed);
+    const real_t t15 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t16 = t5 * height;
+    const real_t CP_y = t15 + t16;
+    const real_t DP_r = t6 + t10;
+    const real_t CP_y_right_of_CD = t15 - t16;
     const real_t side = distance * height;
-    factors[0] = C_r - DP_r_right_of_CD + t13;
-    factors[1] = -(c2 * DP_r_right_of_CD + s2 * CP_y) + t13;
-    factors[2] = c3 * DP_r + s3 * CP_y_right_of_CD + t13;
-    factors[3] = side + t13;
-    factors[4] = C_r - DP_r + t13;
-    factors[5] = -(c2 * DP_r + s2 * CP_y_right_of_CD) + t13;
-    factors[6] = c3 * DP_r_right_of_CD + s3 * CP_y + t13;
-    factors[7] = -side + t13;
+    factors[0] = C_r - DP_r_right_of_CD + t14;
+    factors[1] = -(c2 * DP_r_right_of_CD + s2 * CP_y) + t14;
+    factors[2] = c3 * DP_r + s3 * CP_y_right_of_CD + t14;
+    factors[3] = side + t14;
+    factors[4] = C_r - DP_r + t14;
+    factors[5] = -(c2 * DP_r + s2 * CP_y_right_of_CD) + t14;
+    factors[6] = c3 * DP_r_right_of_CD + s3 * CP_y + t14;
+    factors[7] = -side + t14;
 }
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_singularities(const hybrid_five_bar_params *params, const real_t
     q[3], real_t factors[8])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[2] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[1], q[2] };
+    cf_sincos_block(2, lanes, sines, cosines);
     hybrid_five_bar_singularities_kernel(params, q, sines, cosines, factors);
 }
 
@@ -701,12 +713,12 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
@@ -741,19 +753,20 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_par
     const real_t t1 = L1 * s2 - L1 * s3;
     const real_t t2 = L1 * c2 - (L0 + L1 * c3);
     const real_t apart = cf_sqrt(t1 * t1 + t2 * t2);
-    const int t3 = apart <= CLOSEDFORM_VANISHING * (L0 + L1 + L2);
-    const real_t t4 = cf_select(t3, CLOSEDFORM_C(0.0), apart) / CLOSEDFORM_C(2.0);
-    const real_t t5 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t6 = t5 - apart;
-    const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t7 = cf_sqrt(slack) * cf_sqrt(apart + t5) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t5 * CLOSEDFORM_VANISHING, CLOSEDFORM_C(0.0), t7);
-    const int t8 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t9 = t8 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t10 = t9 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t10 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t5 * CLOSEDFORM_FEASIBILITY) <= t6);
-    const real_t t11 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t12 = cf_max(t4, height) / cf_min(t4, height) + t11;
+    const real_t t3 = L0 + L1 + L2;
+    const real_t t4 = t3 * CLOSEDFORM_VANISHING;
+    const real_t distance = cf_select(apart <= t4, CLOSEDFORM_C(0.0), apart);
+    const real_t t5 = distance / CLOSEDFORM_C(2.0);
+    const real_t t6 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t7 = t6 - apart;
+    const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
+    const real_t t8 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t8);
+    const int t9 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int t10 = t9 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t11 = t10 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t11 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t7);
+    const real_t t12 = cf_max(t5, height) / cf_min(t5, height) + cf_poison(failed);
     kappa[0] = t12;
     kappa[1] = t12;
 }
@@ -762,9 +775,9 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params, const real_t
     q[3], real_t kappa[2])
 {
-    real_t sines[8], cosines[8];
-    const real_t angles_0[8] = { q[1], q[2] };
-    cf_sincos8(angles_0, sines + 0, cosines + 0);
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[1], q[2] };
+    cf_sincos_block(2, lanes, sines, cosines);
     hybrid_five_bar_condition_number_kernel(params, q, sines, cosines, kappa);
 }
 
@@ -775,12 +788,12 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
@@ -804,90 +817,89 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const hybrid_five_bar_params *params, c
     const real_t r = cf_sqrt(x_2 * x_2 + z * z);
     const real_t t1 = L1 + L2;
     const real_t t2 = CLOSEDFORM_VANISHING * (L0 + t1);
-    const int t3 = r <= t2;
-    const real_t t4 = cf_select(t3, CLOSEDFORM_C(0.0), cf_atan2(z, -x_2));
-    const int t5 = cf_is_finite(x_2) & cf_is_finite(y) & cf_is_finite(z);
-    const int t6 = t5 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t7 = t6 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int invalid = !(t7 & (CLOSEDFORM_C(0.0) <= L2));
-    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * t1);
-    const real_t t9 = r * r;
-    const real_t reach_c = cf_sqrt(t9 + y * y);
-    const real_t t10 = t1 - reach_c;
-    const real_t t11 = L1 - L2;
-    const real_t t12 = reach_c + t11;
-    const real_t t13 = reach_c - t11;
-    const real_t t14 = y - L0;
-    const real_t reach_d = cf_sqrt(t9 + t14 * t14);
-    const real_t t15 = t1 - reach_d;
-    const int t16 = (t8 <= t10) & (t8 <= t12) & (t8 <= t13) & (t8 <= t15);
-    const real_t t17 = reach_d + t11;
-    const real_t t18 = reach_d - t11;
-    const int unreachable = !(t16 & (t8 <= t17) & (t8 <= t18));
-    const real_t t19 = cf_select(invalid | unreachable, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t20 = cf_wrap(t4) + t19;
-    const int t21 = reach_c <= t2;
-    const real_t t22 = cf_atan2(r, y);
-    const real_t t23 = cf_sqrt(cf_max(t10, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t13, CLOSEDFORM_C(0.0)));
-    const real_t t24 = cf_sqrt(reach_c + t1) * cf_sqrt(cf_max(t12, CLOSEDFORM_C(0.0)));
-    const real_t t25 = CLOSEDFORM_C(2.0) * cf_atan2(t23, t24);
-    const real_t t26 = cf_select(t21, CLOSEDFORM_C(0.0), t22 - t25);
-    const real_t t27 = cf_wrap(t26) + t19;
-    const int t28 = reach_d <= t2;
-    const real_t t29 = cf_atan2(r, t14);
-    const real_t t30 = cf_sqrt(cf_max(t15, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t18, CLOSEDFORM_C(0.0)));
-    const real_t t31 = cf_sqrt(reach_d + t1) * cf_sqrt(cf_max(t17, CLOSEDFORM_C(0.0)));
-    const real_t t32 = CLOSEDFORM_C(2.0) * cf_atan2(t30, t31);
-    const real_t t33 = cf_select(t28, CLOSEDFORM_C(0.0), t29 - t32);
-    const real_t t34 = cf_wrap(t33) + t19;
-    const real_t t35 = cf_select(t28, CLOSEDFORM_C(0.0), t29 + t32);
-    const real_t t36 = cf_wrap(t35) + t19;
-    const real_t t37 = cf_select(t21, CLOSEDFORM_C(0.0), t22 + t25);
-    const real_t t38 = cf_wrap(t37) + t19;
-    const real_t t39 = cf_select(t3, CLOSEDFORM_C(0.0), cf_atan2(z, x_2));
-    const real_t t40 = cf_wrap(-t39) + t19;
-    const real_t t41 = cf_wrap(-t37) + t19;
-    const real_t t42 = cf_wrap(-t35) + t19;
-    const real_t t43 = cf_wrap(-t33) + t19;
-    const real_t t44 = cf_wrap(-t26) + t19;
-    const int t45 = t3 | t21 | t28 | (L1 <= t1 * CLOSEDFORM_VANISHING);
-    const real_t t46 = cf_select(t45, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t47 = cf_select(unreachable, CLOSEDFORM_C(1.0), t46);
-    const real_t t48 = cf_select(invalid, CLOSEDFORM_C(3.0), t47);
-    q[0] = t20;
-    q[1] = t27;
-    q[2] = t34;
-    q[3] = t20;
-    q[4] = t27;
-    q[5] = t36;
-    q[6] = t20;
-    q[7] = t38;
-    q[8] = t34;
-    q[9] = t20;
-    q[10] = t38;
-    q[11] = t36;
-    q[12] = t40;
-    q[13] = t41;
-    q[14] = t42;
-    q[15] = t40;
-    q[16] = t41;
-    q[17] = t43;
-    q[18] = t40;
-    q[19] = t44;
-    q[20] = t42;
-    q[21] = t40;
-    q[22] = t44;
-    q[23] = t43;
-    status[0] = t48;
-    status[1] = t48;
-    status[2] = t48;
-    status[3] = t48;
-    status[4] = t48;
-    status[5] = t48;
-    status[6] = t48;
-    status[7] = t48;
+    const int on_axis = r <= t2;
+    const real_t t3 = cf_select(on_axis, CLOSEDFORM_C(0.0), cf_atan2(z, -x_2));
+    const int t4 = cf_is_finite(x_2) & cf_is_finite(y) & cf_is_finite(z);
+    const int t5 = t4 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int invalid = !(t6 & (CLOSEDFORM_C(0.0) <= L2));
+    const real_t t7 = -(CLOSEDFORM_FEASIBILITY * t1);
+    const real_t t8 = r * r;
+    const real_t reach_c = cf_sqrt(t8 + y * y);
+    const real_t t9 = t1 - reach_c;
+    const real_t t10 = L1 - L2;
+    const real_t t11 = reach_c + t10;
+    const real_t t12 = reach_c - t10;
+    const real_t t13 = y - L0;
+    const real_t reach_d = cf_sqrt(t8 + t13 * t13);
+    const real_t t14 = t1 - reach_d;
+    const int t15 = (t7 <= t9) & (t7 <= t11) & (t7 <= t12) & (t7 <= t14);
+    const real_t t16 = reach_d + t10;
+    const real_t t17 = reach_d - t10;
+    const int unreachable = !(t15 & (t7 <= t16) & (t7 <= t17));
+    const real_t t18 = cf_poison(invalid | unreachable);
+    const real_t t19 = cf_wrap(t3) + t18;
+    const int at_A = reach_c <= t2;
+    const real_t t20 = cf_atan2(r, y);
+    const real_t t21 = cf_sqrt(cf_max(t9, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t12, CLOSEDFORM_C(0.0)));
+    const real_t t22 = cf_sqrt(reach_c + t1) * cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0)));
+    const real_t t23 = CLOSEDFORM_C(2.0) * cf_atan2(t21, t22);
+    const real_t t24 = cf_select(at_A, CLOSEDFORM_C(0.0), t20 - t23);
+    const real_t t25 = cf_wrap(t24) + t18;
+    const int at_B = reach_d <= t2;
+    const real_t t26 = cf_atan2(r, t13);
+    const real_t t27 = cf_sqrt(cf_max(t14, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t17, CLOSEDFORM_C(0.0)));
+    const real_t t28 = cf_sqrt(reach_d + t1) * cf_sqrt(cf_max(t16, CLOSEDFORM_C(0.0)));
+    const real_t t29 = CLOSEDFORM_C(2.0) * cf_atan2(t27, t28);
+    const real_t t30 = cf_select(at_B, CLOSEDFORM_C(0.0), t26 - t29);
+    const real_t t31 = cf_wrap(t30) + t18;
+    const real_t t32 = cf_select(at_B, CLOSEDFORM_C(0.0), t26 + t29);
+    const real_t t33 = cf_wrap(t32) + t18;
+    const real_t t34 = cf_select(at_A, CLOSEDFORM_C(0.0), t20 + t23);
+    const real_t t35 = cf_wrap(t34) + t18;
+    const real_t t36 = cf_select(on_axis, CLOSEDFORM_C(0.0), cf_atan2(z, x_2));
+    const real_t t37 = cf_wrap(-t36) + t18;
+    const real_t t38 = cf_wrap(-t34) + t18;
+    const real_t t39 = cf_wrap(-t32) + t18;
+    const real_t t40 = cf_wrap(-t30) + t18;
+    const real_t t41 = cf_wrap(-t24) + t18;
+    const int t42 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
+    const real_t t43 = cf_status(invalid, unreachable, t42);
+    q[0] = t19;
+    q[1] = t25;
+    q[2] = t31;
+    q[3] = t19;
+    q[4] = t25;
+    q[5] = t33;
+    q[6] = t19;
+    q[7] = t35;
+    q[8] = t31;
+    q[9] = t19;
+    q[10] = t35;
+    q[11] = t33;
+    q[12] = t37;
+    q[13] = t38;
+    q[14] = t39;
+    q[15] = t37;
+    q[16] = t38;
+    q[17] = t40;
+    q[18] = t37;
+    q[19] = t41;
+    q[20] = t39;
+    q[21] = t37;
+    q[22] = t41;
+    q[23] = t40;
+    status[0] = t43;
+    status[1] = t43;
+    status[2] = t43;
+    status[3] = t43;
+    status[4] = t43;
+    status[5] = t43;
+    status[6] = t43;
+    status[7] = t43;
 }
 
+CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_ik(const hybrid_five_bar_params *params, const real_t
     x[3], real_t q[24], uint8_t status[8])
 {
@@ -904,10 +916,10 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[8][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t x_i[3] = { x[start + i], x[x_stride + start + i], x[2 * x_stride + start + i] };
             real_t q_i[24];
             real_t status_i[8];
@@ -946,28 +958,28 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
             status_real[7][i] = status_i[7];
         }
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[2 * status_stride + start + i] = (uint8_t)status_real[2][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[3 * status_stride + start + i] = (uint8_t)status_real[3][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[4 * status_stride + start + i] = (uint8_t)status_real[4][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[5 * status_stride + start + i] = (uint8_t)status_real[5][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[6 * status_stride + start + i] = (uint8_t)status_real[6][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[7 * status_stride + start + i] = (uint8_t)status_real[7][i];
     }
 }
@@ -998,6 +1010,7 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
+CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params, const real_t
     p[3], uint8_t inside[1])
 {
@@ -1015,17 +1028,17 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
     (void)inside_stride;
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t inside_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t p_i[3] = { p[start + i], p[p_stride + start + i], p[2 * p_stride + start + i] };
             real_t inside_i[1];
             hybrid_five_bar_workspace_contains_kernel(&local, p_i, inside_i);
             inside_real[0][i] = inside_i[0];
         }
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             inside[start + i] = (uint8_t)inside_real[0][i];
     }
 }
@@ -1066,11 +1079,11 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_par
     const int t25 = cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t26 = t25 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int failed = !(t26 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1);
-    const real_t t27 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t28 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t24) + t27;
-    volume[0] = t28;
+    const real_t t27 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t24) + cf_poison(failed);
+    volume[0] = t27;
 }
 
+CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params, real_t
     volume[1])
 {
@@ -1084,9 +1097,9 @@ void hybrid_five_bar_workspace_volume_batch(size_t n, const hybrid_five_bar_para
     (void)volume_stride;
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             real_t volume_i[1];
             hybrid_five_bar_workspace_volume_kernel(&local, volume_i);
             volume[start + i] = volume_i[0];

@@ -4,16 +4,16 @@
  * Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 22 add, 32 compare and select, 5 divide, 19 multiply, 3 sincos, 3 sqrt
- *   passive_angles: 16 add, 33 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 3
+ *   fk: 22 add, 30 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
+ *   passive_angles: 16 add, 33 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
  *     sqrt
- *   jacobian_parallel: 27 add, 29 compare and select, 5 divide, 21 multiply, 3 sincos, 3 sqrt
- *   jacobian_serial: 24 add, 29 compare and select, 5 divide, 25 multiply, 2 sincos, 3 sqrt
- *   jacobian: 35 add, 29 compare and select, 17 divide, 44 multiply, 3 sincos, 3 sqrt
- *   determinant: 20 add, 29 compare and select, 7 divide, 28 multiply, 2 sincos, 3 sqrt
- *   singularities: 26 add, 29 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
- *   condition_number: 9 add, 29 compare and select, 3 divide, 11 multiply, 2 sincos, 3 sqrt
- *   ik: 29 add, 64 compare and select, 6 atan2, 14 multiply, 11 sqrt
+ *   jacobian_parallel: 27 add, 29 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
+ *   jacobian_serial: 24 add, 29 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
+ *   jacobian: 35 add, 29 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
+ *   determinant: 20 add, 29 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
+ *   singularities: 26 add, 29 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
+ *   condition_number: 9 add, 29 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
+ *   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
  *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
  *   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
  *
@@ -167,6 +167,7 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
  *     free; L1 = 0, both are.  0 is returned for theta1, and for the others unless L1 = 0.
  * Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
  *     the loop still closes.  fk loses them again near a parallel singularity.
+ * If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.
  */
 void hybrid_five_bar_ik(const hybrid_five_bar_params *params, const real_t
     x[3], real_t q[24], uint8_t status[8]);

@@ -3,16 +3,16 @@
 # Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
 #     Manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 22 add, 32 compare and select, 5 divide, 19 multiply, 3 sincos, 3 sqrt
-#   passive_angles: 16 add, 33 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 3
+#   fk: 22 add, 30 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
+#   passive_angles: 16 add, 33 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
 #     sqrt
-#   jacobian_parallel: 27 add, 29 compare and select, 5 divide, 21 multiply, 3 sincos, 3 sqrt
-#   jacobian_serial: 24 add, 29 compare and select, 5 divide, 25 multiply, 2 sincos, 3 sqrt
-#   jacobian: 35 add, 29 compare and select, 17 divide, 44 multiply, 3 sincos, 3 sqrt
-#   determinant: 20 add, 29 compare and select, 7 divide, 28 multiply, 2 sincos, 3 sqrt
-#   singularities: 26 add, 29 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
-#   condition_number: 9 add, 29 compare and select, 3 divide, 11 multiply, 2 sincos, 3 sqrt
-#   ik: 29 add, 64 compare and select, 6 atan2, 14 multiply, 11 sqrt
+#   jacobian_parallel: 27 add, 29 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
+#   jacobian_serial: 24 add, 29 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
+#   jacobian: 35 add, 29 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
+#   determinant: 20 add, 29 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
+#   singularities: 26 add, 29 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
+#   condition_number: 9 add, 29 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
+#   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
 #   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
 #   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
 """Five-bar linkage on a revolute.
@@ -82,46 +82,44 @@ _DEFAULT = Parameters()
 
 
 def _fk(theta1, theta2, theta3, L0, L1, L2):
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
-    s3 = np.sin(theta3)
-    c3 = np.cos(theta3)
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    s1, c1 = _runtime.sincos(theta1)
     C_r = L1 * s2
     t1 = C_r - L1 * s3
     C_y = L1 * c2
     t2 = C_y - (L0 + L1 * c3)
     apart = np.sqrt(t1 * t1 + t2 * t2)
-    t3 = apart <= _runtime.VANISHING * (L0 + L1 + L2)
-    distance = np.where(t3, 0.0, apart)
-    t4 = np.where(t3, 0.0, t1 / apart)
-    t5 = distance * t4 / 2.0
-    n_1 = np.where(t3, 1.0, -(t2 / apart))
-    t6 = L2 * 2.0
-    t7 = t6 - apart
-    slack = np.maximum(t7, 0.0)
-    height = np.where(slack <= t6 * _runtime.VANISHING, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
-    t8 = n_1 * height
-    P_r = C_r - (t5 - t8)
-    t9 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t10 = t9 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
-    invalid = np.logical_not(t11)
-    unreachable = np.logical_not(-(t6 * _runtime.FEASIBILITY) <= t7)
-    t12 = np.where(invalid | unreachable, np.nan, 0.0)
-    t13 = distance * n_1 / 2.0
-    t14 = t4 * height
-    P_r_right_of_CD = C_r - (t5 + t8)
-    t15 = np.where(unreachable, 1.0, np.where(t3, 2.0, 0.0))
-    t16 = np.where(invalid, 3.0, t15)
+    t3 = L0 + L1 + L2
+    t4 = t3 * _runtime.VANISHING
+    coincide = apart <= t4
+    distance = np.where(coincide, 0.0, apart)
+    t5 = np.where(coincide, 0.0, t1 / apart)
+    t6 = distance * t5 / 2.0
+    n_1 = np.where(coincide, 1.0, -(t2 / apart))
+    t7 = L2 * 2.0
+    t8 = t7 - apart
+    slack = np.maximum(t8, 0.0)
+    height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
+    t9 = n_1 * height
+    P_r = C_r - (t6 - t9)
+    t10 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t11 = t10 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    invalid = np.logical_not(t12)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
+    t13 = _runtime.poison(invalid | unreachable)
+    t14 = distance * n_1 / 2.0
+    t15 = t5 * height
+    P_r_right_of_CD = C_r - (t6 + t9)
+    t16 = _runtime.status(invalid, unreachable, coincide)
     return (
-        -(P_r * c1) + t12,
-        C_y + (t13 + t14) + t12,
-        P_r * s1 + t12,
-        -(c1 * P_r_right_of_CD) + t12,
-        C_y + (t13 - t14) + t12,
-        s1 * P_r_right_of_CD + t12,
+        -(P_r * c1) + t13,
+        C_y + (t14 + t15) + t13,
+        P_r * s1 + t13,
+        -(c1 * P_r_right_of_CD) + t13,
+        C_y + (t14 - t15) + t13,
+        s1 * P_r_right_of_CD + t13,
         t16,
         t16,
     )
@@ -154,43 +152,43 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
 
 
 def _passive_angles(theta1, theta2, theta3, L0, L1, L2):
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
-    s3 = np.sin(theta3)
-    c3 = np.cos(theta3)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = L1 * s2 - L1 * s3
     t2 = L1 * c2 - (L0 + L1 * c3)
     apart = np.sqrt(t1 * t1 + t2 * t2)
-    t3 = apart <= _runtime.VANISHING * (L0 + L1 + L2)
-    distance = np.where(t3, 0.0, apart)
-    t4 = np.where(t3, 0.0, t1 / apart)
-    t5 = distance * t4 / 2.0
-    n_1 = np.where(t3, 1.0, -(t2 / apart))
-    t6 = L2 * 2.0
-    t7 = t6 - apart
-    slack = np.maximum(t7, 0.0)
-    height = np.where(slack <= t6 * _runtime.VANISHING, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
-    t8 = n_1 * height
-    DP_r_right_of_CD = t5 - t8
-    t9 = distance * n_1 / 2.0
-    t10 = t4 * height
-    CP_y = t9 + t10
-    t11 = _runtime.wrap(-np.arctan2(DP_r_right_of_CD, CP_y))
-    t12 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t13 = t12 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t14 = t13 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
-    unreachable = np.logical_not(-(t6 * _runtime.FEASIBILITY) <= t7)
-    t15 = np.where(np.logical_not(t14) | unreachable, np.nan, 0.0)
-    DP_r = t5 + t8
-    CP_y_right_of_CD = t9 - t10
-    t16 = _runtime.wrap(np.arctan2(DP_r, -CP_y_right_of_CD))
-    t17 = _runtime.wrap(-np.arctan2(DP_r, CP_y_right_of_CD))
-    t18 = _runtime.wrap(np.arctan2(DP_r_right_of_CD, -CP_y))
+    t3 = L0 + L1 + L2
+    t4 = t3 * _runtime.VANISHING
+    coincide = apart <= t4
+    distance = np.where(coincide, 0.0, apart)
+    t5 = np.where(coincide, 0.0, t1 / apart)
+    t6 = distance * t5 / 2.0
+    n_1 = np.where(coincide, 1.0, -(t2 / apart))
+    t7 = L2 * 2.0
+    t8 = t7 - apart
+    slack = np.maximum(t8, 0.0)
+    height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
+    t9 = n_1 * height
+    DP_r_right_of_CD = t6 - t9
+    t10 = distance * n_1 / 2.0
+    t11 = t5 * height
+    CP_y = t10 + t11
+    t12 = _runtime.wrap(-np.arctan2(DP_r_right_of_CD, CP_y))
+    t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t14 = t13 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t15 = t14 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
+    t16 = _runtime.poison(np.logical_not(t15) | unreachable)
+    DP_r = t6 + t9
+    CP_y_right_of_CD = t10 - t11
+    t17 = _runtime.wrap(np.arctan2(DP_r, -CP_y_right_of_CD))
+    t18 = _runtime.wrap(-np.arctan2(DP_r, CP_y_right_of_CD))
+    t19 = _runtime.wrap(np.arctan2(DP_r_right_of_CD, -CP_y))
     return (
-        t11 + t15,
-        t16 + t15,
-        t17 + t15,
-        t18 + t15,
+        t12 + t16,
+        t17 + t16,
+        t18 + t16,
+        t19 + t16,
     )
 
 
@@ -216,62 +214,61 @@ def passive_angles(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = No
 
 
 def _jacobian_parallel(theta1, theta2, theta3, L0, L1, L2):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
-    s3 = np.sin(theta3)
-    c3 = np.cos(theta3)
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     t2 = t1 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     invalid = np.logical_not(t2 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2))
-    t3 = L2 * 2.0
-    t4 = L1 * s2 - L1 * s3
-    t5 = L1 * c2 - (L0 + L1 * c3)
-    apart = np.sqrt(t4 * t4 + t5 * t5)
-    t6 = t3 - apart
-    unreachable = np.logical_not(-(t3 * _runtime.FEASIBILITY) <= t6)
-    t7 = np.where(invalid | unreachable, np.nan, 0.0)
-    t8 = L2 * s1 + t7
-    t9 = 0.0 + t7
-    t10 = L2 * c1 + t7
-    t11 = apart <= _runtime.VANISHING * (L0 + L1 + L2)
-    distance = np.where(t11, 0.0, apart)
-    t12 = np.where(t11, 0.0, t4 / apart)
-    t13 = distance * t12 / 2.0
-    n_1 = np.where(t11, 1.0, -(t5 / apart))
-    slack = np.maximum(t6, 0.0)
-    height = np.where(slack <= t3 * _runtime.VANISHING, 0.0, np.sqrt(slack) * np.sqrt(apart + t3) / 2.0)
-    t14 = n_1 * height
-    DP_r_right_of_CD = t13 - t14
-    t15 = DP_r_right_of_CD * c1
-    t16 = distance * n_1 / 2.0
-    t17 = t12 * height
-    CP_y = t16 + t17
-    t18 = DP_r_right_of_CD * s1
-    DP_r = t13 + t14
-    t19 = DP_r * c1
-    CP_y_right_of_CD = t16 - t17
-    t20 = DP_r * s1
+    t3 = L0 + L1 + L2
+    t4 = L2 * 2.0
+    t5 = L1 * s2 - L1 * s3
+    t6 = L1 * c2 - (L0 + L1 * c3)
+    apart = np.sqrt(t5 * t5 + t6 * t6)
+    t7 = t4 - apart
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t7)
+    t8 = _runtime.poison(invalid | unreachable)
+    t9 = L2 * s1 + t8
+    t10 = 0.0 + t8
+    t11 = L2 * c1 + t8
+    t12 = t3 * _runtime.VANISHING
+    coincide = apart <= t12
+    distance = np.where(coincide, 0.0, apart)
+    t13 = np.where(coincide, 0.0, t5 / apart)
+    t14 = distance * t13 / 2.0
+    n_1 = np.where(coincide, 1.0, -(t6 / apart))
+    slack = np.maximum(t7, 0.0)
+    height = np.where(slack <= t12, 0.0, np.sqrt(slack) * np.sqrt(apart + t4) / 2.0)
+    t15 = n_1 * height
+    DP_r_right_of_CD = t14 - t15
+    t16 = DP_r_right_of_CD * c1
+    t17 = distance * n_1 / 2.0
+    t18 = t13 * height
+    CP_y = t17 + t18
+    t19 = DP_r_right_of_CD * s1
+    DP_r = t14 + t15
+    t20 = DP_r * c1
+    CP_y_right_of_CD = t17 - t18
+    t21 = DP_r * s1
     return (
-        t8,
         t9,
         t10,
-        t15 + t7,
-        CP_y + t7,
-        -t18 + t7,
-        -t19 + t7,
-        -CP_y_right_of_CD + t7,
-        t20 + t7,
-        t8,
+        t11,
+        t16 + t8,
+        CP_y + t8,
+        -t19 + t8,
+        -t20 + t8,
+        -CP_y_right_of_CD + t8,
+        t21 + t8,
         t9,
         t10,
-        t19 + t7,
-        CP_y_right_of_CD + t7,
-        -t20 + t7,
-        -t15 + t7,
-        -CP_y + t7,
-        t18 + t7,
+        t11,
+        t20 + t8,
+        CP_y_right_of_CD + t8,
+        -t21 + t8,
+        -t16 + t8,
+        -CP_y + t8,
+        t19 + t8,
     )
 
 
@@ -298,10 +295,8 @@ def jacobian_parallel(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any =
 
 
 def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
-    s3 = np.sin(theta3)
-    c3 = np.cos(theta3)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
     C_r = L1 * s2
     D_r = L1 * s3
     t1 = C_r - D_r
@@ -309,34 +304,36 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     t2 = L1 * c3
     t3 = C_y - (L0 + t2)
     apart = np.sqrt(t1 * t1 + t3 * t3)
-    t4 = apart <= _runtime.VANISHING * (L0 + L1 + L2)
-    distance = np.where(t4, 0.0, apart)
-    t5 = np.where(t4, 0.0, t1 / apart)
-    t6 = distance * t5 / 2.0
-    n_1 = np.where(t4, 1.0, -(t3 / apart))
-    t7 = L2 * 2.0
-    t8 = t7 - apart
-    slack = np.maximum(t8, 0.0)
-    height = np.where(slack <= t7 * _runtime.VANISHING, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
-    t9 = n_1 * height
-    DP_r_right_of_CD = t6 - t9
-    t10 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t11 = t10 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
-    unreachable = np.logical_not(-(t7 * _runtime.FEASIBILITY) <= t8)
-    t13 = np.where(np.logical_not(t12) | unreachable, np.nan, 0.0)
-    t14 = distance * n_1 / 2.0
-    t15 = t5 * height
-    CP_y = t14 + t15
-    CP_y_right_of_CD = t14 - t15
-    DP_r = t6 + t9
+    t4 = L0 + L1 + L2
+    t5 = t4 * _runtime.VANISHING
+    coincide = apart <= t5
+    distance = np.where(coincide, 0.0, apart)
+    t6 = np.where(coincide, 0.0, t1 / apart)
+    t7 = distance * t6 / 2.0
+    n_1 = np.where(coincide, 1.0, -(t3 / apart))
+    t8 = L2 * 2.0
+    t9 = t8 - apart
+    slack = np.maximum(t9, 0.0)
+    height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    t10 = n_1 * height
+    DP_r_right_of_CD = t7 - t10
+    t11 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t12 = t11 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t13 = t12 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
+    t14 = _runtime.poison(np.logical_not(t13) | unreachable)
+    t15 = distance * n_1 / 2.0
+    t16 = t6 * height
+    CP_y = t15 + t16
+    CP_y_right_of_CD = t15 - t16
+    DP_r = t7 + t10
     return (
-        L2 * (C_r - DP_r_right_of_CD) + t13,
-        -(C_r * CP_y + C_y * DP_r_right_of_CD) + t13,
-        D_r * CP_y_right_of_CD + t2 * DP_r + t13,
-        L2 * (C_r - DP_r) + t13,
-        -(C_r * CP_y_right_of_CD + C_y * DP_r) + t13,
-        D_r * CP_y + t2 * DP_r_right_of_CD + t13,
+        L2 * (C_r - DP_r_right_of_CD) + t14,
+        -(C_r * CP_y + C_y * DP_r_right_of_CD) + t14,
+        D_r * CP_y_right_of_CD + t2 * DP_r + t14,
+        L2 * (C_r - DP_r) + t14,
+        -(C_r * CP_y_right_of_CD + C_y * DP_r) + t14,
+        D_r * CP_y + t2 * DP_r_right_of_CD + t14,
     )
 
 
@@ -364,12 +361,9 @@ def jacobian_serial(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = N
 
 
 def _jacobian(theta1, theta2, theta3, L0, L1, L2):
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
-    s3 = np.sin(theta3)
-    c3 = np.cos(theta3)
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    s1, c1 = _runtime.sincos(theta1)
     C_r = L1 * s2
     D_r = L1 * s3
     t1 = C_r - D_r
@@ -377,58 +371,60 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     t2 = L1 * c3
     t3 = C_y - (L0 + t2)
     apart = np.sqrt(t1 * t1 + t3 * t3)
-    t4 = apart <= _runtime.VANISHING * (L0 + L1 + L2)
-    distance = np.where(t4, 0.0, apart)
-    t5 = np.where(t4, 0.0, t1 / apart)
-    t6 = distance * t5 / 2.0
-    n_1 = np.where(t4, 1.0, -(t3 / apart))
-    t7 = L2 * 2.0
-    t8 = t7 - apart
-    slack = np.maximum(t8, 0.0)
-    height = np.where(slack <= t7 * _runtime.VANISHING, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
-    t9 = n_1 * height
-    DP_r_right_of_CD = t6 - t9
+    t4 = L0 + L1 + L2
+    t5 = t4 * _runtime.VANISHING
+    coincide = apart <= t5
+    distance = np.where(coincide, 0.0, apart)
+    t6 = np.where(coincide, 0.0, t1 / apart)
+    t7 = distance * t6 / 2.0
+    n_1 = np.where(coincide, 1.0, -(t3 / apart))
+    t8 = L2 * 2.0
+    t9 = t8 - apart
+    slack = np.maximum(t9, 0.0)
+    height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    t10 = n_1 * height
+    DP_r_right_of_CD = t7 - t10
     P_r = C_r - DP_r_right_of_CD
-    t10 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t11 = t10 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
-    unreachable = np.logical_not(-(t7 * _runtime.FEASIBILITY) <= t8)
-    t13 = np.where(np.logical_not(t12) | unreachable, np.nan, 0.0)
-    t14 = distance * n_1 / 2.0
-    t15 = t5 * height
-    CP_y = t14 + t15
-    t16 = C_r * CP_y + C_y * DP_r_right_of_CD
-    CP_y_right_of_CD = t14 - t15
-    t17 = CP_y_right_of_CD * c1
+    t11 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t12 = t11 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t13 = t12 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
+    t14 = _runtime.poison(np.logical_not(t13) | unreachable)
+    t15 = distance * n_1 / 2.0
+    t16 = t6 * height
+    CP_y = t15 + t16
+    t17 = C_r * CP_y + C_y * DP_r_right_of_CD
+    CP_y_right_of_CD = t15 - t16
+    t18 = CP_y_right_of_CD * c1
     side = distance * height
-    DP_r = t6 + t9
+    DP_r = t7 + t10
     along_d = D_r * CP_y_right_of_CD + t2 * DP_r
-    t18 = CP_y * c1
-    t19 = 0.0 + t13
-    t20 = CP_y_right_of_CD * s1
-    t21 = CP_y * s1
+    t19 = CP_y * c1
+    t20 = 0.0 + t14
+    t21 = CP_y_right_of_CD * s1
+    t22 = CP_y * s1
     P_r_right_of_CD = C_r - DP_r
-    t22 = C_r * CP_y_right_of_CD + C_y * DP_r
+    t23 = C_r * CP_y_right_of_CD + C_y * DP_r
     along_d_right_of_CD = D_r * CP_y + t2 * DP_r_right_of_CD
     return (
-        P_r * s1 + t13,
-        t16 * t17 / side + t13,
-        -(along_d * t18 / side) + t13,
-        t19,
-        -(DP_r * t16 / side) + t13,
-        DP_r_right_of_CD * along_d / side + t13,
-        P_r * c1 + t13,
-        -(t16 * t20 / side) + t13,
-        along_d * t21 / side + t13,
-        s1 * P_r_right_of_CD + t13,
-        -(t22 * t18 / side) + t13,
-        along_d_right_of_CD * t17 / side + t13,
-        t19,
-        DP_r_right_of_CD * t22 / side + t13,
-        -(DP_r * along_d_right_of_CD / side) + t13,
-        c1 * P_r_right_of_CD + t13,
-        t22 * t21 / side + t13,
-        -(along_d_right_of_CD * t20 / side) + t13,
+        P_r * s1 + t14,
+        t17 * t18 / side + t14,
+        -(along_d * t19 / side) + t14,
+        t20,
+        -(DP_r * t17 / side) + t14,
+        DP_r_right_of_CD * along_d / side + t14,
+        P_r * c1 + t14,
+        -(t17 * t21 / side) + t14,
+        along_d * t22 / side + t14,
+        s1 * P_r_right_of_CD + t14,
+        -(t23 * t19 / side) + t14,
+        along_d_right_of_CD * t18 / side + t14,
+        t20,
+        DP_r_right_of_CD * t23 / side + t14,
+        -(DP_r * along_d_right_of_CD / side) + t14,
+        c1 * P_r_right_of_CD + t14,
+        t23 * t22 / side + t14,
+        -(along_d_right_of_CD * t21 / side) + t14,
     )
 
 
@@ -456,10 +452,8 @@ def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 
 
 def _determinant(theta1, theta2, theta3, L0, L1, L2):
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
-    s3 = np.sin(theta3)
-    c3 = np.cos(theta3)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
     C_r = L1 * s2
     D_r = L1 * s3
     t1 = C_r - D_r
@@ -467,35 +461,37 @@ def _determinant(theta1, theta2, theta3, L0, L1, L2):
     t2 = L1 * c3
     t3 = C_y - (L0 + t2)
     apart = np.sqrt(t1 * t1 + t3 * t3)
-    t4 = apart <= _runtime.VANISHING * (L0 + L1 + L2)
-    distance = np.where(t4, 0.0, apart)
-    t5 = np.where(t4, 0.0, t1 / apart)
-    t6 = distance * t5 / 2.0
-    n_1 = np.where(t4, 1.0, -(t3 / apart))
-    t7 = L2 * 2.0
-    t8 = t7 - apart
-    slack = np.maximum(t8, 0.0)
-    height = np.where(slack <= t7 * _runtime.VANISHING, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
-    t9 = n_1 * height
-    DP_r_right_of_CD = t6 - t9
-    t10 = distance * n_1 / 2.0
-    t11 = t5 * height
-    CP_y = t10 + t11
-    t12 = (C_r - DP_r_right_of_CD) * (C_r * CP_y + C_y * DP_r_right_of_CD)
-    CP_y_right_of_CD = t10 - t11
-    DP_r = t6 + t9
+    t4 = L0 + L1 + L2
+    t5 = t4 * _runtime.VANISHING
+    coincide = apart <= t5
+    distance = np.where(coincide, 0.0, apart)
+    t6 = np.where(coincide, 0.0, t1 / apart)
+    t7 = distance * t6 / 2.0
+    n_1 = np.where(coincide, 1.0, -(t3 / apart))
+    t8 = L2 * 2.0
+    t9 = t8 - apart
+    slack = np.maximum(t9, 0.0)
+    height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    t10 = n_1 * height
+    DP_r_right_of_CD = t7 - t10
+    t11 = distance * n_1 / 2.0
+    t12 = t6 * height
+    CP_y = t11 + t12
+    t13 = (C_r - DP_r_right_of_CD) * (C_r * CP_y + C_y * DP_r_right_of_CD)
+    CP_y_right_of_CD = t11 - t12
+    DP_r = t7 + t10
     side = distance * height
-    t13 = t12 * (D_r * CP_y_right_of_CD + t2 * DP_r) / side
-    t14 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t15 = t14 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t16 = t15 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
-    unreachable = np.logical_not(-(t7 * _runtime.FEASIBILITY) <= t8)
-    t17 = np.where(np.logical_not(t16) | unreachable, np.nan, 0.0)
-    t18 = (C_r - DP_r) * (C_r * CP_y_right_of_CD + C_y * DP_r)
-    t19 = t18 * (D_r * CP_y + t2 * DP_r_right_of_CD) / side
+    t14 = t13 * (D_r * CP_y_right_of_CD + t2 * DP_r) / side
+    t15 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t16 = t15 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t17 = t16 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
+    t18 = _runtime.poison(np.logical_not(t17) | unreachable)
+    t19 = (C_r - DP_r) * (C_r * CP_y_right_of_CD + C_y * DP_r)
+    t20 = t19 * (D_r * CP_y + t2 * DP_r_right_of_CD) / side
     return (
-        -t13 + t17,
-        t19 + t17,
+        -t14 + t18,
+        t20 + t18,
     )
 
 
@@ -523,45 +519,45 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 
 
 def _singularities(theta1, theta2, theta3, L0, L1, L2):
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
-    s3 = np.sin(theta3)
-    c3 = np.cos(theta3)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
     C_r = L1 * s2
     t1 = C_r - L1 * s3
     t2 = L1 * c2 - (L0 + L1 * c3)
     apart = np.sqrt(t1 * t1 + t2 * t2)
-    t3 = apart <= _runtime.VANISHING * (L0 + L1 + L2)
-    distance = np.where(t3, 0.0, apart)
-    t4 = np.where(t3, 0.0, t1 / apart)
-    t5 = distance * t4 / 2.0
-    n_1 = np.where(t3, 1.0, -(t2 / apart))
-    t6 = L2 * 2.0
-    t7 = t6 - apart
-    slack = np.maximum(t7, 0.0)
-    height = np.where(slack <= t6 * _runtime.VANISHING, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
-    t8 = n_1 * height
-    DP_r_right_of_CD = t5 - t8
-    t9 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t10 = t9 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
-    unreachable = np.logical_not(-(t6 * _runtime.FEASIBILITY) <= t7)
-    t12 = np.where(np.logical_not(t11) | unreachable, np.nan, 0.0)
-    t13 = distance * n_1 / 2.0
-    t14 = t4 * height
-    CP_y = t13 + t14
-    DP_r = t5 + t8
-    CP_y_right_of_CD = t13 - t14
+    t3 = L0 + L1 + L2
+    t4 = t3 * _runtime.VANISHING
+    coincide = apart <= t4
+    distance = np.where(coincide, 0.0, apart)
+    t5 = np.where(coincide, 0.0, t1 / apart)
+    t6 = distance * t5 / 2.0
+    n_1 = np.where(coincide, 1.0, -(t2 / apart))
+    t7 = L2 * 2.0
+    t8 = t7 - apart
+    slack = np.maximum(t8, 0.0)
+    height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
+    t9 = n_1 * height
+    DP_r_right_of_CD = t6 - t9
+    t10 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t11 = t10 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
+    t13 = _runtime.poison(np.logical_not(t12) | unreachable)
+    t14 = distance * n_1 / 2.0
+    t15 = t5 * height
+    CP_y = t14 + t15
+    DP_r = t6 + t9
+    CP_y_right_of_CD = t14 - t15
     side = distance * height
     return (
-        C_r - DP_r_right_of_CD + t12,
-        -(c2 * DP_r_right_of_CD + s2 * CP_y) + t12,
-        c3 * DP_r + s3 * CP_y_right_of_CD + t12,
-        side + t12,
-        C_r - DP_r + t12,
-        -(c2 * DP_r + s2 * CP_y_right_of_CD) + t12,
-        c3 * DP_r_right_of_CD + s3 * CP_y + t12,
-        -side + t12,
+        C_r - DP_r_right_of_CD + t13,
+        -(c2 * DP_r_right_of_CD + s2 * CP_y) + t13,
+        c3 * DP_r + s3 * CP_y_right_of_CD + t13,
+        side + t13,
+        C_r - DP_r + t13,
+        -(c2 * DP_r + s2 * CP_y_right_of_CD) + t13,
+        c3 * DP_r_right_of_CD + s3 * CP_y + t13,
+        -side + t13,
     )
 
 
@@ -588,28 +584,28 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 
 
 def _condition_number(theta1, theta2, theta3, L0, L1, L2):
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
-    s3 = np.sin(theta3)
-    c3 = np.cos(theta3)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = L1 * s2 - L1 * s3
     t2 = L1 * c2 - (L0 + L1 * c3)
     apart = np.sqrt(t1 * t1 + t2 * t2)
-    distance = np.where(apart <= _runtime.VANISHING * (L0 + L1 + L2), 0.0, apart)
-    t3 = distance / 2.0
-    t4 = L2 * 2.0
-    t5 = t4 - apart
-    slack = np.maximum(t5, 0.0)
-    height = np.where(slack <= t4 * _runtime.VANISHING, 0.0, np.sqrt(slack) * np.sqrt(apart + t4) / 2.0)
-    t6 = np.maximum(t3, height) / np.minimum(t3, height)
-    t7 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t8 = t7 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    invalid = np.logical_not(t8 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2))
-    unreachable = np.logical_not(-(t4 * _runtime.FEASIBILITY) <= t5)
-    t9 = t6 + np.where(invalid | unreachable, np.nan, 0.0)
+    t3 = L0 + L1 + L2
+    t4 = t3 * _runtime.VANISHING
+    t5 = np.where(apart <= t4, 0.0, apart) / 2.0
+    t6 = L2 * 2.0
+    t7 = t6 - apart
+    slack = np.maximum(t7, 0.0)
+    height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
+    t8 = np.maximum(t5, height) / np.minimum(t5, height)
+    t9 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t10 = t9 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t7)
+    t12 = _runtime.poison(np.logical_not(t11) | unreachable)
+    t13 = t8 + t12
     return (
-        t9,
-        t9,
+        t13,
+        t13,
     )
 
 
@@ -640,87 +636,86 @@ def _ik(x, y, z, L0, L1, L2):
     r = np.sqrt(x * x + z * z)
     t1 = L1 + L2
     t2 = _runtime.VANISHING * (L0 + t1)
-    t3 = r <= t2
-    t4 = _runtime.wrap(np.where(t3, 0.0, np.arctan2(z, -x)))
-    t5 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t6 = t5 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    invalid = np.logical_not(t6 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2))
-    t7 = -(_runtime.FEASIBILITY * t1)
-    t8 = r * r
-    reach_c = np.sqrt(t8 + y * y)
-    t9 = t1 - reach_c
-    t10 = L1 - L2
-    t11 = reach_c + t10
-    t12 = reach_c - t10
-    t13 = y - L0
-    reach_d = np.sqrt(t8 + t13 * t13)
-    t14 = t1 - reach_d
-    t15 = (t7 <= t9) & (t7 <= t11) & (t7 <= t12) & (t7 <= t14)
-    t16 = reach_d + t10
-    t17 = reach_d - t10
-    unreachable = np.logical_not(t15 & (t7 <= t16) & (t7 <= t17))
-    t18 = np.where(invalid | unreachable, np.nan, 0.0)
-    t19 = t4 + t18
-    t20 = reach_c <= t2
-    t21 = np.arctan2(r, y)
-    t22 = np.sqrt(np.maximum(t9, 0.0)) * np.sqrt(np.maximum(t12, 0.0))
-    t23 = np.sqrt(reach_c + t1) * np.sqrt(np.maximum(t11, 0.0))
-    t24 = 2.0 * np.arctan2(t22, t23)
-    t25 = np.where(t20, 0.0, t21 - t24)
-    t26 = _runtime.wrap(t25) + t18
-    t27 = reach_d <= t2
-    t28 = np.arctan2(r, t13)
-    t29 = np.sqrt(np.maximum(t14, 0.0)) * np.sqrt(np.maximum(t17, 0.0))
-    t30 = np.sqrt(reach_d + t1) * np.sqrt(np.maximum(t16, 0.0))
-    t31 = 2.0 * np.arctan2(t29, t30)
-    t32 = np.where(t27, 0.0, t28 - t31)
-    t33 = _runtime.wrap(t32) + t18
-    t34 = np.where(t27, 0.0, t28 + t31)
-    t35 = _runtime.wrap(t34) + t18
-    t36 = np.where(t20, 0.0, t21 + t24)
-    t37 = _runtime.wrap(t36) + t18
-    t38 = _runtime.wrap(-np.where(t3, 0.0, np.arctan2(z, x)))
-    t39 = t38 + t18
-    t40 = _runtime.wrap(-t36) + t18
-    t41 = _runtime.wrap(-t34) + t18
-    t42 = _runtime.wrap(-t32) + t18
-    t43 = _runtime.wrap(-t25) + t18
-    t44 = t3 | t20 | t27 | (L1 <= t1 * _runtime.VANISHING)
-    t45 = np.where(unreachable, 1.0, np.where(t44, 2.0, 0.0))
-    t46 = np.where(invalid, 3.0, t45)
+    on_axis = r <= t2
+    t3 = _runtime.wrap(np.where(on_axis, 0.0, np.arctan2(z, -x)))
+    t4 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t5 = t4 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    invalid = np.logical_not(t5 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2))
+    t6 = -(_runtime.FEASIBILITY * t1)
+    t7 = r * r
+    reach_c = np.sqrt(t7 + y * y)
+    t8 = t1 - reach_c
+    t9 = L1 - L2
+    t10 = reach_c + t9
+    t11 = reach_c - t9
+    t12 = y - L0
+    reach_d = np.sqrt(t7 + t12 * t12)
+    t13 = t1 - reach_d
+    t14 = (t6 <= t8) & (t6 <= t10) & (t6 <= t11) & (t6 <= t13)
+    t15 = reach_d + t9
+    t16 = reach_d - t9
+    unreachable = np.logical_not(t14 & (t6 <= t15) & (t6 <= t16))
+    t17 = _runtime.poison(invalid | unreachable)
+    t18 = t3 + t17
+    at_A = reach_c <= t2
+    t19 = np.arctan2(r, y)
+    t20 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t11, 0.0))
+    t21 = np.sqrt(reach_c + t1) * np.sqrt(np.maximum(t10, 0.0))
+    t22 = 2.0 * np.arctan2(t20, t21)
+    t23 = np.where(at_A, 0.0, t19 - t22)
+    t24 = _runtime.wrap(t23) + t17
+    at_B = reach_d <= t2
+    t25 = np.arctan2(r, t12)
+    t26 = np.sqrt(np.maximum(t13, 0.0)) * np.sqrt(np.maximum(t16, 0.0))
+    t27 = np.sqrt(reach_d + t1) * np.sqrt(np.maximum(t15, 0.0))
+    t28 = 2.0 * np.arctan2(t26, t27)
+    t29 = np.where(at_B, 0.0, t25 - t28)
+    t30 = _runtime.wrap(t29) + t17
+    t31 = np.where(at_B, 0.0, t25 + t28)
+    t32 = _runtime.wrap(t31) + t17
+    t33 = np.where(at_A, 0.0, t19 + t22)
+    t34 = _runtime.wrap(t33) + t17
+    t35 = _runtime.wrap(-np.where(on_axis, 0.0, np.arctan2(z, x)))
+    t36 = t35 + t17
+    t37 = _runtime.wrap(-t33) + t17
+    t38 = _runtime.wrap(-t31) + t17
+    t39 = _runtime.wrap(-t29) + t17
+    t40 = _runtime.wrap(-t23) + t17
+    t41 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
+    t42 = _runtime.status(invalid, unreachable, t41)
     return (
-        t19,
-        t26,
-        t33,
-        t19,
-        t26,
-        t35,
-        t19,
+        t18,
+        t24,
+        t30,
+        t18,
+        t24,
+        t32,
+        t18,
+        t34,
+        t30,
+        t18,
+        t34,
+        t32,
+        t36,
         t37,
-        t33,
-        t19,
+        t38,
+        t36,
         t37,
-        t35,
         t39,
+        t36,
         t40,
-        t41,
-        t39,
+        t38,
+        t36,
         t40,
-        t42,
         t39,
-        t43,
-        t41,
-        t39,
-        t43,
         t42,
-        t46,
-        t46,
-        t46,
-        t46,
-        t46,
-        t46,
-        t46,
-        t46,
+        t42,
+        t42,
+        t42,
+        t42,
+        t42,
+        t42,
+        t42,
     )
 
 
@@ -749,6 +744,7 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
         free; L1 = 0, both are.  0 is returned for theta1, and for the others unless L1 = 0.
     Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
         the loop still closes.  fk loses them again near a parallel singularity.
+    If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return _runtime.Solutions(*result)
@@ -821,7 +817,7 @@ def _workspace_volume(L0, L1, L2):
     t20 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t21 = t20 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     unreachable = np.logical_not(-(t1 * _runtime.FEASIBILITY) <= t1)
-    t22 = np.where(np.logical_not(t21) | unreachable, np.nan, 0.0)
+    t22 = _runtime.poison(np.logical_not(t21) | unreachable)
     return (
         t19 + t22,
     )

@@ -20,7 +20,7 @@ CLOSEDFORM_DISPATCHED void sincos_block(size_t n, const real_t *x, real_t *s, re
 
 void sincos_eights(size_t n, const real_t *x, real_t *s, real_t *c)
 {
-    for (size_t i = 0; i + 8 <= n; i += 8) cf_sincos8(x + i, s + i, c + i);
+    for (size_t i = 0; i + 8 <= n; i += 8) cf_sincos_block(8, x + i, s + i, c + i);
 }
 
 CLOSEDFORM_DISPATCHED void sincos_plain(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,

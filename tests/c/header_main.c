@@ -30,7 +30,7 @@ int main(void)
         signed_values[2 * i + 1] = -values[i];
     }
     for (size_t n = 0; n <= 2 * COUNT; ++n) cf_sincos_block(n, signed_values, s, c);
-    for (size_t i = 0; i + 8 <= 2 * COUNT; ++i) cf_sincos8(signed_values + i, s + i, c + i);
+    for (size_t i = 0; i + 8 <= 2 * COUNT; ++i) cf_sincos_block(8, signed_values + i, s + i, c + i);
     for (size_t i = 0; i < 2 * COUNT; ++i) {
         const real_t a = signed_values[i];
         cf_sincos(a, &s[i], &c[i]);

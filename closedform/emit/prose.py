@@ -1,0 +1,200 @@
+"""Names of symbols, and sentences with formulas in them, as LaTeX."""
+
+from __future__ import annotations
+
+import re
+
+import sympy as sp
+from sympy.core.alphabets import greeks
+
+from closedform.derivation import Derivation
+from closedform.functions import Bound, Let
+
+GREEK = {*greeks, *(g.capitalize() for g in greeks), "lambda", "varphi"}
+SYMBOL_NAMES = {"det": r"\det", "lamda": r"\lambda", "loff": r"l_{\mathrm{off}}"}
+"""Symbols that the rule of :func:`symbol_name` would misread."""
+
+ESCAPES = {
+    "\\": r"\textbackslash{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    **{c: "\\" + c for c in "&%$#_{}"},
+    **{c: f"${c}$" for c in "<>|"},
+    "–": "--",
+    "—": "---",
+    "‘": "`",
+    "’": "'",
+    "“": "``",
+    "”": "''",
+    "…": r"\dots{}",
+}
+UNICODE = {
+    "α": r"\alpha", "β": r"\beta", "γ": r"\gamma", "δ": r"\delta", "ε": r"\epsilon", "η": r"\eta",
+    "θ": r"\theta", "κ": r"\kappa", "λ": r"\lambda", "μ": r"\mu", "µ": r"\mu", "ξ": r"\xi",
+    "π": r"\pi", "ρ": r"\rho", "σ": r"\sigma", "τ": r"\tau", "φ": r"\varphi", "ϕ": r"\phi",
+    "ψ": r"\psi", "ω": r"\omega", "Δ": r"\Delta", "Ω": r"\Omega", "°": r"^\circ", "±": r"\pm",
+    "×": r"\times", "·": r"\cdot", "≤": r"\le", "≥": r"\ge", "≠": r"\ne", "≈": r"\approx",
+    "√": r"\surd", "∞": r"\infty", "∈": r"\in", "²": "^2", "³": "^3", "−": "-",
+}  # fmt: skip
+
+FUNCTIONS = r"(?:sqrt|sin|cos|tan|atan2|acos|asin|atan|det|max|min|Abs)"
+PAREN = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
+NAME = r"[A-Za-z][A-Za-z0-9_]*"
+NUMBER = r"\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![A-Za-z])"
+POWER = rf"(?:\*\*|\^)(?:\{{[^}}]*\}}|-?\w+|{PAREN})"
+BALL = r"\[[^]]*\+/-[^]]*\]"
+ATOM = rf"[-+]?(?:{FUNCTIONS}{PAREN}|{NAME}|{NUMBER}|{PAREN}|\|[^|]+\||{BALL})(?:{POWER})?"
+RELATION = r"(?:\s*(?:<=|>=|!=|=|[*/])\s*|\s+[-+<>]\s+)"
+PROSE = re.compile(rf"(?<![\w-])({ATOM}(?:{RELATION}{ATOM})*)(?!-?\w)")
+TOKEN = re.compile(
+    rf"({FUNCTIONS})({PAREN})|(?:\*\*|\^)({PAREN}|\{{[^}}]*\}}|-?\w+)|({NUMBER})|({NAME})"
+    r"|(\+/-|<=|>=|!=|[*<>])|(.)"
+)
+SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,"}
+
+
+def symbol_name(name: str) -> str:
+    """The LaTeX of a symbol: px is ``p_{x}``, theta2R ``\\theta_{2\\mathrm{R}}``."""
+    if name in SYMBOL_NAMES:
+        return SYMBOL_NAMES[name]
+    dotted, name = "dot" in name, name.replace("_dot", "").replace("dot", "")
+    first, *subscripts = name.split("_")
+    letters, rest = (re.match(r"([A-Za-z]+)(.*)", first) or re.match("(.)(.*)", first)).groups()  # type: ignore[union-attr]
+    if letters in GREEK:
+        base = r"\lambda" if letters == "lamda" else rf"\{letters}"
+    elif len(letters) <= 2:
+        base, rest = letters[0], letters[1:] + rest
+    else:
+        base = rf"\mathrm{{{letters}}}"
+    base = rf"\dot{{{base}}}" if dotted else base
+    parts = [_subscript(s) for s in ([rest] if rest else []) + [s for s in subscripts if s]]
+    return f"{base}_{{{','.join(parts)}}}" if parts else base
+
+
+def _subscript(text: str) -> str:
+    if re.fullmatch(r"\d*[a-z]?|\d", text):
+        return text
+    if number := re.fullmatch(r"(\d+)([A-Za-z]+)", text):
+        return rf"{number[1]}\mathrm{{{number[2]}}}"
+    if (head := re.match("[A-Za-z]+", text)) and (head[0] in GREEK or re.search(r"\d", text)):
+        return symbol_name(text)
+    return rf"\mathrm{{{text}}}"
+
+
+def escape(text: str) -> str:
+    """Plain text; letters and signs of mathematics that LaTeX's fonts lack become formulas."""
+    text = re.sub(r'"([^"]*)"', "“\\1”", text)
+    parts = re.split(r"([α-ωϕ])(\d+)", text)
+    for i, part in enumerate(parts):
+        plain = (ESCAPES.get(c) or (f"${UNICODE[c]}$" if c in UNICODE else c) for c in part)
+        parts[i] = (
+            f"${UNICODE[part]}" if i % 3 == 1 else f"_{{{part}}}$" if i % 3 else "".join(plain)
+        )
+    return "".join(parts)
+
+
+def mixed(text: str) -> str:
+    """Text with formulas between dollar signs."""
+    parts = text.split("$")
+    for i, part in enumerate(parts):
+        formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
+        parts[i] = rf"$\displaystyle {formula}$" if i % 2 else escape(part)
+    return "".join(parts)
+
+
+class Prose:
+    """Sentences as derivations have them: ``theta1 = pi/6`` in the text becomes a formula."""
+
+    def __init__(self, derivation: Derivation):
+        functions = derivation.functions
+        symbols = [p.symbol for p in derivation.parameters] + [j.symbol for j in derivation.joints]
+        symbols += [s for f in functions for s in f.symbols]
+        symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
+        names = {str(s) for s in symbols} | set(derivation.task)
+        self.known = GREEK | set(SYMBOL_NAMES)
+        self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
+
+    def __call__(self, text: str) -> str:
+        parts = PROSE.split(text)
+        return "".join(
+            f"${self.formula(part)}$" if i % 2 and self._is_formula(part) else escape(part)
+            for i, part in enumerate(parts)
+        )
+
+    def _is_formula(self, text: str) -> bool:
+        if re.search(rf"\b{FUNCTIONS}\(", text):
+            return True
+        names = re.findall(rf"(?<![\w.]){NAME}", text)
+        related = bool(re.search(r"[=<>*^|]|\+/-| [-+] |\w/\w", text))
+        if any(n in self.known or re.fullmatch("[^aAI]|[A-Za-z]_.+", n) for n in names):
+            return related or not text.startswith("(")
+        return related and "=" in text if names else related or text[0] == "-"
+
+    def correction(self, text: str) -> str:
+        """A corrected form as text with formulas between dollar signs, one for each statement."""
+        if "$" in text or re.search(r"^[^\\]*\b[a-z]{2,} [a-z]{2,}\b[^\\]*$", text):
+            return text
+        text = loosen(text)
+        for name in sorted(
+            n for n in self.known - GREEK if len(n) > 1 and sp.latex(sp.Symbol(n)) == n
+        ):
+            better = symbol_name(name).replace("\\", r"\\")
+            text = re.sub(rf"(?<![\\A-Za-z_]){name}(?![A-Za-z])", better, text)
+        text = re.sub(r"_\{(\w)\}", r"_\1", text)
+        text = re.sub(
+            r"\\(sin|cos|tan)(\^\{\w+\})?\{\((\\?\w+(?:_\{\w+\})?)\)\}", r"\\\1\2 \3", text
+        )
+        parts = []
+        for part in re.split(r";\\quad |,\\ (?=\[)", text):
+            entry = re.match(r"(?:\\text\{(.*?): \})?(?:\[(\d+,\d+)\] = )?", part)
+            assert entry is not None
+            head = [entry[1]] if entry[1] else []
+            head += [f"entry ({entry[2]})"] if entry[2] else []
+            parts.append(", ".join(head) + ": " * bool(head) + f"${part[entry.end() :]}$")
+        return "; ".join(parts) if text else ""
+
+    def formula(self, text: str) -> str:
+        done = []
+        for function, argument, power, number, name, sign, other in TOKEN.findall(text):
+            if function:
+                inner = self.formula(argument[1:-1])
+                command = {"atan2": r"\operatorname{atan2}", "Abs": r"\operatorname{abs}"}
+                head = command.get(function, "\\" + function)
+                done.append(f"{head}{{{inner}}}" if function == "sqrt" else f"{head}({inner})")
+            elif power:
+                inner = self.formula(re.sub(r"^[({](.*)[)}]$", r"\1", power))
+                done.append(f"^{{{inner}}}")
+            elif number:
+                done.append(re.sub(r"e\+?(-?)0*(\d+)", r"\\cdot 10^{\1\2}", number))
+            elif name:
+                short = name in self.known or len(name) == 1 or name[1] == "_"
+                done.append(symbol_name(name) if short else rf"\mathrm{{{name}}}")
+            else:
+                done.append(SIGNS.get(sign, sign) or other)
+        return "".join(done)
+
+
+def upright(text: str) -> str:
+    """Words inside a formula, such as ``area`` or ``any``, set as words."""
+    if r"\begin" in text or r"\text" in text or r"\mathrm" in text:
+        return text
+    spaced = re.sub(r"(?<=\S) +(?=[A-Za-z]{3})", r"\\ ", text)
+    return re.sub(r"(?<![\\A-Za-z])[A-Za-z]{3,}", r"\\mathrm{\g<0>}", spaced)
+
+
+def loosen(text: str) -> str:
+    """Parentheses of a fixed size for ``\\left( \\right)``, unless a matrix stands inside."""
+    opened: list[tuple[int, str]] = []
+    parts = re.split(r"(\\left[(\[]|\\right[)\]]|\\left\S|\\right\S)", text)
+    for i, part in enumerate(parts):
+        if part.startswith(r"\left"):
+            opened.append((i, part))
+        elif part.startswith(r"\right") and opened:
+            j, left = opened.pop()
+            inside = "".join(parts[j + 1 : i])
+            if left[5:] in "([" and r"\begin" not in inside:
+                size = r"\bigl", r"\bigr"
+                if r"\frac" not in inside and r"\sqrt" not in inside:
+                    size = "", ""
+                parts[j], parts[i] = size[0] + left[5:], size[1] + part[6:]
+    return re.sub(r"(?<![\s\\]) (?=(?:\\bigr)?[)\]])", "", "".join(parts))

@@ -1,0 +1,124 @@
+"""Every batch function of the generated C becomes vector code, and agrees with its single call."""
+
+import ctypes
+import platform
+import re
+import shutil
+import subprocess
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+C = Path(__file__).resolve().parent.parent / "generated" / "c"
+ROBOTS = sorted(path.stem for path in C.glob("*.c") if path.stem != "extension")
+FLAGS = "-std=c99 -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast -march=x86-64-v3"
+TYPES = {np.float64: [], np.float32: ["-DCLOSEDFORM_FLOAT"]}
+POSTURES = 300  # more than a block, and a remainder that is no whole vector
+CPU = Path("/proc/cpuinfo")
+
+
+def version_of_gcc() -> int:
+    told = subprocess.run(["gcc", "--version"], capture_output=True, text=True).stdout
+    number = re.search(r"^gcc.* (\d+)\.\d+\.\d+", told)
+    return int(number[1]) if number else 0
+
+
+pytestmark = [
+    pytest.mark.skipif(
+        platform.machine() != "x86_64" or not shutil.which("gcc") or version_of_gcc() < 12,
+        reason="no gcc 12 for x86-64",
+    ),
+    pytest.mark.parametrize("robot", ROBOTS),
+    pytest.mark.parametrize("real", TYPES),
+]
+
+
+@pytest.fixture(scope="module")
+def build(tmp_path_factory):
+    """Compiles a robot once for each type: the library, and what gcc tells of the loops."""
+    folder = tmp_path_factory.mktemp("vector")
+
+    @cache
+    def compiled(robot: str, real: type) -> tuple[Path, str]:
+        target = folder / f"{robot}_{real.__name__}.so"
+        flags = [*FLAGS.split(), *TYPES[real], "-fPIC", "-shared", "-fopt-info-loop-vec-optimized"]
+        command = ["gcc", *flags, str(C / f"{robot}.c"), "-o", str(target), "-lm"]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return target, done.stderr
+
+    return compiled
+
+
+def batch_loops(source: str) -> dict[int, str]:
+    """The loops over the postures of a block: their lines, and the functions they stand in."""
+    loops, function = {}, ""
+    for number, line in enumerate(source.splitlines(), 1):
+        if definition := re.match(r"(?:CF_INLINE )?void (\w+)\(", line):
+            function = definition[1]
+        if re.search(r"\bfor \(size_t i = 0; i < length;", line):
+            loops[number] = function
+    return loops
+
+
+def test_every_batch_loop_becomes_vectors(robot, real, build):
+    _, told = build(robot, real)
+    # Full vectors, not those of the remainder. A mere copy of a plane becomes a call of memcpy.
+    done = "loop vectorized using 32 byte|split to 0 loops and 1 library calls"
+    vector = {int(n) for n in re.findall(rf"/{robot}\.c:(\d+):\d+: optimized:.*(?:{done})", told)}
+    source = (C / f"{robot}.c").read_text()
+    loops = batch_loops(source)
+    batches = set(re.findall(r"^void (\w+_batch)\(", source, re.MULTILINE))
+    assert batches and set(loops.values()) == batches
+    assert {loops[line] for line in loops.keys() - vector} == set()
+
+
+def planes_of(arguments: str, real: type, known: dict[str, np.ndarray]) -> list[np.ndarray]:
+    """Planes for every array of a single call, the inputs filled: with an output of that name of an
+    earlier function, so that an inverse gets what can be reached, or else at random."""
+    random = np.random.default_rng(0)
+    arrays = []
+    for const, kind, name, size in re.findall(
+        r"(const )?(real_t|uint8_t) (\w+)\[(\d+)\]", arguments
+    ):
+        planes = np.zeros((int(size), POSTURES), real if kind == "real_t" else np.uint8)
+        if const:
+            planes[:] = known.get(name, random.uniform(-3, 3, planes.shape))
+            planes[:, ::50] = 0
+            planes[0, ::70] = np.nan
+        known.setdefault(name, planes)
+        arrays.append(planes)
+    return arrays
+
+
+def pointer(array: np.ndarray) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)
+
+
+@pytest.mark.skipif(
+    not CPU.exists() or " avx2 " not in CPU.read_text(), reason="a processor without AVX2"
+)
+def test_batch_and_single_call_agree(robot, real, build):
+    library = ctypes.CDLL(str(build(robot, real)[0]))
+    header = " ".join((C / f"{robot}.h").read_text().split())
+    fields = len(re.findall(r"real_t \w+; /\*", header))
+    params = np.linspace(3, 2, fields).astype(real)
+    few_ulps = 16 * np.finfo(real).eps
+
+    functions = re.findall(rf"void ({robot}_\w+)\(([^()]*)\);", header)
+    known: dict[str, np.ndarray] = {}
+    for name, arguments in functions:
+        if name.endswith("_batch"):
+            continue
+        batch = planes_of(arguments, real, known)
+        single = [np.ascontiguousarray(planes.T) for planes in batch]
+        strided = [x for a in batch for x in (pointer(a), ctypes.c_size_t(POSTURES))]
+        library[f"{name}_batch"](ctypes.c_size_t(POSTURES), pointer(params), *strided)
+        for rows in zip(*single, strict=True):
+            library[name](pointer(params), *map(pointer, rows))
+        for one, many in zip(single, batch, strict=True):
+            np.testing.assert_allclose(one.T, many, few_ulps, few_ulps, err_msg=name)
+        if name.endswith(("_ik", "_ik_pose")):
+            assert np.mean(batch[-1] == 0) > 0.9, name

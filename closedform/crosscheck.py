@@ -150,6 +150,15 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     return finding
 
 
+def _scale(magnitude: Callable[..., Any], values: Sequence[float], backend: Backend) -> float:
+    """The natural scale; infinite, so that nothing is compared, where the float type overflows."""
+    try:
+        with np.errstate(over="ignore", under="ignore"):
+            return float(magnitude(*map(backend.dtype, values)))
+    except OverflowError:
+        return math.inf
+
+
 def _flagged(function: Function) -> list[sp.Expr]:
     """What the flags of a function look at, over its scale: near zero the value is a convention."""
     return [
@@ -181,15 +190,6 @@ def check_boolean(derivation: Derivation, function: Function, backend: Backend) 
             if bool(answer) != expected:
                 finding.fail(f"{bool(answer)} at {sample.name}: {values}")
     return finding
-
-
-def _scale(magnitude: Callable[..., Any], values: Sequence[float], backend: Backend) -> float:
-    """The natural scale; infinite, so that nothing is compared, where the float type overflows."""
-    try:
-        with np.errstate(over="ignore", under="ignore"):
-            return float(magnitude(*map(backend.dtype, values)))
-    except OverflowError:
-        return math.inf
 
 
 def _variation(

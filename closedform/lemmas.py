@@ -253,8 +253,8 @@ def circle_intersection(
     first to the point.  With the factors of Heron's formula the height of the triangle is
     ``sqrt(S A B C) / (2 d)``.  ``scale`` is the size of the coordinates, whose rounding decides
     what counts as zero.  Where the radii are equal and the centres coincide, the point is free on
-    a circle; the convention is that of centres which are parted along the first axis.  Circles
-    that touch meet in one point.
+    a circle; the convention is that of centres which are parted along the first axis.  Circles that
+    touch meet in one point.
     """
     x, y = unknowns
     apart = program.let(

@@ -141,8 +141,9 @@ def loci(d: Derivation) -> Loci:
         "and BD by resultants.  For psi = 0, C = D, what remains has degree 4: the circles of "
         "radius L2 about the two points where C and D can meet (real if L0 <= 2 L1).  For psi = "
         "pi, C, P, D in line, it is the curve of the midpoint of the coupler of a four-bar "
-        "linkage, an irreducible sextic.  The elimination adds powers of rho and of L0, which are "
-        "no part of the locus.  L0 = 0 splits the sextic into the point A and the circle of squared radius "
+        "linkage, an irreducible sextic.  The elimination adds a power of rho, and of L0, which "
+        "are no part of the locus.  L0 = 0 splits the sextic into the point A and the circle of "
+        "squared radius "
         "L1^2 - L2^2, both twice.",
         {
             rf"\psi = 0 \text{{ (degree {same.degree})}}": sp.Eq(circles, 0),

@@ -8,15 +8,15 @@ REDDY_BABU = Paper(
     ("S. Baswanth Kumar Reddy", "K. Rajesh Babu"),
 )
 
+SHI_ZHU_LI = Paper(
+    "shi-zhu-li",
+    "New Method for Kinematic Analysis of a Hybrid Manipulator",
+    ("Jun Shi", "Xiaorui Zhu", "Zexiang Li"),
+)
+
 CHABLAT_WENGER_ANGELES = Paper(
     "chablat-wenger-angeles",
     "The Kinematic Design of a 3-DOF Hybrid Manipulator",
     ("Damien Chablat", "Philippe Wenger", "Jorge Angeles"),
     "Integrated Design and Manufacturing in Mechanical Engineering, Compiègne, 1998",
-)
-
-SHI_ZHU_LI = Paper(
-    "shi-zhu-li",
-    "New Method for Kinematic Analysis of a Hybrid Manipulator",
-    ("Jun Shi", "Xiaorui Zhu", "Zexiang Li"),
 )

@@ -37,14 +37,14 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         first, second = (real(n, positive=True) for n in ("l1", "l2"))
         reach = real("r", positive=True)
         return two_link_triangle(program, first, second, reach, x, y, sigma), program, {}
+    if name == "parallelogram":
+        crank, coupler = (real(n, positive=True) for n in ("l", "a"))
+        return parallelogram(crank, coupler, z, real("gamma"), x, y, sigma), program, {}
     if name.startswith("circles"):
         r1, r2 = (real(n, positive=True) for n in ("r1", "r2"))
         second = r1 if name == "circles of one size" else r2
         lemma, _ = circle_intersection(program, (a, b), r1, second, (x, y), sigma, r1 + r2)
         return lemma, program, {}
-    if name == "parallelogram":
-        crank, coupler = (real(n, positive=True) for n in ("l", "a"))
-        return parallelogram(crank, coupler, z, real("gamma"), x, y, sigma), program, {}
     R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
     given = dict(zip(R, rotation_parametrisation(), strict=True))
     return zyz_angles(program, R, x, y, z, sigma), program, given

@@ -56,7 +56,7 @@ def conditioning(d: Derivation, A: sp.Matrix, psi: sp.Expr) -> None:
         "Isotropy",
         "kappa = 1 where CP and DP are at right angles: h = e, so CD = sqrt 2 L2.  theta2 and "
         "theta3 are independent, so CD takes every value from max(0, L0 - 2 L1) to L0 + 2 L1: A "
-        "can be isotropic if and only if sqrt 2 L2 lies between the two (and L2 > 0).",
+        "can be isotropic if and only if L2 is positive and sqrt 2 L2 lies between the two.",
         {"d_{min}": sp.Max(0, L0 - 2 * L1), "d_{max}": L0 + 2 * L1},
         equal=[
             (gram.subs(cos(psi), 0), L2**2 * sp.eye(3)),
@@ -69,9 +69,12 @@ def conditioning(d: Derivation, A: sp.Matrix, psi: sp.Expr) -> None:
     d.step(
         "Designs without parallel singularities",
         "det A vanishes where C = D (h = 0) and where C, P, D are in line (e = 0, CD = 2 L2).  By "
-        "the range of CD, neither happens if and only if L0 > 2 L1 and 2 L2 > L0 + 2 L1.  (With "
-        "2 L2 < L0 - 2 L1 the loop never closes.)",
-        {r"d_{min} > 0": L0 > 2 * L1, r"d_{max} < 2 L_2": L0 + 2 * L1 < 2 * L2},
+        "the range of CD, neither happens if and only if L0 > 2 L1 and 2 L2 > L0 + 2 L1.  For a "
+        "2 L2 that is below the range, the loop never closes.",
+        {
+            r"\text{apart}": sp.Gt(L0, 2 * L1),
+            r"\text{never in line}": sp.Gt(2 * L2, L0 + 2 * L1),
+        },
     )
 
 
@@ -139,7 +142,7 @@ def loci(d: Derivation) -> Loci:
         "Locus of the parallel singularities",
         "DP is CP turned by psi; the vector CP is eliminated from its length and the lengths of AC "
         "and BD by resultants.  For psi = 0, C = D, what remains has degree 4: the circles of "
-        "radius L2 about the two points where C and D can meet (real if L0 <= 2 L1).  For psi = "
+        "radius L2 about the two points where C and D can meet, real for L0 <= 2 L1.  For psi = "
         "pi, C, P, D in line, it is the curve of the midpoint of the coupler of a four-bar "
         "linkage, an irreducible sextic.  The elimination adds a power of rho, and of L0, which "
         "are no part of the locus.  L0 = 0 splits the sextic into the point A and the circle of "
@@ -280,7 +283,8 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     whole = sp.Rational(4, 3) * pi * (R**3 - r**3)
     d.step(
         "Workspace: where it is largest",
-        "In each regime minus the derivative by L0 has positive coefficients, so the volume falls "
+        "In each regime minus the derivative by L0 has positive coefficients, once the lengths are "
+        "written in L0 and the slacks s and t of the regime's inequalities; so the volume falls "
         "as L0 grows and is largest at L0 = 0.  For a given reach L1 + L2 it then grows as the "
         "inner radius |L1 - L2| shrinks, and is largest at L1 = L2: the whole ball.  Without such "
         "a bound on the lengths there is no largest workspace.",

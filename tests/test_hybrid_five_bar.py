@@ -2,11 +2,17 @@
 
 import importlib
 import itertools
+from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import sympy as sp
+from closedform.derivations import hybrid_five_bar
 from closedform.derivations import hybrid_five_bar_design as design
+
+from closedform.derivation import Stage
+from closedform.prove import ProofError, prove_inverse
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 DESIGNS = [(7, 8, 5), (0, 1, 1), (3, 1, 3), (1, 1, 2), (1, 1, 3), (0.2, 3, 1), (2.5, 1, 3)]
@@ -321,3 +327,50 @@ def test_loci_hold_the_postures_they_describe(arm, kappa: float, mirrored: int) 
     assert (np.abs(values.sum(axis=0)) <= 1e-12 * np.abs(values).sum(axis=0)).all()
     off = np.array([term(7, 8, 5, P.real + 0.5, P.imag) + 0 * half for term in terms])
     assert np.median(np.abs(off.sum(axis=0)) / np.abs(off).sum(axis=0)) > 1e-6
+
+
+def test_the_inverse_is_counted_step_by_step() -> None:
+    d = hybrid_five_bar.d
+    inverse = next(i for i in d.inverses if i.function == "ik")
+    assert prove_inverse(d, inverse).method == "step by step"
+    first, second, third = inverse.stages
+    for stages, message in (
+        ((first, second), "every equation and every unknown once"),
+        ((first, replace(second, given={}), third), "an earlier equation"),
+        ((second, first, third), "an unknown of a later stage"),
+        ((Stage(second.unknowns, (0, 1), {}), Stage(first.unknowns, (), {}), third), "later stage"),
+    ):
+        with pytest.raises(ProofError, match=message):
+            prove_inverse(d, replace(inverse, stages=stages))
+
+
+REFUTED = {
+    "eq. (4)",
+    "k(pi/2)",
+    "boundary",
+    "border",
+    "2 L1 > L0",
+    "2 L2 - 2 L1 > L0",
+    "located at the boundary",
+    "twice as large",
+    "not avoidable",
+    "always smaller",
+    "condition numbers differ: B",
+    "eigenvalues",
+    "eq. (8)",
+    "minimum of 1",
+    "infinity",
+    "define the boundary",
+    "isotropy regardless of the dimensions",
+}
+
+
+def test_what_the_paper_says() -> None:
+    verdicts = {c.label: c.check.judge().kind for c in hybrid_five_bar.d.claims}
+    assert {label for label, kind in verdicts.items() if kind == "refuted"} == REFUTED
+    assert Counter(verdicts.values()) == {
+        "proved": 24,
+        "proved under assumption": 2,
+        "refuted": 17,
+        "not decidable here": 6,
+    }

@@ -152,6 +152,11 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         Undecidable(NO_DIMENSIONS),
     )
     claim(
+        "Figures 13 and 14",
+        "by means of a change of working mode, to reach points inside the two workspace sections",
+        Undecidable(NO_DIMENSIONS),
+    )
+    claim(
         "necessary",
         "to change working mode, it is necessary to pass through a serial singularity",
         signs(bar),
@@ -285,6 +290,11 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
         "isotropic",
         "its inversion being performed without any roundoff-error amplification",
         Identity((bar.A.T * bar.A).subs(t4, t5 + pi / 2) / L2**2, sp.eye(3)),
+    )
+    claim(
+        "most accurate",
+        "postures with a right angle are the most accurate for the direct kinematics",
+        Undecidable("accuracy is not defined but by the condition number itself"),
     )
     inside = coincident()
     claim(

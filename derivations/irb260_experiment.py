@@ -33,15 +33,15 @@ def experiment(
     start, first, second = (difference.diff(time, k).subs(time, 0) for k in range(3))
     d.step(
         "Relative or grounded",
-        "If 5 degrees per second were the rate of a motor 3 on the turret, the joint would turn by "
-        "theta3 = (5 - 10) t.  All three components tell the readings apart, but not equally soon: "
-        "at t = 0 only the vertical one differs, threefold; the difference of the others grows "
-        "from 0, that of y with t and that of x with t^2.",
+        "If 5 degrees per second were the rate of a motor 3 on the turret, the joint would turn "
+        "by theta3 = (5 - 10) t, and the velocity be w.  All three components tell the readings "
+        "apart, but not equally soon: at t = 0 only the vertical one differs, threefold; the "
+        "difference of the others grows from 0, that of y with t and that of x with t^2.",
         {
-            r"v_{\text{grounded}}": v_grounded,
-            r"(v - v_{\text{grounded}})_{t = 0}": start.T,
-            r"\frac{d}{dt}(v - v_{\text{grounded}})_{t = 0}": first.T,
-            r"\frac{d^2}{dt^2}(v - v_{\text{grounded}})_{t = 0}": second.T,
+            "w": v_grounded,
+            r"(v - w)_{t = 0}": start.T,
+            r"\frac{d}{dt}(v - w)_{t = 0}": first.T,
+            r"\frac{d^2}{dt^2}(v - w)_{t = 0}": second.T,
         },
         equal=[
             (v_grounded, p_grounded.diff(time)),

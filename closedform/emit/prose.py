@@ -50,6 +50,9 @@ TOKEN = re.compile(
     rf"({FUNCTIONS})({PAREN})|(?:\*\*|\^)({PAREN}|\{{[^}}]*\}}|-?\w+)|({NUMBER})|({NAME})"
     r"|(\+/-|<=|>=|!=|[*<>])|(.)"
 )
+WORD = r"\\mathrm\{[A-Za-z]{2,}\}(?:_\{(?:[^{}]|\{[^{}]*\})*\})?"
+"""A symbol that is a word; as a factor it takes a space."""
+VARIABLE = r"\\(?:mathrm|mathit|sigma|theta|alpha|beta|psi|kappa|sqrt|frac|sin|cos)\b"
 SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,"}
 
 
@@ -62,6 +65,8 @@ def symbol_name(name: str) -> str:
     letters, rest = (re.match(r"([A-Za-z]+)(.*)", first) or re.match("(.)(.*)", first)).groups()  # type: ignore[union-attr]
     if letters in GREEK:
         base = r"\lambda" if letters == "lamda" else rf"\{letters}"
+    elif len(letters) == 2 and letters.isupper():
+        base = rf"\mathit{{{letters}}}"
     elif len(letters) <= 2:
         base, rest = letters[0], letters[1:] + rest
     else:
@@ -110,15 +115,21 @@ class Prose:
         symbols = [p.symbol for p in derivation.parameters] + [j.symbol for j in derivation.joints]
         symbols += [s for f in functions for s in f.symbols]
         symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
+        shown = [value for step in derivation.steps for _, value in step.shown]
+        symbols += [s for v in shown for s in getattr(v, "free_symbols", ())]
         names = {str(s) for s in symbols} | set(derivation.task)
         self.known = GREEK | set(SYMBOL_NAMES)
         self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
 
     def __call__(self, text: str) -> str:
         parts = PROSE.split(text)
+        is_formula = [i % 2 == 1 and self._is_formula(part) for i, part in enumerate(parts)]
+        for i, part in enumerate(parts):
+            if part == "A" and not re.search(r"(^|[.;?!]\s+)$", "".join(parts[:i])):
+                is_formula[i] = True  # an article would stand at the start of a sentence
         return "".join(
-            f"${self.formula(part)}$" if i % 2 and self._is_formula(part) else escape(part)
-            for i, part in enumerate(parts)
+            f"${self.formula(part)}$" if formula else escape(part)
+            for part, formula in zip(parts, is_formula, strict=True)
         )
 
     def _is_formula(self, text: str) -> bool:
@@ -198,3 +209,8 @@ def loosen(text: str) -> str:
                     size = "", ""
                 parts[j], parts[i] = size[0] + left[5:], size[1] + part[6:]
     return re.sub(r"(?<![\s\\]) (?=(?:\\bigr)?[)\]])", "", "".join(parts))
+
+
+def spaced(text: str) -> str:
+    """Thin spaces beside symbols that are words, where they are factors."""
+    return re.sub(rf"(?<=[\w}}]) (?={WORD})|({WORD}) (?=[A-Za-z]|{VARIABLE})", r"\1\\, ", text)

@@ -86,7 +86,7 @@ def test_a_wrong_inverse_is_found(robot: str, change) -> None:
     assert broken(robot, "ik", change)
 
 
-@pytest.mark.parametrize("robot", ["planar_2r", "spherical_wrist"])
+@pytest.mark.parametrize("robot", ROBOTS)
 def test_a_wrong_value_is_found(robot: str) -> None:
     assert broken(robot, "fk", slightly_off)
     off = 1e-9 if robot == "hybrid_five_bar" else 1e-13  # long products have a large natural scale

@@ -191,17 +191,20 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
     )
     bounds = d["ik"].bounds
     cases = d["ik"].cases
+    one_workspace = Enumeration(
+        1,
+        lambda: len({bounds(case) for _, case in cases()}),
+        "sets of conditions on P, over the eight working modes",
+    )
     claim(
         "twice as large",
-        "by doing so, we can reach a workspace that is twice as large",
+        "by doing so, we can reach a workspace that is twice as large as each of those displayed",
         Refuted(
-            Enumeration(
-                1,
-                lambda: len({bounds(case) for _, case in cases()}),
-                "sets of conditions on P, over the eight working modes",
-            ),
+            one_workspace,
             "the conditions on P hold no sign: every working mode reaches the same workspace, and "
             "a change of mode adds nothing to it",
+            "all working modes have the same workspace",
+            one_workspace,
         ),
     )
     claim(
@@ -246,8 +249,10 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         "and those of the inverse-kinematics matrix",
         Refuted(
             Identity(4 * bar.B[1, 1] ** 2, ((L1 + L2) ** 2 - reach) * (reach - (L1 - L2) ** 2)),
-            "up to their signs, the entries of B depend on P alone: rho L2, and by leg the area of "
-            "the triangle over AP or BP; B has one condition number in all eight working modes",
+            "up to their signs, the entries of B depend on P alone: rho*L2, and by leg twice the "
+            "area of the triangle over AP or BP",
+            "the condition number of B depends on P alone",
+            serial(bar),
         ),
     )
 

@@ -394,9 +394,9 @@ def workspace(d: Derivation) -> dict[str, Regime]:
         ],
     )
     v = Program()
-    longer, shorter = v.let("longer", sp.Max(L1, L2)), v.let("shorter", sp.Min(L1, L2))
-    size = v.bound("size", L1 + L2, L1 + L2, "lengths are not negative")
-    gap = v.let("gap", longer - shorter)
+    longer, shorter = v.let("M", sp.Max(L1, L2)), v.let("m", sp.Min(L1, L2))
+    size = v.bound("R", L1 + L2, L1 + L2, "lengths are not negative")
+    gap = v.let("r", longer - shorter)
     named = [(M, longer), (m, shorter)]
     near, apart, crossing, cut, far, none = (g.volume.subs(named) for g in found.values())
     volume = sp.Piecewise(

@@ -111,8 +111,6 @@ def pointer(array: np.ndarray) -> ctypes.c_void_p:
     not CPU.exists() or " avx2 " not in CPU.read_text(), reason="a processor without AVX2"
 )
 def test_batch_and_single_call_agree(robot, real, build):
-    if robot == "hybrid_five_bar":
-        pytest.skip("the targets are the images of fk, of which a loop has two")
     library = ctypes.CDLL(str(build(robot, real)[0]))
     header = " ".join((C / f"{robot}.h").read_text().split())
     fields = len(re.findall(r"real_t \w+; /\*", header))

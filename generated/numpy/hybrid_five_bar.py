@@ -800,25 +800,25 @@ def workspace_contains(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any 
 
 def _workspace_volume(L0, L1, L2):
     t1 = L1 + L2
-    longer = np.maximum(L1, L2)
-    t2 = longer * 2.0
-    shorter = np.minimum(L1, L2)
-    t3 = shorter * 2.0
+    M = np.maximum(L1, L2)
+    t2 = M * 2.0
+    m = np.minimum(L1, L2)
+    t3 = m * 2.0
     t4 = L0 - t2
     t5 = t3 - t4
-    t6 = shorter * 4.0
-    t7 = L0 + longer * 4.0
+    t6 = m * 4.0
+    t7 = L0 + M * 4.0
     t8 = 3.141592653589793 * (t5 * t5) * (t6 + t7) / 12.0
-    gap = longer - shorter
-    t9 = longer * longer
-    t10 = shorter * shorter
-    t11 = L0 * L0 * L0 - L0 * 12.0 * (t9 + t10) + shorter * 16.0 * (t10 + t9 * 3.0)
+    r = M - m
+    t9 = M * M
+    t10 = m * m
+    t11 = L0 * L0 * L0 - L0 * 12.0 * (t9 + t10) + m * 16.0 * (t10 + t9 * 3.0)
     t12 = 8.0 * 3.141592653589793 * t9 * t10 / L0
     t13 = t3 + t4
     t14 = 3.141592653589793 * (t13 * t13) * (t6 - t7) / 12.0
-    t15 = 3.141592653589793 * 2.6666666666666665 * (gap * gap * gap)
-    t16 = np.where(2.0 * np.maximum(gap, shorter) <= L0, t12 + t14, np.where(L0 <= t3, t8 - t15, t12))
-    t17 = np.where(L0 <= 2.0 * np.minimum(gap, shorter), 3.141592653589793 * t11 / 6.0, t16)
+    t15 = 3.141592653589793 * 2.6666666666666665 * (r * r * r)
+    t16 = np.where(2.0 * np.maximum(m, r) <= L0, t12 + t14, np.where(L0 <= t3, t8 - t15, t12))
+    t17 = np.where(L0 <= 2.0 * np.minimum(m, r), 3.141592653589793 * t11 / 6.0, t16)
     t18 = np.where(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, np.where(t2 <= L0, t8, t17))
     t19 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t20 = t19 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)

@@ -64,7 +64,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
 
     def _print_Piecewise(self, expr: sp.Piecewise) -> str:
         cases = [rf"{self._print(e)}, & {self.case(c)}" for e, c in expr.args]
-        return r"\begin{cases}" + r" \\ ".join(cases) + r"\end{cases}"
+        return rf"\begin{{cases}}{stacked(cases)}\end{{cases}}"
 
     def case(self, condition: Any) -> str:
         if condition == sp.true:
@@ -86,6 +86,12 @@ class Printer(LatexPrinter):  # type: ignore[misc]
 
 def flag_name(flag: sp.Symbol) -> str:
     return str(flag.name).replace("_", " ")
+
+
+def stacked(rows: Sequence[str]) -> str:
+    """Rows of a matrix or of cases; fractions need some space between them."""
+    small = "".join(rows).count(r"\frac") < 2
+    return (r" \\ " if small else r" \\[3pt] ").join(rows)
 
 
 def measure(text: str) -> float:
@@ -349,8 +355,7 @@ class Page:
             named.append((-i, -j, (name, cells[-i][-j])))
             cells[-i][-j] = name
         rows = [" & ".join(row) for row in cells]
-        gap = r" \\[3pt] " if r"\frac" in "".join(rows) else r" \\ "
-        whole = (lhs, rf"\begin{{bmatrix}} {gap.join(rows)} \end{{bmatrix}}")
+        whole = (lhs, rf"\begin{{bmatrix}} {stacked(rows)} \end{{bmatrix}}")
         return [whole, *(equation for _, _, equation in sorted(named))]
 
 

@@ -427,6 +427,7 @@ def table(findings: Sequence[Finding]) -> Iterator[str]:
 __all__: Sequence[str] = (
     "Backend",
     "Finding",
+    "check_boolean",
     "check_forward",
     "check_inverse",
     "crosscheck",

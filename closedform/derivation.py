@@ -74,6 +74,9 @@ class Step:
     published: tuple[str, ...] = ()
     vanishes: tuple[Any, ...] = ()
     nonnegative: tuple[sp.Expr, ...] = ()
+    rows: tuple[tuple[Any, ...], ...] = ()
+    """A table, its head first.  A cell is a sentence, an expression or an increasing chain of
+    expressions, ``(0, x, 1)`` for 0 <= x <= 1."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +113,7 @@ class Stage:
 
     ``equations`` are places in the system; they hold no unknowns but those of this stage and of
     earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
-    equations of the earlier stages hold identically.
+    equations of those earlier stages hold identically whose unknowns occur.
     """
 
     unknowns: tuple[sp.Symbol, ...]
@@ -257,10 +260,12 @@ class Derivation:
         published: Sequence[str] = (),
         equal: Sequence[tuple[Any, Any]] = (),
         nonnegative: Sequence[sp.Expr] = (),
+        rows: Sequence[Sequence[Any]] = (),
     ) -> None:
         """Record a step.  ``shown`` maps a LaTeX left-hand side to the derived expression.
 
-        Each pair in ``equal`` is proved equal; the build fails where the proof does.
+        Each pair in ``equal`` is proved equal; the build fails where the proof does.  ``rows`` is
+        a table, see :class:`Step`.
         """
         self.steps.append(
             Step(
@@ -270,6 +275,7 @@ class Derivation:
                 tuple(published),
                 tuple(a - b for a, b in equal),
                 tuple(nonnegative),
+                tuple(map(tuple, rows)),
             )
         )
 

@@ -22,11 +22,11 @@ d = Derivation(
     "are driven at the angles theta2 and theta3, the bars CP and DP of length L2 follow at theta4 "
     "and theta5; all four angles are measured from the y axis.  theta1 turns the linkage about AB; "
     "at theta1 = 0 it lies in the plane of x and y, and a bar at the angle t points along "
-    "(-sin t, cos t, 0).",
+    "(-sin(t), cos(t), 0).",
     task=["x", "y", "z"],
     singularities=("P on AB", "A, C, P in line", "B, D, P in line", "C, D, P in line"),
 )
-UNIT, NONE = "any length", "the paper gives no value"
+UNIT, NONE = "any unit", "the paper gives no value"
 L0 = d.parameter("L0", value=7, unit=UNIT, meaning="distance AB of the pivots", source=NONE)
 L1 = d.parameter("L1", value=8, unit=UNIT, meaning="length of the driven bars", source=NONE)
 L2 = d.parameter("L2", value=5, unit=UNIT, meaning="length of the following bars", source=NONE)
@@ -99,20 +99,29 @@ for name, value in zip(CP, (meeting[CP[0]], meeting[CP[1]]), strict=True):
 for name, value in zip(DP, (meeting[u].subs(half, -half) for u in CP), strict=True):
     f.let(str(name), value)
 P_y, P_r = f.let("P_y", C[0] + CP[0]), f.let("P_r", C[1] + CP[1])
+h, e = real("h", nonnegative=True), real("e", nonnegative=True)
+to_p = sp.Matrix([meeting[u].subs({chord.distance: 2 * h, height: e}) for u in CP])
 d.step(
     "Forward: P from two circles",
     "In the plane of the linkage, P is where the circles of radius L2 about C and D meet: to the "
-    "left or to the right of CD, the two assembly modes.  With n the direction of CD and h half "
-    "its length, CP and DP are +h n and -h n, plus the same vector e along the normal.  The loop "
-    "stays open where CD is longer than 2 L2.  If C and D coincide, P is free on a circle; we "
-    "return the limit of C and D parting along the y axis.",
+    "left or to the right of CD, the two assembly modes.  Let n be the unit vector from C to D and "
+    "h half of their distance; from the middle of CD, P is e away at right angles to n, to either "
+    "side.  The loop stays open where CD is longer than 2*L2.  If C and D coincide, P is free on a "
+    "circle; we return the limit of C and D parting along the y axis.",
     {
-        r"h": chord.distance / 2,
-        r"e": sqrt(L2 - half) * sqrt(L2 + half),
-        r"\overrightarrow{CP}": sp.Matrix(
-            [half * n[0] - sigma * height * n[1], half * n[1] + sigma * height * n[0]]
-        ),
+        "h": sqrt(CD[0] ** 2 + CD[1] ** 2) / 2,
+        "e": sqrt(L2 - h) * sqrt(L2 + h),
+        r"\overrightarrow{CP}": to_p,
+        r"\overrightarrow{DP}": to_p.subs(h, -h),
     },
+    equal=[
+        (to_p - to_p.subs(h, -h), 2 * h * sp.Matrix(n)),
+        (
+            to_p.dot(to_p).subs(list(zip(n, (cos(theta4), sin(theta4)), strict=True))),
+            sigma**2 * e**2 + h**2,
+        ),
+        (h**2 + (sqrt(L2 - h) * sqrt(L2 + h)) ** 2, L2**2),
+    ],
 )
 d.function(
     "fk",
@@ -124,7 +133,7 @@ d.function(
     result="Positions",
     source="the loop closure of section 2.3",
     notes=(
-        "UNREACHABLE: C and D are more than 2 L2 apart, the loop is open.",
+        "UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.",
         "SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the "
         "point at theta4 = theta5 = +90 or -90 degrees is returned.",
         "Ill-conditioned near the parallel singularities, where both modes meet or P is free.",
@@ -138,6 +147,10 @@ d.function(
     {"theta": [atan2(CP[1], CP[0]), atan2(DP[1], DP[0])]},
     program=f,
     branches=modes,
+    notes=(
+        "NaN for an assembly mode that does not exist.",
+        "Free, but equal, where C and D coincide: +90 and -90 degrees are returned.",
+    ),
 )
 
 # Velocity
@@ -164,9 +177,9 @@ passive = dict(
 by_angles = merge_angles(B_q.subs(passive).expand())
 d.step(
     "Velocity: A and B",
-    "The loop equations, differentiated.  The rows of A are L2 k, p - c and p - d; B is diagonal, "
+    "The loop equations, differentiated.  The rows of A are L2*k, p - c and p - d; B is diagonal, "
     "because the two legs do not know of each other and a turn about AB moves P at right angles to "
-    "both bars.",
+    "both bars.  CP_y is the component of CP along AB and CP_r that away from it, and so for DP.",
     {"A": A_p, "B": B_q, r"B(\theta)": by_angles},
     published=("(2)", "(3)", "(4)"),
     equal=[
@@ -187,7 +200,7 @@ general = sp.Matrix.hstack(A_other, B_other).subs(over_d, simultaneous=True).app
 d.step(
     "Velocity: unequal legs",
     "With bars L3 and L4 over D only the last rows change.  L1 = L3, L2 = L4 is used from here on: "
-    "for the isosceles triangle over CD, for the one factor L2^2 of A A^T and so for the condition "
+    "for the isosceles triangle over CD, for the one factor L2^2 of A*A^T and so for the condition "
     "number, and for the two hollow spheres of the workspace being of one size.",
     {r"B_{33}": L3 * L4 * sin(theta5 - theta3)},
     equal=[
@@ -218,9 +231,20 @@ det_b = L1**2 * L2**3 * rho * sin(theta4 - theta2) * sin(theta5 - theta3)
 det_j = L1**2 * rho * sin(theta4 - theta2) * sin(theta5 - theta3) / sin(theta5 - theta4)
 d.step(
     "Velocity: J and the determinants",
-    "J = A^{-1} B.  All determinants factor: det A holds the sine between CP and DP alone, det B "
-    "holds rho and the sine between the bars of each leg.",
-    {r"A^{-1}": A_inverse, r"\det A": det_a, r"\det B": det_b, r"\det J": det_j},
+    "J = A^-1*B.  All determinants factor: det(A) holds the sine between CP and DP alone, det(B) "
+    "holds rho and the sine between the bars of each leg.  A parallel singularity, det(A) = 0, is "
+    "a posture with C, D, P in line, or with C = D: P can give way though the motors stand still, "
+    "at right angles to CP or all around D.  At a serial one, det(B) = 0, a motor turns and P "
+    "stands still: theta1 with P on AB, where rho = 0, the one that section 2.6 does not name; "
+    "theta2 with A, C, P in line and theta3 with B, D, P in line, a leg stretched or folded.",
+    {
+        r"\bigl(\overrightarrow{CP}\times\overrightarrow{DP}\bigr) A^{-1}": (
+            A_inverse * product
+        ).applyfunc(normal),
+        r"\det A": det_a,
+        r"\det B": det_b,
+        r"\det J": det_j,
+    },
     equal=[
         (A_p * J.subs(driven), B_q),
         (A_p.det().subs(passive), det_a),
@@ -237,16 +261,17 @@ for symbol, value in driven.items():
 
 J_named = J.xreplace({-sp.expand(product): -sideways})
 for name, summary, outputs, notes in (
-    ("jacobian_parallel", "A of A dp = B dq; its rows are L2 k, p - c and p - d.", {"A": A_p}, ()),
+    ("jacobian_parallel", "A of A*dp = B*dq; its rows are L2*k, p - c and p - d.", {"A": A_p}, ()),
     (
         "jacobian_serial",
-        "The diagonal of B of A dp = B dq.",
+        "The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and "
+        "L1*L2*sin(theta5 - theta3).",
         {"B": [L2 * P_r, along_c, along_d]},
         ("Its signs tell the working modes apart, in the order of BRANCHES.",),
     ),
     (
         "jacobian",
-        "Derivative of p with respect to q, A^-1 B.",
+        "Derivative of p with respect to q: A^-1*B.",
         {"J": J_named},
         ("Not finite at a parallel singularity.",),
     ),
@@ -258,22 +283,19 @@ for name, summary, outputs, notes in (
     ),
     (
         "singularities",
-        "Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2) and "
-        "L2 sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the parallel one.",
-        {
-            "factors": [
-                P_r,
-                *(sp.expand(B_q[i, i] / L1) for i in (1, 2)),
-                sideways,
-            ]
-        },
+        "Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and "
+        "L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.",
+        {"factors": [P_r, along_c, along_d, sideways]},
         (),
     ),
     (
         "condition_number",
         "Ratio of the largest to the smallest singular value of A.",
-        {"kappa": sp.Max(half, height) / sp.Min(half, height)},
-        ("Infinite at a parallel singularity; it does not depend on theta1.",),
+        {"kappa": choose(chord.flag, 1, sp.Max(half, height)) / sp.Min(half, height)},
+        (
+            "Infinite at a parallel singularity; it does not depend on theta1, and both modes have "
+            "the same.",
+        ),
     ),
 ):
     d.function(
@@ -313,17 +335,30 @@ legs = (
     (bearing_d[theta3], triangle_d[base3], at_b),
 )
 driven_angles = [choose(flag, 0, toward - base) for toward, base, flag in legs]
+
+
+def spelled(angle: sp.Expr, reach: sp.Symbol, name: sp.Symbol) -> sp.Expr:
+    """An angle with the sides of its triangle written out, the distance of P by its name."""
+    values = {s.symbol: s.value for s in inside.body if s.symbol not in (r, reach)}
+    while angle.free_symbols & values.keys():
+        angle = angle.subs(values)
+    return angle.subs(reach, name)
+
+
 d.step(
     "Inverse: the eight working modes",
     "rho is the distance of P from the axis with either sign, and turns theta1 by half a turn.  In "
     "the plane, A, C, P and B, D, P are triangles with known sides; each has two mirror images, "
     "told apart by the sign of the angle between its bars.  So the three signs are those of the "
-    "diagonal of B.  If P is on the axis, theta1 is free and we return 0; if it is at A (which "
-    "takes L1 = L2), so is theta2, and at B theta3.",
+    "diagonal of B.  If P is on the axis, theta1 is free and we return 0; if it is at A, for "
+    "which L1 = L2, so is theta2, and at B theta3.",
     {
+        "r": sqrt(x**2 + z**2),
         r"\theta_1": turn[theta1],
-        r"\theta_2": bearing_c[theta2] - triangle_c[base2],
-        r"\theta_3": bearing_d[theta3] - triangle_d[base3],
+        r"a": sqrt(y**2 + r**2),
+        r"\theta_2": spelled(bearing_c[theta2] - triangle_c[base2], reach_c, real("a")),
+        r"b": sqrt((y - L0) ** 2 + r**2),
+        r"\theta_3": spelled(bearing_d[theta3] - triangle_d[base3], reach_d, real("b")),
     },
 )
 d.function(
@@ -413,7 +448,7 @@ d.inverses.append(
 
 # Conditioning, loci, workspace
 
-design.conditioning(d, A_p.subs(passive), theta5 - theta4)
+design.conditioning(d, A_p.subs(passive), theta5 - theta4, d_point - c, theta2, theta3)
 design.loci(d)
 volumes = design.workspace(d)
 

@@ -21,7 +21,9 @@ AP, BP = sp.Matrix([y, rho]), sp.Matrix([y - L0, rho])
 alpha, beta = (v.dot(v) + L2**2 - L1**2 for v in (AP, BP))
 
 
-def conditioning(d: Derivation, A: sp.Matrix, psi: sp.Expr) -> None:
+def conditioning(
+    d: Derivation, A: sp.Matrix, psi: sp.Expr, CD: sp.Matrix, theta2: sp.Symbol, theta3: sp.Symbol
+) -> None:
     """Singular values of A, given in the angles; ``psi`` is the angle from CP to DP."""
     c = cos(psi)
     gram = L2**2 * sp.Matrix([[1, 0, 0], [0, 1, c], [0, c, 1]])
@@ -30,14 +32,15 @@ def conditioning(d: Derivation, A: sp.Matrix, psi: sp.Expr) -> None:
     by_chord = [(cos(psi), (e**2 - h**2) / L2**2), (L2, sqrt(h**2 + e**2))]
     d.step(
         "Singular values and condition number of A",
-        "k is at right angles to CP and DP, so A A^T has one entry off its diagonal, the product "
-        "of CP and DP.  With h half of CD and e the distance of P from CD, CP DP = e^2 - h^2 and "
-        "L2^2 = h^2 + e^2: the singular values are L2, h sqrt 2 and e sqrt 2, and the condition "
-        "number is the larger of h/e and e/h, for either sign of the cosine.",
+        "k is at right angles to CP and DP, so A*A^T has one entry off its diagonal, the scalar "
+        "product of CP and DP.  With h half of CD and e the distance of P from CD it is "
+        "e^2 - h^2, and L2^2 = h^2 + e^2: the singular values are L2, sqrt(2)*h and sqrt(2)*e.  "
+        "L2 lies between the others, and the condition number is the larger of h/e and e/h, for "
+        "either sign of the cosine.",
         {
             r"A A^T": gram,
             r"\sigma^2": sp.Matrix([L2**2 * (1 - c), L2**2, L2**2 * (1 + c)]),
-            r"\kappa": sqrt((1 + sp.Abs(c)) / (1 - sp.Abs(c))),
+            r"\kappa^2": (1 + sp.Abs(c)) / (1 - sp.Abs(c)),
             r"\kappa(h, e)": sp.Max(h, e) / sp.Min(h, e),
         },
         published=("(6)", "(7)", "(8)"),
@@ -52,26 +55,66 @@ def conditioning(d: Derivation, A: sp.Matrix, psi: sp.Expr) -> None:
             ((1 + c) * sin(psi / 2) ** 2, (1 - c) * cos(psi / 2) ** 2),
         ],
     )
+    range_of_CD(d, CD, theta2, theta3)
     d.step(
         "Isotropy",
-        "kappa = 1 where CP and DP are at right angles: h = e, so CD = sqrt 2 L2.  theta2 and "
-        "theta3 are independent, so CD takes every value from max(0, L0 - 2 L1) to L0 + 2 L1: A "
-        "can be isotropic if and only if sqrt 2 L2 lies between the two (and L2 > 0).",
+        "kappa = 1 where CP and DP are at right angles: h = e, so CD = sqrt(2)*L2.  By the range "
+        "of CD, A can be isotropic if and only if L2 is positive and sqrt(2)*L2 lies between the "
+        "two ends.",
         {"d_{min}": sp.Max(0, L0 - 2 * L1), "d_{max}": L0 + 2 * L1},
-        equal=[
-            (gram.subs(cos(psi), 0), L2**2 * sp.eye(3)),
-            *(
-                ((L0 + L1 * cos(b) - L1 * cos(a)) ** 2 + (L1 * sin(b) - L1 * sin(a)) ** 2, end**2)
-                for a, b, end in ((pi, 0, L0 + 2 * L1), (0, pi, L0 - 2 * L1))
-            ),
-        ],
+        equal=[(gram.subs(cos(psi), 0), L2**2 * sp.eye(3))],
     )
     d.step(
         "Designs without parallel singularities",
-        "det A vanishes where C = D (h = 0) and where C, P, D are in line (e = 0, CD = 2 L2).  By "
-        "the range of CD, neither happens if and only if L0 > 2 L1 and 2 L2 > L0 + 2 L1.  (With "
-        "2 L2 < L0 - 2 L1 the loop never closes.)",
-        {r"d_{min} > 0": L0 > 2 * L1, r"d_{max} < 2 L_2": L0 + 2 * L1 < 2 * L2},
+        "det(A) vanishes where C = D (h = 0) and where C, P, D are in line (e = 0, CD = 2*L2).  "
+        "By the range of CD, the first is possible if and only if L0 <= 2*L1, and the second if "
+        "and only if 2*L2 lies in the range.  So a linkage that can be assembled at all has no "
+        "parallel singularity if and only if both of these hold; for a 2*L2 below the range the "
+        "loop never closes.  Of the two conditions of section 3.2, 2*L1 > L0 ensures the "
+        "opposite of what it is meant for, that C can meet D; 2*L2 - 2*L1 > L0 is the second one "
+        "here: C, P, D are never in line, while C may still meet D.",
+        {
+            r"\text{C and D stay apart}": sp.Gt(L0, 2 * L1),
+            r"\text{C, P, D are never in line}": sp.Gt(2 * L2, L0 + 2 * L1),
+        },
+    )
+
+
+def longest(CD: sp.Matrix, theta2: sp.Expr, theta3: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """(L0 + 2 L1)^2 - CD^2, and a form of it that is a sum of nonnegative terms."""
+    slack = (1 - cos(theta3)) + (1 + cos(theta2))
+    rest = 2 * L0 * L1 * slack + 2 * L1**2 * (1 + cos(theta3 - theta2))
+    return (L0 + 2 * L1) ** 2 - CD.dot(CD), rest
+
+
+def shortest(CD: sp.Matrix, theta2: sp.Expr, theta3: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """CD^2 - (L0 - 2 L1)^2 for L0 = 2 L1 + w, and a sum of terms that are nonnegative with w."""
+    w = real("w", nonnegative=True)
+    along = (1 + cos(theta3)) + (1 - cos(theta2))
+    rest = 2 * w * L1 * along + L1**2 * along**2 + L1**2 * (sin(theta3) - sin(theta2)) ** 2
+    return (CD.dot(CD) - (L0 - 2 * L1) ** 2).subs(L0, 2 * L1 + w), rest
+
+
+def range_of_CD(d: Derivation, CD: sp.Matrix, theta2: sp.Symbol, theta3: sp.Symbol) -> None:
+    square = CD.dot(CD)
+    corner = sp.acos(L0 / (2 * L1))
+    bounds = [longest(CD, theta2, theta3), shortest(CD, theta2, theta3)]
+    d.step(
+        "The range of CD",
+        "theta2 and theta3 are independent, so CD takes every value between its smallest and its "
+        "largest.  The largest is L0 + 2*L1, with both bars along AB and away from each other.  "
+        "The smallest is L0 - 2*L1, with the bars towards each other, if L0 = 2*L1 + w with a w "
+        "that is not negative; otherwise it is 0: the circles of C and D meet.",
+        {
+            r"(L_0 + 2 L_1)^2 - CD^2": bounds[0][1],
+            r"CD^2 - (L_0 - 2 L_1)^2": bounds[1][1],
+        },
+        equal=[
+            *bounds,
+            (square.subs({theta2: pi, theta3: 0}), (L0 + 2 * L1) ** 2),
+            (square.subs({theta2: 0, theta3: pi}), (L0 - 2 * L1) ** 2),
+            (CD.subs({theta2: corner, theta3: pi - corner}), sp.zeros(3, 1)),
+        ],
     )
 
 
@@ -115,6 +158,17 @@ def by_cramer(
     return numerator.dot(numerator) - 4 * L2**2 * sp.Matrix.hstack(AP, turned).det() ** 2
 
 
+def distinct(c: sp.Expr, s: sp.Expr, denominator: sp.Expr) -> int:
+    """How many curves there are for all signs of the cosine and the sine."""
+    signs = ((a, b) for a in (1, -1) for b in (1, -1))
+    return len(
+        {
+            sp.expand(by_cramer(sp.sympify(a * c), sp.sympify(b * s), sp.sympify(denominator)))
+            for a, b in signs
+        }
+    )
+
+
 class Loci(NamedTuple):
     coincident: Locus
     in_line: Locus
@@ -138,17 +192,20 @@ def loci(d: Derivation) -> Loci:
     d.step(
         "Locus of the parallel singularities",
         "DP is CP turned by psi; the vector CP is eliminated from its length and the lengths of AC "
-        "and BD by resultants.  For psi = 0, C = D, what remains has degree 4: the circles of "
-        "radius L2 about the two points where C and D can meet (real if L0 <= 2 L1).  For psi = "
-        "pi, C, P, D in line, it is the curve of the midpoint of the coupler of a four-bar "
-        "linkage, an irreducible sextic.  The elimination adds a power of rho, and of L0, which "
-        "are no part of the locus.  L0 = 0 splits the sextic into the point A and the circle of "
-        "squared radius "
-        "L1^2 - L2^2, both twice.",
+        "and BD by resultants.  For psi = 0, C = D, there remain the circles of radius L2 about "
+        "the two points where C and D can meet, real for L0 <= 2*L1.  For psi = pi, C, P, D in "
+        "line, there remains the curve of the midpoint of the coupler of a four-bar linkage.  "
+        "Both are found again by Cramer's rule, without the powers of rho that resultants add; so "
+        "every real point of a curve is the P of such a posture, but for isolated points on AB.  "
+        "If L0 = 0, the two driven circles are one, and every point of the workspace is reached "
+        "with C = D as well; C, P, D are in line on the circle of squared radius L1^2 - L2^2 "
+        "about A, and at A if L1 = L2.",
         {
-            rf"\psi = 0 \text{{ (degree {same.degree})}}": sp.Eq(circles, 0),
-            rf"\psi = \pi \text{{ (degree {opposite.degree})}}": sp.Eq(opposite.curve, 0),
-            r"L_0 = 0": sp.factor(opposite.curve.subs(L0, 0)),
+            r"\psi = 0": sp.Eq(circles, 0, evaluate=False),
+            r"\psi = \pi": sp.Eq(opposite.curve, 0, evaluate=False),
+            r"\psi = \pi,\ L_0 = 0": sp.Eq(
+                sp.factor(opposite.curve.subs(L0, 0)), 0, evaluate=False
+            ),
         },
         equal=[
             (same.curve, sp.expand(circles)),
@@ -163,22 +220,22 @@ def loci(d: Derivation) -> Loci:
     )
     n = k2 + 1
     psi, named = real("psi"), (real("alpha"), real("beta"))
+    turned = by_cramer(cos(psi), sin(psi), alpha=named[0], beta=named[1])
+    same_legs = sp.expand(turned.subs({L0: 0, named[1]: named[0]}))
+    concentric = sp.factor(same_legs.subs(sin(psi) ** 2, 1 - cos(psi) ** 2))
     d.step(
         "Isoconditioning loci",
-        "kappa is the cotangent of psi/2 or its inverse, so cos psi = (kappa^2 - 1)/(kappa^2 + 1) "
-        "and sin psi = 2 kappa/(kappa^2 + 1), up to their signs.  F vanishes on the curve of one "
-        "psi.  Each choice gives a coupler "
-        "curve, an irreducible sextic; the two signs of psi, the two assembly modes, are mirror "
-        "images about AB.  Four sextics, of degree 24 together, are the locus of a condition "
-        "number above 1; two, of degree 12, that of isotropy.  They do not hold theta1: in space "
-        "they are surfaces of revolution about AB.",
+        "kappa is the cotangent of psi/2 or its inverse, so cos(psi) = (kappa^2 - 1)/(kappa^2 + 1) "
+        "and sin(psi) = 2*kappa/(kappa^2 + 1), up to their signs.  F vanishes on the curve of one "
+        "psi, the coupler curve of a four-bar linkage.  The two signs of psi, the two assembly "
+        "modes, are mirror images about AB; the two signs of the cosine are the postures with e "
+        "above and below h.  For L0 = 0 a curve consists of circles about A.  The curves do not "
+        "hold theta1: in space they are surfaces of revolution about AB.",
         {
             r"\alpha": alpha,
             r"\beta": beta,
-            rf"F_\psi \text{{ (degree {general.degree})}}": by_cramer(
-                cos(psi), sin(psi), alpha=named[0], beta=named[1]
-            ),
-            r"\text{degrees}": [square.degree, 2 * square.degree, 4 * general.degree],
+            r"F_\psi": turned,
+            r"F_\psi(L_0 = 0)": concentric,
         },
         equal=[
             (square.curve, by_cramer(sp.S.Zero, sp.S.One)),
@@ -186,6 +243,31 @@ def loci(d: Derivation) -> Loci:
             (general.curve, by_cramer(k2 - 1, 2 * kappa, n)),
             (general.curve.subs(mirror), by_cramer(k2 - 1, -2 * kappa, n)),
             (general.curve.subs(kappa, 1), 4 * square.curve),
+            (turned.subs({L0: 0, named[1]: named[0]}), concentric),
+        ],
+    )
+    d.step(
+        "Degrees of the loci",
+        "In the coordinates y and rho of P in the plane of the linkage.  The factors are those "
+        "over the rationals with all lengths symbolic, and kappa as well; that of C = D splits "
+        "into its two circles once the square root of 4*L1^2 - L0^2 is added.",
+        {},
+        rows=[
+            ("locus of P", "of", "factors", "degree"),
+            *(
+                (name, of, f"{times} of degree {one.degree}", str(times * one.degree))
+                for name, of, times, one in (
+                    ("parallel singularity", "C = D", 1, same),
+                    ("parallel singularity", "C, P, D in line", 1, opposite),
+                    ("isotropy", "kappa = 1, both signs of psi", distinct(0, 1, 1), square),
+                    (
+                        "isoconditioning",
+                        "kappa > 1, all signs",
+                        distinct(k2 - 1, 2 * kappa, n),
+                        general,
+                    ),
+                )
+            ),
         ],
     )
     return found
@@ -210,10 +292,14 @@ def regimes() -> dict[str, Regime]:
     near = pi * (16 * m * (3 * M**2 + m**2) - 12 * L0 * (M**2 + m**2) + L0**3) / 6
     zero = sp.S.Zero
     return {
+        "inner balls inside, overlapping": Regime(
+            zero, sp.Min(2 * m, 2 * r), near, outer - 2 * ball + inner
+        ),
         "inner balls inside, apart": Regime(2 * r, 2 * m, outer - 2 * ball, outer - 2 * ball),
-        "inner balls inside, overlapping": Regime(zero, 2 * m, near, outer - 2 * ball + inner),
         "inner balls cut, overlapping": Regime(2 * m, 2 * r, crossing, outer - 2 * mixed + inner),
-        "inner balls cut, apart": Regime(2 * m, 2 * M, crossing - cut, outer - 2 * mixed),
+        "inner balls cut, apart": Regime(
+            sp.Max(2 * m, 2 * r), 2 * M, crossing - cut, outer - 2 * mixed
+        ),
         "inner balls out of reach": Regime(2 * M, 2 * R, outer, outer),
         "no contact": Regime(2 * R, sp.oo, zero, zero),
     }
@@ -233,8 +319,8 @@ def decrease(found: dict[str, Regime]) -> list[tuple[sp.Expr, sp.Expr]]:
     """Minus the derivative by L0, and a form of it with positive coefficients, by regime."""
     s, t = real("s", positive=True), real("t", positive=True)
     slack = {
-        "inner balls inside, apart": [(M, m + t), (m, (L0 + s) / 2)],
         "inner balls inside, overlapping": [(M, m + t), (m, (L0 + s) / 2)],
+        "inner balls inside, apart": [(M, m + t), (m, (L0 + s) / 2)],
         "inner balls cut, overlapping": [],
         "inner balls cut, apart": [(L0, 2 * (M - m) + s), (M, m + t)],
         "inner balls out of reach": [(M, (L0 + s) / 2 - m)],
@@ -250,21 +336,36 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     """Section 3.1: the volume for all lengths, and where it is largest."""
     found = regimes()
     reach, inner = real("R", positive=True), real("r", positive=True)
+
+    def by_radii(e: sp.Expr) -> sp.Expr:
+        return sp.sympify(e).subs(
+            {k * (M + n * m): k * u for k in (1, 2, 4) for n, u in ((1, reach), (-1, inner))}
+        )
+
     d.step(
         "Workspace: two hollow spheres",
         "P is reached if it is between |L1 - L2| and L1 + L2 away from A and from B; theta1 turns "
         "the plane section into the intersection of two hollow spheres.  Its volume is that of the "
-        "outer balls' lens, less the inner balls inside it, plus what those share.  m and M are "
-        "the smaller and the larger of L1 and L2, R and r their sum and difference.",
+        "outer balls' lens, less the inner balls inside it, plus what those share.  M and m are "
+        "the larger and the smaller of L1 and L2, R = M + m and r = M - m their sum and "
+        "difference.",
         {
             r"V_{lens}(R, R)": lens(reach, reach, L0),
             r"V_{lens}(r, R)": lens(inner, reach, L0),
-            **{
-                rf"V,\ {sp.latex(g.start)} \le L_0 \le {sp.latex(g.end)}": g.volume
-                for g in found.values()
-            },
+            r"V_{lens}(r, r)": lens(inner, inner, L0),
         },
         equal=[(g.volume, g.pieces) for g in found.values()],
+        rows=[
+            ("inner balls", "range", "volume"),
+            *(
+                (
+                    name.removeprefix("inner balls "),
+                    tuple(map(by_radii, (g.start, L0, g.end)[: 3 - (g.end == sp.oo)])),
+                    by_radii(g.volume),
+                )
+                for name, g in found.items()
+            ),
+        ],
     )
     d.step(
         "Workspace: the regimes meet",
@@ -280,7 +381,9 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     whole = sp.Rational(4, 3) * pi * (R**3 - r**3)
     d.step(
         "Workspace: where it is largest",
-        "In each regime minus the derivative by L0 has positive coefficients, so the volume falls "
+        "In each regime minus the derivative by L0 has positive coefficients, once the lengths are "
+        "written in L0 and the slacks s and t of the regime's inequalities (the regimes as above, "
+        "without the last); so the volume falls "
         "as L0 grows and is largest at L0 = 0.  For a given reach L1 + L2 it then grows as the "
         "inner radius |L1 - L2| shrinks, and is largest at L1 = L2: the whole ball.  Without such "
         "a bound on the lengths there is no largest workspace.",
@@ -291,17 +394,18 @@ def workspace(d: Derivation) -> dict[str, Regime]:
         ],
     )
     v = Program()
-    longer, shorter = v.let("longer", sp.Max(L1, L2)), v.let("shorter", sp.Min(L1, L2))
-    size = v.bound("size", L1 + L2, L1 + L2, "lengths are not negative")
-    gap = v.let("gap", longer - shorter)
+    longer, shorter = v.let("M", sp.Max(L1, L2)), v.let("m", sp.Min(L1, L2))
+    size = v.bound("R", L1 + L2, L1 + L2, "lengths are not negative")
+    gap = v.let("r", longer - shorter)
     named = [(M, longer), (m, shorter)]
-    apart, near, crossing, cut, far, none = (g.volume.subs(named) for g in found.values())
+    near, apart, crossing, cut, far, none = (g.volume.subs(named) for g in found.values())
     volume = sp.Piecewise(
         (none, 2 * size <= L0),
         (far, 2 * longer <= L0),
-        (sp.Piecewise((crossing, 2 * gap >= L0), (cut, True)), 2 * shorter < L0),
-        (near, 2 * gap >= L0),
-        (apart, True),
+        (near, 2 * sp.Min(shorter, gap) >= L0),
+        (cut, 2 * sp.Max(shorter, gap) <= L0),
+        (apart, 2 * shorter >= L0),
+        (crossing, True),
     )
     d.function(
         "workspace_volume",

@@ -20,10 +20,12 @@ from closedform.claims import (
     Deferred,
     Enumeration,
     Every,
+    Holds,
     Identity,
     Posture,
     Refuted,
     Undecidable,
+    Under,
     Verdict,
 )
 from closedform.derivation import Derivation
@@ -348,3 +350,18 @@ class TestReddyBabu:
         )
         # the second entry alone: -c4 c5 s6 - s4 c6, where the paper prints -c4 s5 s6 - s4 c6
         assert judge(spherical_wrist.d, "eq. (15)").corrected.count("=") == 1
+
+
+def test_relations_between_constants() -> None:
+    two = sp.sqrt(2)
+    holds = Holds({"less": sp.Lt(two, 2, evaluate=False), "equal": sp.Eq(two**2, 2)})
+    assert holds.judge() == Verdict(PROVED, "less, equal")
+    nested = sp.sqrt(5 + 2 * sp.sqrt(6)) - sp.sqrt(2) - sp.sqrt(3)
+    assert Holds({"nested": sp.Eq(nested, 0, evaluate=False)}).judge().kind == PROVED
+    wrong = Holds({"less": sp.true, "more": sp.Ge(two, 3, evaluate=False)}).judge()
+    assert wrong == Verdict(REFUTED, "not so: more")
+
+
+def test_an_assumption_that_the_paper_leaves_open() -> None:
+    assert Under(TRUE, "for a given reach").judge() == Verdict(PROVED_UNDER, "for a given reach")
+    assert Under(FALSE, "for a given reach").judge().kind == REFUTED

@@ -10,6 +10,7 @@ from closedform.clibrary import CLibrary
 from closedform.crosscheck import (
     Backend,
     Finding,
+    check_boolean,
     check_forward,
     check_inverse,
     crosscheck,
@@ -57,7 +58,8 @@ def broken(robot: str, function: str, change) -> list[str]:
     inverse = next((i for i in d.inverses if i.function == function), None)
     if inverse:
         return check_inverse(d, d[function], inverse, backend).failures
-    return check_forward(d, d[function], backend).failures
+    check = check_boolean if d[function].boolean else check_forward
+    return check(d, d[function], backend).failures
 
 
 def swapped_sign(solutions):
@@ -66,6 +68,11 @@ def swapped_sign(solutions):
 
 def first_branch_only(solutions):
     return solutions._replace(q=np.repeat(solutions.q[:, :1], solutions.q.shape[1], axis=1))
+
+
+def slightly_off(x):
+    """Wrong by ulps; a position of a closed loop, which is held to the round trip, by 1e-11."""
+    return x._replace(p=x.p * (1 + 1e-11)) if isinstance(x, tuple) else x * (1 + 1e-14)
 
 
 def never_reachable(solutions):
@@ -79,7 +86,12 @@ def test_a_wrong_inverse_is_found(robot: str, change) -> None:
     assert broken(robot, "ik", change)
 
 
-@pytest.mark.parametrize("robot", ["planar_2r", "spherical_wrist"])
+@pytest.mark.parametrize("robot", ROBOTS)
 def test_a_wrong_value_is_found(robot: str) -> None:
-    assert broken(robot, "fk", lambda x: x * (1 + 1e-14))
-    assert broken(robot, "determinant", lambda x: x + 1e-13)
+    assert broken(robot, "fk", slightly_off)
+    off = 1e-9 if robot == "hybrid_five_bar" else 1e-13  # long products have a large natural scale
+    assert broken(robot, "determinant", lambda x: x + off * (1 + np.abs(x)))
+
+
+def test_a_wrong_truth_value_is_found() -> None:
+    assert broken("hybrid_five_bar", "workspace_contains", np.logical_not)

@@ -2,11 +2,17 @@
 
 import importlib
 import itertools
+from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import sympy as sp
+from closedform.derivations import hybrid_five_bar
 from closedform.derivations import hybrid_five_bar_design as design
+
+from closedform.derivation import Stage
+from closedform.prove import ProofError, prove_inverse
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 DESIGNS = [(7, 8, 5), (0, 1, 1), (3, 1, 3), (1, 1, 2), (1, 1, 3), (0.2, 3, 1), (2.5, 1, 3)]
@@ -139,7 +145,7 @@ def test_singular_factors(arm) -> None:
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (500, 3))
     t4, t5 = np.moveaxis(arm.passive_angles(q), -1, 0)
     rho = 8 * np.sin(q[:, 1:2]) + 5 * np.sin(t4)
-    sines = [np.sin(t4 - q[:, 1:2]) * 5, np.sin(t5 - q[:, 2:]) * 5, np.sin(t5 - t4) * 25]
+    sines = [np.sin(t4 - q[:, 1:2]) * 40, np.sin(t5 - q[:, 2:]) * 40, np.sin(t5 - t4) * 25]
     factors = arm.singularities(q)
     np.testing.assert_allclose(factors, np.stack([rho, *sines], axis=-1), atol=1e-12)
     assert len(arm.SINGULARITIES) == factors.shape[-1]
@@ -269,6 +275,113 @@ def test_volume_by_random_points(arm, lengths) -> None:
     assert abs(arm.workspace_volume(lengths) - volume) <= 4 * error + 1e-12
 
 
+def revolved(lengths) -> float:
+    """The volume by Gauss's rule, exact between the breaks of a piecewise quadratic section."""
+    L0, L1, L2 = lengths
+    R, r = L1 + L2, abs(L1 - L2)
+    breaks = {s * a + b for s in (1, -1) for a in (R, r) for b in (0, L0)} | {L0 / 2}
+    if L0:
+        breaks |= {(L0**2 + s * (R**2 - r**2)) / (2 * L0) for s in (1, -1)}
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    total = 0.0
+    for a, b in itertools.pairwise(sorted(breaks)):
+        y = (a + b) / 2 + (b - a) / 2 * nodes
+        squares = y**2, (y - L0) ** 2
+        outer = R**2 - np.maximum(*squares)
+        inner = np.maximum(r**2 - np.minimum(*squares), 0)
+        total += np.pi * (b - a) / 2 * (weights * np.maximum(outer - inner, 0)).sum()
+    return total
+
+
+def test_volume_by_quadrature_in_and_around_all_seams(arm) -> None:
+    cases = [tuple(row) for row in np.random.default_rng(9).uniform(0, 3, (500, 3))]
+    for M, m in ((1, 1), (2, 1), (3, 1), (1.5, 1), (1, 0), (2.5, 2), (1, 1e-8), (1, 1 - 1e-6)):
+        seams = (0, 2 * (M - m), 2 * m, 2 * M, 2 * (M + m))
+        for at, step in itertools.product(seams, (0, 1e-12, -1e-12, 1e-6, -1e-6, 1e-2, -1e-2)):
+            cases += [(at + step, M, m), (at + step, m, M)] if at + step >= 0 else []
+    cases += itertools.product((0, 1, 2, 3, 4, 5), (0, 1, 2), (0, 1, 2))
+    found = np.array([arm.workspace_volume(lengths) for lengths in cases])
+    wanted = np.array([revolved(lengths) for lengths in cases])
+    size = np.array([(L1 + L2) ** 3 for _, L1, L2 in cases])
+    assert (found >= 0).all()
+    assert (np.abs(found - wanted) <= 1e-13 * size).all()
+
+
+ZEROS = [z for z in itertools.product((0, 1.5), (0, 1), (0, 1, 2)) if 0 in z]
+
+
+@pytest.mark.parametrize("lengths", ZEROS)
+def test_lengths_of_zero(arm, lengths) -> None:
+    """The inverse closes the loop wherever P is reached, and fk knows when it cannot."""
+    L0, L1, L2 = lengths
+    y = np.linspace(-1, L0 + 1, 41)[:, None]
+    rho = np.array([0, L1 + L2, abs(L1 - L2), 0.3, np.sqrt(max((L1 + L2) ** 2 - L0**2 / 4, 0))])
+    p = np.stack(np.broadcast_arrays(-0.6 * rho, y, 0.8 * rho), axis=-1).reshape(-1, 3)
+    p = np.concatenate([p, [[0, s, 0] for s in (0, L0, L1 + L2, L0 / 2)]])
+    reach = np.stack([np.linalg.norm(p - [0, s, 0], axis=-1) for s in (0, L0)])
+    inside = ((reach <= L1 + L2 + 1e-14) & (reach >= abs(L1 - L2) - 1e-14)).all(axis=0)
+    np.testing.assert_array_equal(arm.workspace_contains(p, lengths), inside)
+    q, status = arm.ik(p, lengths)
+    np.testing.assert_array_equal(np.isin(status, (OK, SINGULAR)).all(axis=-1), inside)
+    assert (status[~inside] == UNREACHABLE).all()
+    assert np.abs(closure(arm, q, p[:, None], lengths))[inside].max(initial=0) < 1e-14
+    if L1 == 0:
+        assert (status[inside] == SINGULAR).all()
+
+    q = np.random.default_rng(10).uniform(-np.pi, np.pi, (200, 3))
+    positions, status = arm.fk(q, lengths)
+    C, D = bars(arm, q, lengths)
+    apart = np.linalg.norm(C - D, axis=-1)
+    wanted = np.where(apart > 2 * L2, UNREACHABLE, np.where(apart == 0, SINGULAR, OK))
+    np.testing.assert_array_equal(status, wanted[:, None].repeat(2, 1))
+    exists = status != UNREACHABLE
+    gaps = closure(arm, q[:, None], positions, lengths)[exists]
+    assert np.abs(gaps).max(initial=0) < 1e-13
+    kappa, factors = arm.condition_number(q, lengths), arm.singularities(q, lengths)
+    assert np.isinf(kappa[status == SINGULAR]).all(), "A vanishes, or C = D"
+    if L1 == 0:
+        assert (factors[exists][:, 1:3] == 0).all()
+    if L2 == 0:
+        assert (factors[exists][:, 3] == 0).all()
+
+
+def test_boundary_of_the_workspace_from_both_sides(arm) -> None:
+    rng = np.random.default_rng(11)
+    for lengths in DESIGNS:
+        L0, L1, L2 = lengths
+        reach, hole = L1 + L2, abs(L1 - L2)
+        u = rng.normal(size=(400, 3))
+        u /= np.linalg.norm(u, axis=-1, keepdims=True)
+        for pivot, radius, sign in itertools.product((0, L0), (reach, hole), (1, -1)):
+            for step in (1e-11, 1e-9, 1e-6, 1e-3):
+                p = u * (radius + sign * step * reach) + [0, pivot, 0]
+                r = np.stack([np.linalg.norm(p - [0, s, 0], axis=-1) for s in (0, L0)])
+                clear = np.minimum(reach - r, r - hole).min(axis=0)
+                sure = np.abs(clear) > 2e-12 * reach
+                inside = arm.workspace_contains(p, lengths)
+                np.testing.assert_array_equal(inside[sure], clear[sure] > 0)
+                q, status = arm.ik(p, lengths)
+                np.testing.assert_array_equal((status == OK).all(axis=-1), inside)
+                gaps = closure(arm, q, p[:, None], lengths)[inside]
+                assert np.abs(gaps).max(initial=0) < 1e-12 * sum(lengths)
+
+
+def test_lengths_as_arrays(arm) -> None:
+    q = np.random.default_rng(12).uniform(-np.pi, np.pi, (5, 1, 3))
+    L1 = np.array([8.0, 2.0, -1.0, np.nan])
+    for name in arm.__all__:
+        function = getattr(arm, name)
+        if name == "workspace_volume":
+            assert function(arm.Parameters(np.ones((3, 1)), L1, 5.0)).shape == (3, 4)
+        elif name.islower():
+            many = function(q, arm.Parameters(7.0, L1, 5.0))
+            for k, length in enumerate(L1):
+                one = function(q[:, 0], (7.0, length, 5.0))
+                parts = zip(many, one, strict=True) if isinstance(one, tuple) else [(many, one)]
+                for a, b in parts:
+                    np.testing.assert_allclose(a[:, k], b, rtol=1e-12, atol=1e-12, err_msg=name)
+
+
 def test_every_regime_is_tried() -> None:
     found = design.regimes()
     assert found.keys() == REGIMES.keys()
@@ -321,3 +434,83 @@ def test_loci_hold_the_postures_they_describe(arm, kappa: float, mirrored: int) 
     assert (np.abs(values.sum(axis=0)) <= 1e-12 * np.abs(values).sum(axis=0)).all()
     off = np.array([term(7, 8, 5, P.real + 0.5, P.imag) + 0 * half for term in terms])
     assert np.median(np.abs(off.sum(axis=0)) / np.abs(off).sum(axis=0)) > 1e-6
+
+
+@pytest.mark.parametrize("psi", [0.0, np.pi, np.pi / 2, -np.pi / 2, 1.0, -2.0])
+@pytest.mark.parametrize("lengths", [(7, 8, 5), (0, 3, 2), (3, 1, 3), (1, 1, 2)])
+def test_real_points_of_the_loci_are_postures(lengths, psi: float) -> None:
+    """On random lines: the real roots are postures, made by own circles, with CP turned by psi."""
+    L0, L1, L2 = lengths
+    t = sp.Symbol("t")
+    curve = design.by_cramer(*map(sp.Rational, (np.cos(psi), np.sin(psi))))
+    curve = curve.subs(dict(zip(design.lengths, lengths, strict=True)))
+    rng = np.random.default_rng(13)
+    seen = 0
+    for _ in range(25):
+        at, slope = rng.uniform(-1, 1, 2) * (L1 + L2)
+        line = {design.plane[0]: sp.Rational(at) + t * sp.Rational(slope), design.plane[1]: t}
+        polynomial = sp.Poly(sp.expand(curve.subs(line)), t)
+        assert polynomial.degree() <= 6
+        roots = np.roots([float(c) for c in polynomial.all_coeffs()])
+        for rho in roots[np.abs(roots.imag) < 1e-9].real:
+            P = at + slope * rho + 1j * rho
+            ends = []
+            for pivot in (0, L0):
+                to_pivot = pivot - P
+                along = (abs(to_pivot) ** 2 + L2**2 - L1**2) / (2 * abs(to_pivot))
+                across = np.emath.sqrt(L2**2 - along**2)
+                ends.append([to_pivot / abs(to_pivot) * (along + s * 1j * across) for s in (1, -1)])
+            turned = np.exp(1j * psi) * np.array(ends[0])[:, None]
+            assert np.abs(turned - np.array(ends[1])).min() < 1e-3 * L2, (P, ends)
+            seen += 1
+    apart = 2 * L2 * np.sin(abs(psi) / 2)
+    possible = max(0, L0 - 2 * L1) <= apart <= L0 + 2 * L1
+    if L0 or psi:  # else the curve is everywhere
+        assert (seen > 0) == possible
+
+
+def test_the_inverse_is_counted_step_by_step() -> None:
+    d = hybrid_five_bar.d
+    inverse = next(i for i in d.inverses if i.function == "ik")
+    assert prove_inverse(d, inverse).method == "step by step"
+    first, second, third = inverse.stages
+    for stages, message in (
+        ((first, second), "every equation and every unknown once"),
+        ((first, replace(second, given={}), third), "an earlier equation"),
+        ((second, first, third), "an unknown of a later stage"),
+        ((Stage(second.unknowns, (0, 1), {}), Stage(first.unknowns, (), {}), third), "later stage"),
+    ):
+        with pytest.raises(ProofError, match=message):
+            prove_inverse(d, replace(inverse, stages=stages))
+
+
+REFUTED = {
+    "eq. (4)",
+    "k(pi/2)",
+    "boundary",
+    "border",
+    "2 L1 > L0",
+    "2 L2 - 2 L1 > L0",
+    "located at the boundary",
+    "twice as large",
+    "not avoidable",
+    "always smaller",
+    "condition numbers differ: B",
+    "eigenvalues",
+    "eq. (8)",
+    "minimum of 1",
+    "infinity",
+    "define the boundary",
+    "isotropy regardless of the dimensions",
+}
+
+
+def test_what_the_paper_says() -> None:
+    verdicts = {c.label: c.check.judge().kind for c in hybrid_five_bar.d.claims}
+    assert {label for label, kind in verdicts.items() if kind == "refuted"} == REFUTED
+    assert Counter(verdicts.values()) == {
+        "proved": 25,
+        "proved under assumption": 2,
+        "refuted": 17,
+        "not decidable here": 6,
+    }

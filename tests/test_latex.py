@@ -15,7 +15,7 @@ from closedform.claims import Every, Identity, Undecidable
 from closedform.derivation import Continuum, Derivation, Inverse, Paper, Solved
 from closedform.emit.errata import errata, markdown
 from closedform.emit.latex import decimal, document, notebook
-from closedform.emit.prose import Prose, escape, loosen, mixed, symbol_name
+from closedform.emit.prose import Prose, escape, loosen, mixed, spaced, symbol_name
 from closedform.emit.render import render
 from closedform.emit.show import show
 from closedform.functions import Program, branches, choose, real
@@ -239,6 +239,7 @@ def test_notebook_balances(name: str) -> None:
         ("psi_max", r"\psi_{\mathrm{max}}"),
         ("lamda", r"\lambda"),
         ("L0", "L_{0}"),
+        ("CP_y", r"\mathit{CP}_{y}"),
     ],
 )
 def test_symbol_names(name: str, latex: str) -> None:
@@ -262,6 +263,7 @@ def test_symbol_names(name: str, latex: str) -> None:
         ("(front, sigma_side = 1)", r"(front, $\sigma_{\mathrm{side}} = 1$)"),
         ("free (theta1 + theta2 is given)", r"free ($\theta_{1} + \theta_{2}$ is given)"),
         ("(theta1 + theta2)/2 = gamma7", r"$(\theta_{1} + \theta_{2})/2 = \gamma_{7}$"),
+        ("A line.  A step, and A holds: A too", "A line.  A step, and $A$ holds: $A$ too"),
     ],
 )
 def test_prose(text: str, latex: str) -> None:
@@ -294,6 +296,32 @@ def test_parentheses_that_tex_can_break() -> None:
     assert loosen(r"\left(\frac{a}{b} \right)") == r"\bigl(\frac{a}{b}\bigr)"
     matrix = r"\left[\begin{matrix}a\end{matrix}\right]"
     assert loosen(matrix) == matrix
+
+
+def test_words_are_factors_with_a_space() -> None:
+    assert spaced(r"\mathrm{side} n_{1}") == r"\mathrm{side}\, n_{1}"
+    assert spaced(r"2 \mathrm{side}_{c} \mathrm{gap}") == r"2\, \mathrm{side}_{c}\, \mathrm{gap}"
+    unchanged = r"L_{1} \mathrm{s}_{2} \mathrm{c}_{1} + \mathrm{side} = 0"
+    assert spaced(unchanged) == unchanged
+
+
+def test_a_table_of_a_step() -> None:
+    d, proof = awkward()
+    x = d.parameters[0].symbol
+    d.step("In cases", "By x.", {}, rows=[("where", "value"), ((0, x, 2 * x), x**2), ("else", "0")])
+    tex = render("latex/robot.tex.jinja", document(d, proof))
+    name = symbol_name(x.name)
+    assert r"\begin{longtable}{@{}ll@{}}" in tex and r"where & value \\ \midrule" in tex
+    assert rf"$\displaystyle 0 \le {name} \le 2 {name}$ & $\displaystyle {name}^{{2}}$" in tex
+    assert f"0 <= {x} <= {2 * x}  |  {x**2}" in show(d, proof)
+
+
+def test_statements_that_functions_share_are_printed_once() -> None:
+    d = __import__("closedform.derivations.hybrid_five_bar", fromlist=["d"]).d
+    tex = render("latex/robot.tex.jinja", document(d, Proof(d.name, d.paper.key, (), 0, ())))
+    assert tex.count(r"\emph{touching}") == 1
+    assert r"\statement{as in}{\texttt{fk}, Section~\ref{inverse:fk}}" in tex
+    assert r"\statement{as in}{\texttt{jacobian\_parallel}}" in tex
 
 
 def test_special_characters() -> None:

@@ -17,7 +17,7 @@ from sympy.printing.latex import LatexPrinter
 
 from closedform.claims import REFUTED
 from closedform.derivation import Continuum, Derivation, Inverse, Joint, Step
-from closedform.emit.prose import Prose, escape, loosen, mixed, symbol_name, upright
+from closedform.emit.prose import Prose, escape, loosen, mixed, spaced, symbol_name, upright
 from closedform.emit.text import citation
 from closedform.functions import Array, Bound, Function, Let, Match, Statement, Vanishes, real
 from closedform.prove import InverseResult, Proof
@@ -64,7 +64,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
 
     def _print_Piecewise(self, expr: sp.Piecewise) -> str:
         cases = [rf"{self._print(e)}, & {self.case(c)}" for e, c in expr.args]
-        return r"\begin{cases}" + r" \\ ".join(cases) + r"\end{cases}"
+        return rf"\begin{{cases}}{stacked(cases)}\end{{cases}}"
 
     def case(self, condition: Any) -> str:
         if condition == sp.true:
@@ -81,11 +81,17 @@ class Printer(LatexPrinter):  # type: ignore[misc]
 
     def math(self, expr: Any) -> str:
         """An expression that TeX can break between its terms."""
-        return loosen(self.doprint(expr))
+        return spaced(loosen(self.doprint(expr)))
 
 
 def flag_name(flag: sp.Symbol) -> str:
     return str(flag.name).replace("_", " ")
+
+
+def stacked(rows: Sequence[str]) -> str:
+    """Rows of a matrix or of cases; fractions need some space between them."""
+    small = "".join(rows).count(r"\frac") < 2
+    return (r" \\ " if small else r" \\[3pt] ").join(rows)
 
 
 def measure(text: str) -> float:
@@ -94,7 +100,7 @@ def measure(text: str) -> float:
     return max(
         len(re.findall(r"\\[a-z]+|[^\s{}^_]", row))
         + 1.2 * len(re.findall(r"[-+=&]|\\sin|\\cos", row))
-        for row in text.split(r" \\ ")
+        for row in re.split(r" \\\\(?:\[3pt\])? ", text)
     )
 
 
@@ -126,9 +132,19 @@ class Page:
             "title": escape(step.title),
             "reason": self.prose(step.reason),
             "blocks": blocks(shown),
+            "columns": "l" * len(step.rows[0]) if step.rows else "",
+            "rows": [" & ".join(map(self.cell, row)) for row in step.rows],
             "published": escape(", ".join(step.published)),
             "mark": mark,
         }
+
+    def cell(self, value: Any) -> str:
+        """A cell of a table: a sentence, an expression or an increasing chain of them."""
+        if isinstance(value, str):
+            return self.prose(value)
+        chain = value if isinstance(value, tuple) else (value,)
+        text = r" \le ".join(map(self.math, chain))
+        return rf"$\displaystyle {text}$"
 
     def function(self, function: Function) -> dict[str, Any]:
         return {
@@ -136,9 +152,9 @@ class Page:
             "arguments": ", ".join(escape(a.name) for a in function.inputs),
             "summary": self.prose(function.summary),
             "source": self.prose(function.source),
-            "statements": self.statements(function.body),
+            "statements": self.shared_statements(function),
             "blocks": blocks(self.outputs(function)),
-            "key": function.name.replace("_", "-") if function.has_status else "",
+            "key": _key(function) if function.has_status else "",
             "notes": [self.prose(n) for n in function.notes],
         }
 
@@ -150,6 +166,7 @@ class Page:
         proved = [self.proved(r) for r in self.proof.inverses if r.function == function.name]
         return {
             **self.function(function),
+            "statements": self.statements(function.body),
             "given": formulas(
                 [f"{a} = {b}" for v in function.inputs for a, b in self.assigned(v, {})]
             ),
@@ -168,6 +185,18 @@ class Page:
             else [],
             "proved": proved,
         }
+
+    def shared_statements(self, function: Function) -> list[tuple[str, str]]:
+        """As :meth:`statements`, but what an earlier function says already is not said again."""
+        functions = self.derivation.functions
+        earlier = functions[: functions.index(function)]
+        shared = [f for f in earlier if f.body and function.body[: len(f.body)] == f.body]
+        if not shared:
+            return self.statements(function.body)
+        model = max(shared, key=lambda f: len(f.body))
+        place = rf", Section~\ref{{inverse:{_key(model)}}}" if model.has_status else ""
+        rest = self.statements(function.body[len(model.body) :])
+        return [("as in", rf"\texttt{{{escape(model.name)}}}{place}"), *rest]
 
     def statements(self, body: Sequence[Statement]) -> list[tuple[str, str]]:
         """One line a statement, but neighbours that name or match alike share theirs."""
@@ -338,8 +367,8 @@ class Page:
                 break
             named.append((-i, -j, (name, cells[-i][-j])))
             cells[-i][-j] = name
-        rows = r" \\ ".join(" & ".join(row) for row in cells)
-        whole = (lhs, rf"\begin{{bmatrix}} {rows} \end{{bmatrix}}")
+        rows = [" & ".join(row) for row in cells]
+        whole = (lhs, rf"\begin{{bmatrix}} {stacked(rows)} \end{{bmatrix}}")
         return [whole, *(equation for _, _, equation in sorted(named))]
 
 
@@ -347,6 +376,10 @@ def decimal(value: sp.Rational) -> str:
     """A rational as a decimal where that is exact and short, else as a fraction."""
     digits = next((k for k in range(7) if (value * 10**k).is_Integer), None)
     return str(value) if digits is None else f"{float(value):.{digits}f}"
+
+
+def _key(function: Function) -> str:
+    return function.name.replace("_", "-")
 
 
 def element(base: str, index: str) -> str:

@@ -52,6 +52,9 @@ TOKEN = re.compile(
 )
 SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,", "×": r"\times "}
 GREEK_NAME = re.compile(rf"(?:{'|'.join(sorted(GREEK))})\d*(?:_\w+)?")
+WORD = r"\\mathrm\{[A-Za-z]{2,}\}(?:_\{(?:[^{}]|\{[^{}]*\})*\})?"
+"""A symbol that is a word; as a factor it takes a space."""
+VARIABLE = r"\\(?:mathrm|mathit|sigma|theta|alpha|beta|psi|kappa|sqrt|frac|sin|cos)\b"
 
 
 def symbol_name(name: str) -> str:
@@ -63,6 +66,8 @@ def symbol_name(name: str) -> str:
     letters, rest = (re.match(r"([A-Za-z]+)(.*)", first) or re.match("(.)(.*)", first)).groups()  # type: ignore[union-attr]
     if letters in GREEK:
         base = r"\lambda" if letters == "lamda" else rf"\{letters}"
+    elif len(letters) == 2 and letters.isupper():
+        base = rf"\mathit{{{letters}}}"
     elif len(letters) <= 2:
         base, rest = letters[0], letters[1:] + rest
     else:
@@ -122,9 +127,15 @@ class Prose:
         self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
 
     def __call__(self, text: str) -> str:
-        return "".join(
-            self._part(part) if i % 2 else escape(part) for i, part in enumerate(PROSE.split(text))
-        )
+        parts = PROSE.split(text)
+        for i, part in enumerate(parts):
+            if i % 2 == 0:
+                parts[i] = escape(part)
+            elif part == "A" and not re.search(r"(^|[.;?!]\s+)$", "".join(parts[:i])):
+                parts[i] = "$A$"  # an article would stand at the start of a sentence
+            else:
+                parts[i] = self._part(part)
+        return "".join(parts)
 
     def _part(self, text: str) -> str:
         """A formula, or text; in parentheses that hold words there may be formulas."""
@@ -222,3 +233,8 @@ def loosen(text: str) -> str:
                     size = "", ""
                 parts[j], parts[i] = size[0] + left[5:], size[1] + part[6:]
     return re.sub(r"(?<![\s\\]) (?=(?:\\bigr)?[)\]])", "", "".join(parts))
+
+
+def spaced(text: str) -> str:
+    """Thin spaces beside symbols that are words, where they are factors."""
+    return re.sub(rf"(?<=[\w}}]) (?={WORD})|({WORD}) (?=[A-Za-z]|{VARIABLE})", r"\1\\, ", text)

@@ -51,6 +51,8 @@ def _lines(derivation: Derivation, proof: Proof | None) -> Iterator[str]:
         )
         for lhs, value in step.shown:
             yield from _equation(plain(lhs), value)
+        for row in step.rows:
+            yield from _wrap("  |  ".join(map(_cell, row)), 3)
         if step.vanishes and proof and step.title in proof.steps:
             yield f"   [identities proved: {len(step.vanishes)}]"
     yield from _heading("Functions")
@@ -64,6 +66,10 @@ def _lines(derivation: Derivation, proof: Proof | None) -> Iterator[str]:
         for kind, n in proof.verdicts().items():
             labels = ", ".join(c.label for c in proof.claims if c.kind == kind)
             yield from _wrap(f"{n} {kind}: {labels}", 2)
+
+
+def _cell(value: Any) -> str:
+    return " <= ".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
 def _function(derivation: Derivation, function: Function, proof: Proof | None) -> Iterator[str]:

@@ -4,7 +4,7 @@ from functools import partial
 from typing import NamedTuple
 
 import sympy as sp
-from closedform.derivations.hybrid_five_bar_design import Regime
+from closedform.derivations import hybrid_five_bar_design as design
 from sympy import Abs, atan2, cos, sin, sqrt
 
 from closedform.claims import Check, Every, Holds, Identity
@@ -27,7 +27,11 @@ class FiveBar(NamedTuple):
     A: sp.Matrix
     B: sp.Matrix
     in_plane: dict[sp.Symbol, sp.Expr]
-    volumes: dict[str, Regime]
+    volumes: dict[str, design.Regime]
+
+    @property
+    def CD(self) -> sp.Matrix:
+        return self.elbows[1] - self.elbows[0]
 
     @property
     def det_A(self) -> sp.Expr:
@@ -129,29 +133,33 @@ def on_the_axis() -> Holds:
     return Holds({**posture.closed(), **posture.interior(), "rho = 0": Eq(posture.P[1], 0)})
 
 
+def serial(bar: FiveBar) -> Check:
+    """The diagonal of B: rho L2, and what vanishes where AP or BP is L1 + L2 or |L1 - L2|."""
+    L0, L1, L2 = bar.lengths
+    rho = bar.by_legs[0].dot(bar.k.cross(sp.Matrix([0, 1, 0])))
+    parts = {"rho": Identity(bar.B[0, 0], L2 * rho)}
+    for i, name in enumerate(("AP", "BP")):
+        arm = bar.by_legs[i] - sp.Matrix([0, i * L0, 0])
+        reach = arm.dot(arm)
+        parts[name] = Identity(
+            ((L1 + L2) ** 2 - reach) * (reach - (L1 - L2) ** 2), 4 * bar.B[i + 1, i + 1] ** 2
+        )
+    return Every(parts)
+
+
 def without_parallel(L0: int, L1: int, L2: int) -> dict[str, sp.Expr]:
     """The conditions for a design without parallel singularities, for numbers."""
     return {
-        f"{L0} > 2 x {L1}, C and D stay apart": sp.sympify(L0 > 2 * L1),
-        f"2 x {L2} > {L0} + 2 x {L1}, C, P, D are never in line": sp.sympify(2 * L2 > L0 + 2 * L1),
+        f"{L0} > 2*{L1}, C and D stay apart": sp.sympify(L0 > 2 * L1),
+        f"2*{L2} > {L0} + 2*{L1}, C, P, D are never in line": sp.sympify(2 * L2 > L0 + 2 * L1),
     }
 
 
 def longest(bar: FiveBar) -> Check:
-    """(L0 + 2 L1)^2 - CD^2 as a sum that is not negative."""
-    L0, L1, _ = bar.lengths
-    t2, t3 = bar.angles[1:3]
-    CD = bar.elbows[1] - bar.elbows[0]
-    rest = 2 * L0 * L1 * ((1 - cos(t3)) + (1 + cos(t2))) + 2 * L1**2 * (1 + cos(t3 - t2))
-    return Identity((L0 + 2 * L1) ** 2 - CD.dot(CD), rest)
+    """CD is at most L0 + 2 L1."""
+    return Identity(*design.longest(bar.CD, *bar.angles[1:3]))
 
 
 def shortest(bar: FiveBar) -> Check:
-    """CD^2 - (L0 - 2 L1)^2 for L0 > 2 L1, in a form with positive coefficients."""
-    L0, L1, _ = bar.lengths
-    t2, t3 = bar.angles[1:3]
-    CD = bar.elbows[1] - bar.elbows[0]
-    w = real("w", nonnegative=True)
-    along = (1 + cos(t3)) + (1 - cos(t2))
-    rest = 2 * w * L1 * along + L1**2 * along**2 + L1**2 * (sin(t3) - sin(t2)) ** 2
-    return Identity((CD.dot(CD) - (L0 - 2 * L1) ** 2).subs(L0, 2 * L1 + w), rest)
+    """CD is at least L0 - 2 L1, if this is not negative."""
+    return Identity(*design.shortest(bar.CD, *bar.angles[1:3]))

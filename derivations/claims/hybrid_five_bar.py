@@ -8,8 +8,10 @@ from closedform.derivations.claims import hybrid_five_bar_design as design
 from closedform.derivations.claims.five_bar_postures import (
     Eq,
     FiveBar,
+    Ne,
     coincident,
     on_the_axis,
+    serial,
     signs,
     square,
     without_parallel,
@@ -147,10 +149,13 @@ def parallel_singularities(d: Derivation, bar: FiveBar) -> None:
     L2 = bar.lengths[2]
     t4, t5 = bar.angles[3:]
     posture = coincident()
+    other = posture.other_mode()
     claim(
         "inside the workspace",
         "the corresponding singular configurations occurring inside the workspace",
-        Holds({**posture.closed(), **posture.interior(), "CP x DP = 0": Eq(posture.cross, 0)}),
+        Holds(
+            {**posture.closed(), **posture.interior(), "CP and DP in line": Eq(posture.cross, 0)}
+        ),
     )
     c = cos(t4 - t5)
     claim(
@@ -164,7 +169,7 @@ def parallel_singularities(d: Derivation, bar: FiveBar) -> None:
         r"these singularities occur whenever $\theta_4 - \theta_5 = k(\pi/2)$",
         Refuted(
             Identity((bar.A * bar.A.T).subs(t4, t5 + pi / 2), L2**2 * sp.eye(3)),
-            "for k = 1, CP and DP are at right angles and A A^T = L2^2 times the unit matrix",
+            "for k = 1, CP and DP are at right angles and A*A^T is L2^2 times the unit matrix",
             r"\theta_4 - \theta_5 = k\pi",
             Identity(bar.det_A, -(L2**3) * sin(t4 - t5)),
         ),
@@ -201,7 +206,14 @@ def parallel_singularities(d: Derivation, bar: FiveBar) -> None:
     claim(
         "by design or by path-planning",
         "parallel singularities can be avoided either by design or by path-planning",
-        Holds(without_parallel(3, 1, 3)),
+        Every(
+            {
+                "by design": Holds(without_parallel(3, 1, 3)),
+                "by another working mode at the same P": Holds(
+                    {**other.closed(), "CP and DP not in line": Ne(other.cross, 0)}
+                ),
+            }
+        ),
     )
 
 
@@ -209,21 +221,30 @@ def serial_singularities(d: Derivation, bar: FiveBar) -> None:
     """Section 2.6."""
     claim = partial(d.claim, where="2.6 The serial singularities")
     L0, L1, L2 = bar.lengths
-    t2, t4 = bar.angles[1], bar.angles[3]
-    reach = L1**2 + L2**2 + 2 * L1 * L2 * cos(t4 - t2)
-    aligned = Every(
-        {
-            "AP": Identity(sum(e**2 for e in bar.by_legs[0]), reach),
-            "stretched": Identity(reach.subs(t4, t2), (L1 + L2) ** 2),
-            "folded": Identity(reach.subs(t4, t2 + pi), (L1 - L2) ** 2),
-        }
-    )
+    t2, t3, t4, t5 = bar.angles[1:]
+    rows = bar.A * sp.Matrix.hstack(*(bar.by_legs[0].diff(t) for t in (bar.angles[0], t2, t4)))
+    over_d = bar.A * sp.Matrix.hstack(*(bar.by_legs[1].diff(t) for t in (bar.angles[0], t3, t5)))
+    none = sp.zeros(1, 3)
     claim(
         "no velocity in one direction",
-        "there exists a direction along which no Cartesian velocity can be produced",
-        Identity(
-            bar.det_A * (bar.A.adjugate() / bar.det_A * bar.B).det(),
-            prod(bar.B[i, i] for i in range(3)),
+        "when the manipulator is in such a singularity there exists a direction along which no "
+        "Cartesian velocity can be produced",
+        Every(
+            {
+                "on AB, along k": Identity(rows[0, :].subs(sin(t2), -L2 / L1 * sin(t4)), none),
+                "AC and CP in line, along CP": Every(
+                    {
+                        "stretched": Identity(rows[1, :].subs(t4, t2), none),
+                        "folded": Identity(rows[1, :].subs(t4, t2 + pi), none),
+                    }
+                ),
+                "BD and DP in line, along DP": Every(
+                    {
+                        "stretched": Identity(over_d[2, :].subs(t5, t3), none),
+                        "folded": Identity(over_d[2, :].subs(t5, t3 + pi), none),
+                    }
+                ),
+            }
         ),
     )
     claim(
@@ -234,9 +255,8 @@ def serial_singularities(d: Derivation, bar: FiveBar) -> None:
             on_the_axis(),
             "det B vanishes on the axis AB too, inside the workspace: for (7, 8, 5) at AP = BP = "
             "7/2",
-            r"\text{on } AB \text{, or with } BD, DP \text{ or } AC, CP \text{ aligned, at the "
-            r"boundary}",
-            aligned,
+            "on AB, or at the boundary with BD and DP or AC and CP aligned",
+            serial(bar),
         ),
     )
     R = L1 + L2

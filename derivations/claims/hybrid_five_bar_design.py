@@ -13,6 +13,7 @@ from closedform.derivations.claims.five_bar_postures import (
     isotropic,
     longest,
     on_the_axis,
+    serial,
     shortest,
     signs,
     without_parallel,
@@ -21,7 +22,16 @@ from closedform.derivations.hybrid_five_bar_design import decrease
 from sympy import Abs, cos, pi, sin, sqrt, tan
 
 from closedform.algebra import positive_form
-from closedform.claims import Enumeration, Every, Holds, Identity, Refuted, Undecidable, Under
+from closedform.claims import (
+    Check,
+    Enumeration,
+    Every,
+    Holds,
+    Identity,
+    Refuted,
+    Undecidable,
+    Under,
+)
 from closedform.derivation import Derivation
 from closedform.functions import real
 
@@ -36,19 +46,20 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
     reach = L1**2 + L2**2 + 2 * L1 * L2 * cos(t4 - t2)
     claim(
         "hollow spheres",
-        "the intersection of two hollow spheres of radii L1 + L2 and L1 - L2, L0 apart",
+        "the intersection of two hollow spheres, where radii are $L_1 + L_2$ and $L_1 - L_2$, the "
+        "distance between the centers of these spheres being $L_0$",
         Identity(
             ((L1 + L2) ** 2 - reach) * (reach - (L1 - L2) ** 2),
             (2 * L1 * L2 * sin(t4 - t2)) ** 2,
         ),
     )
     falls = Every({f"regime {i}": Identity(*p) for i, p in enumerate(decrease(bar.volumes), 1)})
-    claim("L0 = 0", "the workspace is maximum when L0 is equal to 0", falls)
+    claim("L0 = 0", "the workspace is maximum when $L_0$ is equal to 0", falls)
     M, m = real("M", positive=True), real("m", positive=True)
     at_zero = bar.volumes["inner balls inside, overlapping"].volume.subs(L0, 0)
     claim(
         "L1 = L2",
-        "and ... when L1 is equal to L2",
+        "and, by extrapolating the results from [7], when $L_1$ is equal to $L_2$",
         Under(
             Identity(at_zero, sp.Rational(4, 3) * pi * ((M + m) ** 3 - (M - m) ** 3)),
             "for a given reach L1 + L2; without a bound on the lengths there is no maximum",
@@ -66,7 +77,7 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
                     same_legs, sp.S.Zero
                 ),
                 "unequal signs are regular": Holds(
-                    {**mirrored.closed(), "CP x DP is not 0": Ne(mirrored.cross, 0)}
+                    {**mirrored.closed(), "CP and DP not in line": Ne(mirrored.cross, 0)}
                 ),
             }
         ),
@@ -87,6 +98,8 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
                 }
             ),
             "with L0 = 0, L1 = L2 = 1 the axis is singular inside the workspace, as P = (0, 1, 0)",
+            "the serial ones lie at the border, or on AB",
+            serial(bar),
         ),
     )
 
@@ -103,7 +116,8 @@ def by_design(d: Derivation, bar: FiveBar) -> None:
     default = coincident()
     claim(
         "2 L1 > L0",
-        "if L1 + L1 is greater than L0, we eliminate a parallel singularity type (C = D)",
+        "if the sum of lengths $L_1 + L_1$ is greater than the distance between the two pivots, "
+        "$L_0$, we eliminate a parallel singularity type, C and D coinciding",
         Refuted(
             Holds({**default.closed(), "2 L1 > L0": sp.sympify(16 > 7)}),
             "for (7, 8, 5), 16 > 7, C and D coincide 7/2 along AB: the condition is what lets the "
@@ -115,7 +129,8 @@ def by_design(d: Derivation, bar: FiveBar) -> None:
     small = coincident((1, 1, 2))
     claim(
         "2 L2 - 2 L1 > L0",
-        "2 L2 - 2 L1 > L0 eliminates all parallel singularities",
+        "we can eliminate all parallel singularities if the condition below is imposed: "
+        "$2L_2 - 2L_1 > L_0$",
         Refuted(
             Holds({**small.closed(), "2 L2 - 2 L1 > L0": sp.sympify(4 - 2 > 1)}),
             "for (1, 1, 2), 4 - 2 > 1, C and D coincide at theta2 = 60 and theta3 = 120 degrees; "
@@ -148,7 +163,14 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
     )
     claim(
         "Figure 12",
-        "in the convex working mode the manipulator is in parallel singularity",
+        "in the convex working mode the manipulator is in parallel singularity, while it is in a "
+        "regular configuration in the non-convex working mode",
+        Undecidable(NO_DIMENSIONS),
+    )
+    claim(
+        "Figures 13 and 14",
+        "it is possible, by means of a change of working mode, to reach points inside the two "
+        "workspace sections displayed in figures 13 and 14",
         Undecidable(NO_DIMENSIONS),
     )
     claim(
@@ -163,21 +185,26 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
             on_the_axis(),
             "the sign of rho, and with it the working mode, changes on the axis AB, inside the "
             "workspace",
+            "at the boundary, where a leg is stretched or folded, or on AB",
+            serial(bar),
         ),
     )
     bounds = d["ik"].bounds
     cases = d["ik"].cases
+    one_workspace = Enumeration(
+        1,
+        lambda: len({bounds(case) for _, case in cases()}),
+        "sets of conditions on P, over the eight working modes",
+    )
     claim(
         "twice as large",
-        "by doing so, we can reach a workspace that is twice as large",
+        "by doing so, we can reach a workspace that is twice as large as each of those displayed",
         Refuted(
-            Enumeration(
-                1,
-                lambda: len({bounds(case) for _, case in cases()}),
-                "sets of conditions on P, over the eight working modes",
-            ),
+            one_workspace,
             "the conditions on P hold no sign: every working mode reaches the same workspace, and "
             "a change of mode adds nothing to it",
+            "all working modes have the same workspace",
+            one_workspace,
         ),
     )
     claim(
@@ -186,6 +213,8 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         Refuted(
             Holds(without_parallel(3, 1, 3)),
             "(3, 1, 3) has none; section 3.2 itself avoids them",
+            r"L_0 > 2 L_1 \text{ and } 2 L_2 > L_0 + 2 L_1 \text{ avoid them}",
+            Every({"C and D stay apart": shortest(bar), "CD < 2 L2": longest(bar)}),
         ),
     )
     M, m = real("M", positive=True), real("m", positive=True)
@@ -210,8 +239,8 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         Holds(
             {
                 **start.closed(),
-                "CP DP = 0": Eq(start.dot, 0),
-                "turned over, not": Ne(start.other_mode().dot, 0),
+                "CP and DP at right angles": Eq(start.dot, 0),
+                "the leg turned over, not": Ne(start.other_mode().dot, 0),
             }
         ),
     )
@@ -220,10 +249,20 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         "and those of the inverse-kinematics matrix",
         Refuted(
             Identity(4 * bar.B[1, 1] ** 2, ((L1 + L2) ** 2 - reach) * (reach - (L1 - L2) ** 2)),
-            "up to their signs, the entries of B depend on P alone: rho L2, and by leg the area of "
-            "the triangle over AP or BP; B has one condition number in all eight working modes",
+            "up to their signs, the entries of B depend on P alone: rho*L2, and by leg twice the "
+            "area of the triangle over AP or BP",
+            "the condition number of B depends on P alone",
+            serial(bar),
         ),
     )
+
+
+def half_angle(bar: FiveBar, sign: int) -> Check:
+    """kappa by u, the cotangent of half the angle between CP and DP, for a sign of its cosine."""
+    u = real("u", positive=True)
+    cosine = Abs(cos(bar.angles[3] - bar.angles[4]))
+    by_u = (bar.kappa**2).subs(cosine, sign * (u**2 - 1) / (u**2 + 1))
+    return Identity(by_u, u ** (2 * sign))
 
 
 def conditioning(d: Derivation, bar: FiveBar) -> None:
@@ -246,39 +285,66 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
             [L2**2 * (1 - right), L2**2, L2**2 * (1 + right)],
         ),
     )
+    gaps = [(1 - right, sp.S.One), (sp.S.One, 1 + right)]
+    claim(
+        "order of the eigenvalues",
+        r"$\alpha_1 \leq \alpha_2 \leq \alpha_3$",
+        Identity([b - a for a, b in gaps], [right, right]),
+    )
+    wide = {t3: pi / 2, t4: 2 * pi / 3, t5: 0}
+
+    def printed_kappa(angle: sp.Symbol) -> sp.Expr:
+        return 1 / Abs(tan((t4 - angle) / 2))
+
     claim(
         "eq. (8)",
         r"$\kappa(\mathbf A) = 1/|\tan((\theta_4-\theta_3)/2)|$",
-        Every(
-            {
-                "as printed": Identity(1 / Abs(tan((t4 - t3) / 2)), bar.kappa),
-                "with theta5 for theta3": Identity(1 / Abs(tan((t4 - t5) / 2)), bar.kappa),
-            }
+        Refuted(
+            Holds(
+                {
+                    "as printed, not kappa": Ne((printed_kappa(t3) / bar.kappa).subs(wide), 1),
+                    "with theta5, the inverse": Eq((printed_kappa(t5) * bar.kappa).subs(wide), 1),
+                    "which is not kappa": Ne(bar.kappa.subs(wide), 1),
+                }
+            ),
+            "theta3 stands for theta5, the angle of DP; and with theta5 it is right only where "
+            "cos(theta4 - theta5) is not negative.  Where CD is longer than sqrt(2)*L2 it is the "
+            "inverse: at theta4 = 2*pi/3, theta5 = 0 it gives sqrt(3)/3, and kappa is sqrt(3)",
+            r"\max(|\tan\tfrac{\theta_4-\theta_5}{2}|,\ 1/|\tan\tfrac{\theta_4-\theta_5}{2}|)",
+            Every(
+                {
+                    "the cosine is not negative": half_angle(bar, 1),
+                    "it is not positive": half_angle(bar, -1),
+                }
+            ),
         ),
     )
     claim(
         "surfaces of revolution",
-        "these loci are surfaces of revolution",
+        "these loci are surfaces of revolution generated by the isoconditioning curves of the "
+        "2-dof manipulator, when these are rotated about the axis of the first revolute",
         Identity((bar.A * bar.A.T).diff(t1), sp.zeros(3, 3)),
     )
+    right_angle, aligned = {t3: pi / 6, t5: 0, t4: 2 * pi / 3}, {t3: 0, t5: pi / 2, t4: pi}
     claim(
         "minimum of 1",
         r"$\kappa(\mathbf A)$ attains its minimum of 1 when $|\theta_3-\theta_4| = \pi/2$",
-        Every(
-            {
-                "as printed": Identity(bar.kappa.subs(t4, t3 + pi / 2), sp.S.One),
-                "with theta5 for theta3": Identity(bar.kappa.subs(t4, t5 + pi / 2), sp.S.One),
-            }
+        Refuted(
+            Holds({"kappa is not 1": Ne(bar.kappa.subs(right_angle), 1)}),
+            "theta3 stands for theta5, as in eq. (8): at theta3 = pi/6, theta4 = 2*pi/3, "
+            "theta5 = 0 it is sqrt(3)",
+            r"|\theta_5-\theta_4| = \pi/2",
+            Identity(bar.kappa.subs(t4, t5 + pi / 2), sp.S.One),
         ),
     )
     claim(
         "infinity",
         r"$\kappa(\mathbf A)$ tends to infinity when $\theta_3-\theta_4 = k\pi$",
-        Every(
-            {
-                "as printed": Identity(bar.det_A.subs(t4, t3 + pi), sp.S.Zero),
-                "with theta5 for theta3": Identity(bar.det_A.subs(t4, t5 + pi), sp.S.Zero),
-            }
+        Refuted(
+            Holds({"kappa is 1": Eq(bar.kappa.subs(aligned), 1)}),
+            "theta3 stands for theta5: at theta3 = 0, theta4 = pi, theta5 = pi/2 it is 1",
+            r"\theta_5-\theta_4 = k\pi",
+            Identity(bar.det_A, L2**3 * sin(t5 - t4)),
         ),
     )
     claim(
@@ -286,15 +352,24 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
         "its inversion being performed without any roundoff-error amplification",
         Identity((bar.A.T * bar.A).subs(t4, t5 + pi / 2) / L2**2, sp.eye(3)),
     )
+    claim(
+        "most accurate",
+        "postures with a right angle are the most accurate for the direct kinematics",
+        Undecidable("accuracy is not defined but by the condition number itself"),
+    )
     inside = coincident()
     claim(
         "define the boundary",
         "such singularities occur at the boundary of the Cartesian workspace, and the singularity "
         "locus defines this boundary",
         Refuted(
-            Holds({**inside.closed(), **inside.interior(), "CP x DP = 0": Eq(inside.cross, 0)}),
+            Holds(
+                {**inside.closed(), **inside.interior(), "CP and DP in line": Eq(inside.cross, 0)}
+            ),
             "for (7, 8, 5) C and D coincide at (7/2, sqrt(207)/2), with P inside the workspace; "
             "the boundary is where a leg is stretched or folded, a serial singularity",
+            r"AP, BP \in \{L_1 + L_2, |L_1 - L_2|\}",
+            serial(bar),
         ),
     )
     claim(
@@ -308,8 +383,8 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
                     "for (1, 1, 3) that is too short": Holds({"3 < 3 sqrt 2": Lt(3, 3 * sqrt(2))}),
                 }
             ),
-            "it takes CD = sqrt 2 L2, but CD <= L0 + 2 L1; for (1, 1, 3) 4.24 against 3",
-            r"\max(0, L_0 - 2 L_1) \le \sqrt 2 L_2 \le L_0 + 2 L_1",
+            "it takes CD = sqrt(2)*L2, but CD <= L0 + 2*L1; for (1, 1, 3) 4.24 against 3",
+            r"\max(0, L_0 - 2 L_1) \le \sqrt{2} L_2 \le L_0 + 2 L_1",
             Every({"longest": longest(bar), "shortest": shortest(bar)}),
         ),
     )

@@ -863,7 +863,7 @@ const cf_function cf_functions[] = {
       "q: shape (..., 3): theta1, theta2, theta3.\n"
       "Returns p: shape (..., 2, 3).\n"
       "Branches: left_of_CD, right_of_CD.\n"
-      "UNREACHABLE: C and D are more than 2 L2 apart, the loop is open.\n"
+      "UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.\n"
       "SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and\n"
       "    the point at theta4 = theta5 = +90 or -90 degrees is returned.\n"
       "Ill-conditioned near the parallel singularities, where both modes meet or P is\n"
@@ -877,12 +877,14 @@ const cf_function cf_functions[] = {
       "q: shape (..., 3): theta1, theta2, theta3.\n"
       "Returns theta: shape (..., 2, 2).\n"
       "Branches: left_of_CD, right_of_CD.\n"
+      "NaN for an assembly mode that does not exist.\n"
+      "Free, but equal, where C and D coincide: +90 and -90 degrees are returned.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_passive_angles_in, 1, hybrid_five_bar_passive_angles_out,
       hybrid_five_bar_passive_angles_one, hybrid_five_bar_passive_angles_many },
     { "hybrid_five_bar.jacobian_parallel",
-      "A of A dp = B dq; its rows are L2 k, p - c and p - d.\n"
+      "A of A*dp = B*dq; its rows are L2*k, p - c and p - d.\n"
       "q: shape (..., 3): theta1, theta2, theta3.\n"
       "Returns A: shape (..., 2, 3, 3).\n"
       "Branches: left_of_CD, right_of_CD.\n"
@@ -892,7 +894,8 @@ const cf_function cf_functions[] = {
       1, hybrid_five_bar_jacobian_parallel_in, 1, hybrid_five_bar_jacobian_parallel_out,
       hybrid_five_bar_jacobian_parallel_one, hybrid_five_bar_jacobian_parallel_many },
     { "hybrid_five_bar.jacobian_serial",
-      "The diagonal of B of A dp = B dq.\n"
+      "The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and\n"
+      "    L1*L2*sin(theta5 - theta3).\n"
       "q: shape (..., 3): theta1, theta2, theta3.\n"
       "Returns B: shape (..., 2, 3).\n"
       "Branches: left_of_CD, right_of_CD.\n"
@@ -903,7 +906,7 @@ const cf_function cf_functions[] = {
       1, hybrid_five_bar_jacobian_serial_in, 1, hybrid_five_bar_jacobian_serial_out,
       hybrid_five_bar_jacobian_serial_one, hybrid_five_bar_jacobian_serial_many },
     { "hybrid_five_bar.jacobian",
-      "Derivative of p with respect to q, A^-1 B.\n"
+      "Derivative of p with respect to q: A^-1*B.\n"
       "q: shape (..., 3): theta1, theta2, theta3.\n"
       "Returns J: shape (..., 2, 3, 3).\n"
       "Branches: left_of_CD, right_of_CD.\n"
@@ -925,9 +928,9 @@ const cf_function cf_functions[] = {
       1, hybrid_five_bar_determinant_in, 1, hybrid_five_bar_determinant_out,
       hybrid_five_bar_determinant_one, hybrid_five_bar_determinant_many },
     { "hybrid_five_bar.singularities",
-      "Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2)\n"
-      "    and L2 sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the\n"
-      "    parallel one.\n"
+      "Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 -\n"
+      "    theta2) and L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 -\n"
+      "    theta4), the parallel one.\n"
       "q: shape (..., 3): theta1, theta2, theta3.\n"
       "Returns factors: shape (..., 2, 4).\n"
       "Branches: left_of_CD, right_of_CD.\n"
@@ -942,7 +945,8 @@ const cf_function cf_functions[] = {
       "Returns kappa: shape (..., 2).\n"
       "Branches: left_of_CD, right_of_CD.\n"
       "NaN for an assembly mode that does not exist.\n"
-      "Infinite at a parallel singularity; it does not depend on theta1.\n"
+      "Infinite at a parallel singularity; it does not depend on theta1, and both modes\n"
+      "    have the same.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_condition_number_in, 1, hybrid_five_bar_condition_number_out,

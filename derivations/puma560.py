@@ -1,6 +1,7 @@
 """The Puma 560 in standard Denavit-Hartenberg parameters, as in the Robotics Toolbox."""
 
 import sympy as sp
+from closedform.derivations.claims.puma560 import Puma, state
 from closedform.derivations.papers import PUMA_TEXTBOOKS
 from sympy import cos, pi, sin, sqrt
 
@@ -76,9 +77,9 @@ d.step(
 )
 X = a2 * cos(theta2) + a3 * cos(theta2 + theta3) - d4 * sin(theta2 + theta3)
 Z = a2 * sin(theta2) + a3 * sin(theta2 + theta3) + d4 * cos(theta2 + theta3)
-position = chain([*arm, A[3]])[:3, 3]
-R03 = chain(arm)[:3, :3]
-R36 = chain(wrist)[:3, :3]
+position = product([*arm, A[3]])[:3, 3]
+R03 = product(arm)[:3, :3]
+R36 = product(wrist)[:3, :3]
 d.step(
     "Pose",
     "The three axes of the wrist meet in its centre, which the wrist does not move.  In the plane "
@@ -336,3 +337,7 @@ d.inverses.append(
         ),
     )
 )
+
+# Claims of the textbooks
+
+state(d, Puma((a2, a3, d3, d4), q, links, position, R36, geometric, det))

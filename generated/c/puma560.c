@@ -872,7 +872,7 @@ CF_INLINE void puma560_ik_kernel(const puma560_params *params, const real_t T[16
     const real_t c23 = t48 * t59 + s2 * t56;
     const real_t R2_13 = T33 * s23 + R1_13 * c23;
     const real_t h = cf_sqrt(t62 + R2_13 * R2_13);
-    const real_t t63 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(128.0);
+    const real_t t63 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
     const int aligned = h <= t63;
     const real_t t64 = cf_select(aligned, CLOSEDFORM_C(0.0), t61 / h);
     const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(R2_13 / h));

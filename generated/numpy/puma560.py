@@ -618,7 +618,7 @@ def _ik(
     c23 = t44 * t55 + s2 * t52
     R2_13 = T33 * s23 + R1_13 * c23
     h = np.sqrt(t58 + R2_13 * R2_13)
-    t59 = _runtime.VANISHING * 128.0
+    t59 = _runtime.VANISHING * 16.0
     aligned = h <= t59
     t60 = np.where(aligned, 0.0, t57 / h)
     c4 = np.where(aligned, 1.0, -(R2_13 / h))

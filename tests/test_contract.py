@@ -379,7 +379,8 @@ def test_angles_lie_in_the_half_open_interval(robot: str, backend: str) -> None:
     corners = np.array([-np.pi, -np.pi / 2, 0.0, np.pi / 2, np.pi])
     q = np.stack(np.meshgrid(*[corners] * len(module.JOINTS), indexing="ij"), axis=-1)
     for noise in (0.0, 1e-16, 1e-9):
-        found = module.ik(image(module, q + noise)).q
+        angles = [name.startswith("theta") for name in module.JOINTS]
+        found = module.ik(image(module, q + noise)).q[..., angles]
         found = found[np.isfinite(found)]
         assert (found > -np.pi).all() and (found <= np.pi).all()
 

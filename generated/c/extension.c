@@ -5,7 +5,9 @@
 #include "hybrid_five_bar.h"
 #include "irb260.h"
 #include "planar_2r.h"
+#include "puma560.h"
 #include "spherical_wrist.h"
+#include "stanford_arm.h"
 
 static const char *const hybrid_five_bar_fields[] = { "L0", "L1", "L2" };
 static const double hybrid_five_bar_values[] = HYBRID_FIVE_BAR_DEFAULTS;
@@ -719,6 +721,162 @@ static const cf_array planar_2r_workspace_radii_out[] = {
     { "radii", 1, { 2 }, 2, CF_REAL },
 };
 
+static const char *const puma560_fields[] = { "a2", "a3", "d3", "d4" };
+static const double puma560_values[] = PUMA560_DEFAULTS;
+
+static void puma560_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_fk((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_fk_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_fk_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void puma560_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_pose((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_pose_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_pose_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void puma560_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_jacobian((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_jacobian_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_jacobian_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_jacobian_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void puma560_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_jacobian_space((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_jacobian_space_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_jacobian_space_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_jacobian_space_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void puma560_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_jacobian_body((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_jacobian_body_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_jacobian_body_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_jacobian_body_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void puma560_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_determinant((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_determinant_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_determinant_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void puma560_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_singularities((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_singularities_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_singularities_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_singularities_out[] = {
+    { "factors", 1, { 3 }, 3, CF_REAL },
+};
+
+static void puma560_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_ik((const puma560_params *)params, in[0], out[0], out[1]);
+}
+
+static void puma560_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_ik_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array puma560_ik_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static const cf_array puma560_ik_out[] = {
+    { "q", 2, { 8, 6 }, 48, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
+};
+
 static const char *const spherical_wrist_fields[] = { "d6" };
 static const double spherical_wrist_values[] = SPHERICAL_WRIST_DEFAULTS;
 
@@ -854,6 +1012,162 @@ static const cf_array spherical_wrist_ik_in[] = {
 static const cf_array spherical_wrist_ik_out[] = {
     { "q", 2, { 2, 3 }, 6, CF_REAL },
     { "status", 1, { 2 }, 2, CF_STATUS },
+};
+
+static const char *const stanford_arm_fields[] = { "d2" };
+static const double stanford_arm_values[] = STANFORD_ARM_DEFAULTS;
+
+static void stanford_arm_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_fk((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_fk_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_fk_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void stanford_arm_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_pose((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_pose_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_pose_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void stanford_arm_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_jacobian((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_jacobian_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_jacobian_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_jacobian_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void stanford_arm_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_jacobian_space((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_jacobian_space_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_jacobian_space_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_jacobian_space_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void stanford_arm_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_jacobian_body((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_jacobian_body_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_jacobian_body_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_jacobian_body_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void stanford_arm_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_determinant((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_determinant_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_determinant_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void stanford_arm_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_singularities((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_singularities_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_singularities_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_singularities_out[] = {
+    { "factors", 1, { 3 }, 3, CF_REAL },
+};
+
+static void stanford_arm_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_ik((const stanford_arm_params *)params, in[0], out[0], out[1]);
+}
+
+static void stanford_arm_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_ik_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array stanford_arm_ik_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static const cf_array stanford_arm_ik_out[] = {
+    { "q", 2, { 8, 6 }, 48, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
 };
 
 const cf_function cf_functions[] = {
@@ -1235,6 +1549,86 @@ const cf_function cf_functions[] = {
       2, planar_2r_values, planar_2r_fields,
       0, NULL, 1, planar_2r_workspace_radii_out,
       planar_2r_workspace_radii_one, planar_2r_workspace_radii_many },
+    { "puma560.fk",
+      "Pose of the hand in the base frame.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_fk_in, 1, puma560_fk_out,
+      puma560_fk_one, puma560_fk_many },
+    { "puma560.pose",
+      "The same as fk.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_pose_in, 1, puma560_pose_out,
+      puma560_pose_one, puma560_pose_many },
+    { "puma560.jacobian",
+      "Velocity of the hand's origin over its angular velocity, in base axes, per joint\n"
+      "    rate.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      "The geometric Jacobian, in the order (v; omega).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_jacobian_in, 1, puma560_jacobian_out,
+      puma560_jacobian_one, puma560_jacobian_many },
+    { "puma560.jacobian_space",
+      "Twist (v; omega) of the hand in the base frame per joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_jacobian_space_in, 1, puma560_jacobian_space_out,
+      puma560_jacobian_space_one, puma560_jacobian_space_many },
+    { "puma560.jacobian_body",
+      "Twist (v; omega) of the hand in its own frame per joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_jacobian_body_in, 1, puma560_jacobian_body_out,
+      puma560_jacobian_body_one, puma560_jacobian_body_many },
+    { "puma560.determinant",
+      "Determinant of the Jacobian.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns det: shape (...).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_determinant_in, 1, puma560_determinant_out,
+      puma560_determinant_one, puma560_determinant_many },
+    { "puma560.singularities",
+      "The factors whose zeros are the singular set: shoulder, elbow, wrist.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns factors: shape (..., 3).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_singularities_in, 1, puma560_singularities_out,
+      puma560_singularities_one, puma560_singularities_many },
+    { "puma560.ik",
+      "All 8 configurations of a pose.\n"
+      "T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33,\n"
+      "    T34, T41, T42, T43, T44.\n"
+      "Returns q: shape (..., 8, 6).\n"
+      "Branches: right_up_noflip, right_up_flip, right_down_noflip, right_down_flip,\n"
+      "    left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.\n"
+      "right: X >= 0, the arm faces the wrist; left: X <= 0.  up: the elbow is above\n"
+      "    the line from the shoulder to the wrist; down: below.\n"
+      "SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is\n"
+      "    returned; equal links folded with the wrist on the shoulder, theta2 = 0 is\n"
+      "    returned; or a link without length, theta3 is free.\n"
+      "Ill-conditioned near the shoulder and elbow singularities, where the angles lose\n"
+      "    half the digits, the pose does not.\n"
+      "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
+      "SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.\n"
+      "INVALID: a matrix that is no homogeneous transform, a mirrored rotation\n"
+      "    included.\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_ik_in, 2, puma560_ik_out,
+      puma560_ik_one, puma560_ik_many },
     { "spherical_wrist.fk",
       "Rotation of the hand.\n"
       "Source: eqs. (12) and (15).\n"
@@ -1300,6 +1694,83 @@ const cf_function cf_functions[] = {
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_ik_in, 2, spherical_wrist_ik_out,
       spherical_wrist_ik_one, spherical_wrist_ik_many },
+    { "stanford_arm.fk",
+      "Pose of the hand in the base frame.\n"
+      "q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_fk_in, 1, stanford_arm_fk_out,
+      stanford_arm_fk_one, stanford_arm_fk_many },
+    { "stanford_arm.pose",
+      "The same as fk.\n"
+      "q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_pose_in, 1, stanford_arm_pose_out,
+      stanford_arm_pose_one, stanford_arm_pose_many },
+    { "stanford_arm.jacobian",
+      "Velocity of the hand's origin over its angular velocity, in base axes, per joint\n"
+      "    rate.\n"
+      "q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      "The geometric Jacobian, in the order (v; omega).\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_jacobian_in, 1, stanford_arm_jacobian_out,
+      stanford_arm_jacobian_one, stanford_arm_jacobian_many },
+    { "stanford_arm.jacobian_space",
+      "Twist (v; omega) of the hand in the base frame per joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_jacobian_space_in, 1, stanford_arm_jacobian_space_out,
+      stanford_arm_jacobian_space_one, stanford_arm_jacobian_space_many },
+    { "stanford_arm.jacobian_body",
+      "Twist (v; omega) of the hand in its own frame per joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_jacobian_body_in, 1, stanford_arm_jacobian_body_out,
+      stanford_arm_jacobian_body_one, stanford_arm_jacobian_body_many },
+    { "stanford_arm.determinant",
+      "Determinant of the Jacobian.\n"
+      "q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.\n"
+      "Returns det: shape (...).\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_determinant_in, 1, stanford_arm_determinant_out,
+      stanford_arm_determinant_one, stanford_arm_determinant_many },
+    { "stanford_arm.singularities",
+      "The factors whose zeros are the singular set: shoulder, boom, wrist.\n"
+      "q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.\n"
+      "Returns factors: shape (..., 3).\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_singularities_in, 1, stanford_arm_singularities_out,
+      stanford_arm_singularities_one, stanford_arm_singularities_many },
+    { "stanford_arm.ik",
+      "All 8 configurations of a pose.\n"
+      "T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33,\n"
+      "    T34, T41, T42, T43, T44.\n"
+      "Returns q: shape (..., 8, 6).\n"
+      "Branches: right_out_noflip, right_out_flip, right_back_noflip, right_back_flip,\n"
+      "    left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.\n"
+      "right: X >= 0, the arm faces the wrist; left: X <= 0.  out: d3 >= 0; back: d3 <=\n"
+      "    0.\n"
+      "SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is\n"
+      "    returned; the boom drawn in, d3 = 0, theta2 = 0 is returned.\n"
+      "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
+      "SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.\n"
+      "INVALID: a matrix that is no homogeneous transform, a mirrored rotation\n"
+      "    included.\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_ik_in, 2, stanford_arm_ik_out,
+      stanford_arm_ik_one, stanford_arm_ik_many },
 };
 
 const size_t cf_function_count = sizeof cf_functions / sizeof cf_functions[0];

@@ -92,7 +92,8 @@ class Solved:
 class Continuum:
     """A flagged case: on ``locus`` a joint is free, and ``relation`` says what the others keep.
 
-    It occurs in the named ``branches``; in all of them if none is named.
+    It occurs in the named ``branches``; in all of them if none is named.  The locus may be written
+    in the unknowns of earlier stages, where there are stages.
     """
 
     flag: sp.Symbol
@@ -110,12 +111,19 @@ class Stage:
 
     ``equations`` are places in the system; they hold no unknowns but those of this stage and of
     earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
-    equations of the earlier stages hold identically.
+    equations of the earlier stages hold identically.  ``mixed``, an orthogonal matrix in the
+    earlier unknowns, multiplies the equations where that makes them simpler.
+
+    An inverse that is solved in the same stages is proved sound in them, if its stages say which
+    names of the program are ``carried`` into them, and what these are in the earlier unknowns: the
+    earlier stages are proved to hand them on so.
     """
 
     unknowns: tuple[sp.Symbol, ...]
     equations: tuple[int, ...]
     given: Mapping[sp.Symbol, sp.Expr]
+    mixed: sp.Matrix | None = None
+    carried: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -224,27 +224,42 @@ class Function:
         locus: Mapping[sp.Symbol, sp.Expr] | None = None,
     ) -> tuple[sp.Expr, ...]:
         """The outputs of a branch with the given ``flags`` true, on ``locus``, a substitution."""
-        known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
-        known |= dict(locus or {})
-        for statement in self.body:
-            if isinstance(statement, (Let, Bound)):
-                known[statement.symbol] = substitute(statement.value, known)
-            elif isinstance(statement, Vanishes):
-                known[statement.symbol] = sp.sympify(flags.get(statement.symbol, False))
-        return tuple(substitute(e, known) for a in self.outputs for e in a.entries)
+        outputs = [e for a in self.outputs for e in a.entries]
+        return self.explicit(outputs, signs, flags, locus)[0]
 
     def bounds(self, signs: Mapping[sp.Symbol, int]) -> tuple[sp.Expr, ...]:
         """The explicit expressions that are nonnegative wherever this branch exists."""
-        known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
-        found = []
+        every = [s.symbol for s in self.body if isinstance(s, Bound)]
+        return self.explicit(every, signs)[1]
+
+    def explicit(
+        self,
+        exprs: Sequence[sp.Expr],
+        signs: Mapping[sp.Symbol, int],
+        flags: Mapping[sp.Symbol, bool] | None = None,
+        locus: Mapping[sp.Symbol, sp.Expr] | None = None,
+        carried: Mapping[sp.Symbol, sp.Expr] | None = None,
+    ) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
+        """Expressions in the names of the body, written out, and the bounds they rest on.
+
+        The flags that ``flags`` does not name are false, ``locus`` replaces inputs and parameters,
+        and a name that is ``carried`` has the given value in the place of its own.
+        """
+        given = {**(locus or {}), **(carried or {})}
+        known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()} | given
+        needed = {s for e in exprs for s in e.free_symbols} - known.keys()
+        for statement in reversed(self.body):
+            if isinstance(statement, (Let, Bound)) and statement.symbol in needed:
+                needed |= statement.value.free_symbols - known.keys()
+        bounds = []
         for statement in self.body:
-            if isinstance(statement, (Let, Bound)):
+            if isinstance(statement, Vanishes):
+                known[statement.symbol] = sp.sympify((flags or {}).get(statement.symbol, False))
+            elif isinstance(statement, (Let, Bound)) and statement.symbol in needed:
                 known[statement.symbol] = substitute(statement.value, known)
-            elif isinstance(statement, Vanishes):
-                known[statement.symbol] = sp.false
-            if isinstance(statement, Bound):
-                found.append(known[statement.symbol])
-        return tuple(found)
+                if isinstance(statement, Bound):
+                    bounds.append(known[statement.symbol])
+        return tuple(substitute(e, known) for e in exprs), tuple(bounds)
 
 
 def substitute(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
@@ -288,6 +303,16 @@ class Program:
 
     def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
         self.body.append(Require(tuple(values), sp.sympify(scale), meaning))
+
+    def explicit(self, value: Any) -> Any:
+        """An expression or a matrix in the names of the program, written out."""
+        known: dict[sp.Basic, sp.Basic] = {}
+        for statement in self.body:
+            if isinstance(statement, (Let, Bound)):
+                known[statement.symbol] = substitute(statement.value, known)
+        if isinstance(value, sp.MatrixBase):
+            return value.applyfunc(lambda e: substitute(e, known))
+        return substitute(value, known)
 
     def matrix(self, name: str, matrix: sp.Matrix) -> sp.Matrix:
         """Name the entries that are sums or products, so that later products stay short."""

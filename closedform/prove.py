@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
 
-from closedform.algebra import Decision, Undecided, decide
+from closedform.algebra import Decision, Undecided, decide, normal
 from closedform.claims import VERDICTS
-from closedform.derivation import Continuum, Derivation, Inverse
+from closedform.derivation import Continuum, Derivation, Inverse, Stage
 from closedform.functions import Array, Bound, Function, Let, Program, substitute
 from closedform.lemmas import Lemma
 from closedform.refute import Counterexample
@@ -177,15 +178,11 @@ def _prove_sound(
     used: list[sp.Expr] = []
     given = _targets(inverse)
     for label, signs in function.cases():
-        solution = dict(zip(inverse.unknowns, function.values(signs), strict=True))
-        difference = sp.Matrix(
-            [substitute(substitute(e, solution), given) for e in inverse.equations]
-        )
-        bounds = tuple(substitute(b, given) for b in function.bounds(signs))
         where = (
             f"{derivation.name}.{function.name}, branch {label or 'only'}, put into the forward map"
         )
-        used += [a for a in _require(difference, bounds, where).assumptions if a not in used]
+        found = _prove_case(function, inverse, _Case(signs, {}, {}, given, where))
+        used += [a for a in found if a not in used]
     return tuple(used)
 
 
@@ -197,14 +194,74 @@ def _prove_continuum(
         if continuum.branches and label not in continuum.branches:
             continue
         flags = dict.fromkeys((continuum.flag, *continuum.also), True)
-        values = function.at(signs, flags, continuum.locus)
-        solution = dict(zip(inverse.unknowns, values, strict=True))
-        difference = sp.Matrix(
-            [substitute(substitute(e, solution), continuum.locus) for e in inverse.equations]
-        )
-        bounds = tuple(substitute(b, continuum.locus) for b in function.bounds(signs))
         where = f"{derivation.name}.{function.name}, {continuum.flag}, branch {label}"
-        _require(difference, bounds, where)
+        locus = continuum.locus
+        _prove_case(function, inverse, _Case(signs, flags, locus, locus, where))
+
+
+@dataclass(frozen=True)
+class _Case:
+    """A branch of an inverse with some flags true, on a locus; ``given`` replaces its targets."""
+
+    signs: Mapping[sp.Symbol, int]
+    flags: Mapping[sp.Symbol, bool]
+    locus: Mapping[sp.Symbol, sp.Expr]
+    given: Mapping[sp.Symbol, sp.Expr]
+    where: str
+
+
+def _prove_case(function: Function, inverse: Inverse, case: _Case) -> tuple[sp.Expr, ...]:
+    """The outputs satisfy the equations; returns what had to be assumed."""
+    outputs = [e for a in function.outputs for e in a.entries]
+    solved = dict(zip(inverse.unknowns, outputs, strict=True))
+    if any(stage.carried for stage in inverse.stages):
+        return _prove_case_in_stages(function, inverse, case, solved)
+    values = function.at(case.signs, case.flags, case.locus)
+    solution = dict(zip(solved, values, strict=True))
+    difference = sp.Matrix(
+        [substitute(substitute(e, solution), case.given) for e in inverse.equations]
+    )
+    bounds = tuple(substitute(b, case.given) for b in function.bounds(case.signs))
+    return _require(difference, bounds, case.where).assumptions
+
+
+def _prove_case_in_stages(
+    function: Function, inverse: Inverse, case: _Case, outputs: Mapping[sp.Symbol, sp.Expr]
+) -> tuple[sp.Expr, ...]:
+    """Stage by stage, with the earlier unknowns as symbols and what they hand on proved."""
+    assumptions: tuple[sp.Expr, ...] = ()
+    carried: dict[sp.Symbol, sp.Expr] = {}
+    due = {name: e for stage in inverse.stages for name, e in stage.carried.items()}
+    for k, stage in enumerate(inverse.stages):
+        where = f"{case.where}, stage {k + 1}"
+        carried |= stage.carried
+        if late := [name for name in stage.carried if name in due]:
+            raise ProofError(f"{where}: {late[0]} is carried before it is known")
+        given = {x: substitute(e, case.locus) for x, e in stage.given.items()} | dict(case.locus)
+        unsolved = {u for later in inverse.stages[k + 1 :] for u in later.unknowns}
+        ready = {n: e for n, e in due.items() if not e.free_symbols & unsolved}
+        due = {n: e for n, e in due.items() if n not in ready}
+        values, bounds = function.explicit(
+            [*(outputs[u] for u in stage.unknowns), *ready],
+            case.signs,
+            case.flags,
+            case.locus,
+            carried,
+        )
+        solution = dict(zip(stage.unknowns, values, strict=False))
+        handed = zip(values[len(stage.unknowns) :], ready.values(), strict=True)
+        vanishing = [substitute(e, solution) for e in _equations_of(inverse, stage)]
+        vanishing += [value - substitute(e, solution) for value, e in handed]
+        difference = sp.Matrix([substitute(e, given) for e in vanishing])
+        guards = tuple(dict.fromkeys(substitute(b, given) for b in bounds))
+        assumptions += _require(difference, guards, where).assumptions
+    return assumptions
+
+
+def _equations_of(inverse: Inverse, stage: Stage) -> list[sp.Expr]:
+    """The equations of a stage, multiplied by its matrix."""
+    equations = sp.Matrix([inverse.equations[i] for i in stage.equations])
+    return list(equations if stage.mixed is None else stage.mixed * equations)
 
 
 def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, ...]:
@@ -250,7 +307,14 @@ def _count_in_stages(inverse: Inverse) -> int:
         raise ProofError(f"{where} must take every equation and every unknown once")
     count, before = 1, 0
     for k, stage in enumerate(inverse.stages):
-        equations = [substitute(inverse.equations[i], stage.given) for i in stage.equations]
+        if stage.mixed is not None:
+            if stage.mixed.has(*(u for s in inverse.stages[k:] for u in s.unknowns)):
+                raise ProofError(f"{where}: a matrix holds an unknown of a later stage")
+            square = stage.mixed * stage.mixed.T
+            _require(square - sp.eye(len(stage.equations)), (), f"{where}: orthonormal rows")
+        equations = [substitute(e, stage.given) for e in _equations_of(inverse, stage)]
+        if stage.mixed is not None:
+            equations = [normal(e) for e in equations]
         depends = [s for s in inverse.stages[:k] if any(e.has(*s.unknowns) for e in equations)]
         for i in (i for s in depends for i in s.equations):
             earlier = substitute(inverse.equations[i], stage.given)
@@ -258,8 +322,13 @@ def _count_in_stages(inverse: Inverse) -> int:
         before += len(stage.unknowns)
         if any(e.has(*solved[before:]) for e in equations if solved[before:]):
             raise ProofError(f"{where}: an equation holds an unknown of a later stage")
+        constant = [e for e in equations if not e.has(*stage.unknowns)]
+        if constant:
+            _require(sp.Matrix(constant), (), f"{where}: an equation that no joint moves")
         try:
-            count *= count_solutions(equations, stage.unknowns).count
+            count *= count_solutions(
+                [e for e in equations if e.has(*stage.unknowns)], stage.unknowns
+            ).count
         except InfinitelyManyError as error:
             raise ProofError(f"{where}: {error}") from error
     return count
@@ -292,9 +361,15 @@ def prove_lemma(
         raise ProofError(f"the lemma {lemma.name!r} has {count} solutions")
 
 
+@lru_cache(maxsize=32)
+def _decide(difference: sp.ImmutableMatrix, nonnegative: tuple[sp.Expr, ...]) -> Decision:
+    """Branches that share a stage leave the same to prove."""
+    return decide(difference, nonnegative)
+
+
 def _require(difference: Any, nonnegative: tuple[sp.Expr, ...], where: str) -> Decision:
     try:
-        decision = decide(difference, nonnegative)
+        decision = _decide(sp.ImmutableMatrix([difference]), nonnegative)
     except Undecided as error:
         raise ProofError(f"{where}: {error}") from error
     if not decision.holds:

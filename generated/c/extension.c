@@ -5,6 +5,7 @@
 #include "hybrid_five_bar.h"
 #include "irb260.h"
 #include "planar_2r.h"
+#include "puma560.h"
 #include "spherical_wrist.h"
 
 static const char *const hybrid_five_bar_fields[] = { "L0", "L1", "L2" };
@@ -719,6 +720,162 @@ static const cf_array planar_2r_workspace_radii_out[] = {
     { "radii", 1, { 2 }, 2, CF_REAL },
 };
 
+static const char *const puma560_fields[] = { "a2", "a3", "d3", "d4" };
+static const double puma560_values[] = PUMA560_DEFAULTS;
+
+static void puma560_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_fk((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_fk_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_fk_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void puma560_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_pose((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_pose_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_pose_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void puma560_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_jacobian((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_jacobian_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_jacobian_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_jacobian_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void puma560_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_jacobian_space((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_jacobian_space_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_jacobian_space_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_jacobian_space_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void puma560_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_jacobian_body((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_jacobian_body_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_jacobian_body_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_jacobian_body_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void puma560_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_determinant((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_determinant_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_determinant_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void puma560_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_singularities((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_singularities_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_singularities_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_singularities_out[] = {
+    { "factors", 1, { 3 }, 3, CF_REAL },
+};
+
+static void puma560_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_ik((const puma560_params *)params, in[0], out[0], out[1]);
+}
+
+static void puma560_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_ik_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array puma560_ik_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static const cf_array puma560_ik_out[] = {
+    { "q", 2, { 8, 6 }, 48, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
+};
+
 static const char *const spherical_wrist_fields[] = { "d6" };
 static const double spherical_wrist_values[] = SPHERICAL_WRIST_DEFAULTS;
 
@@ -1231,6 +1388,86 @@ const cf_function cf_functions[] = {
       2, planar_2r_values, planar_2r_fields,
       0, NULL, 1, planar_2r_workspace_radii_out,
       planar_2r_workspace_radii_one, planar_2r_workspace_radii_many },
+    { "puma560.fk",
+      "Pose of the hand in the base frame.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_fk_in, 1, puma560_fk_out,
+      puma560_fk_one, puma560_fk_many },
+    { "puma560.pose",
+      "The same as fk.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_pose_in, 1, puma560_pose_out,
+      puma560_pose_one, puma560_pose_many },
+    { "puma560.jacobian",
+      "Velocity of the centre of the wrist over the angular velocity, in base axes, per\n"
+      "    joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      "The geometric Jacobian: rows (v; omega), v of the origin of the hand frame.\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_jacobian_in, 1, puma560_jacobian_out,
+      puma560_jacobian_one, puma560_jacobian_many },
+    { "puma560.jacobian_space",
+      "Twist (v; omega) of the hand in the base frame per joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_jacobian_space_in, 1, puma560_jacobian_space_out,
+      puma560_jacobian_space_one, puma560_jacobian_space_many },
+    { "puma560.jacobian_body",
+      "Twist (v; omega) of the hand in its own frame per joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_jacobian_body_in, 1, puma560_jacobian_body_out,
+      puma560_jacobian_body_one, puma560_jacobian_body_many },
+    { "puma560.determinant",
+      "Determinant of the Jacobian.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns det: shape (...).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_determinant_in, 1, puma560_determinant_out,
+      puma560_determinant_one, puma560_determinant_many },
+    { "puma560.singularities",
+      "The factors of the shoulder, the elbow and the wrist.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns factors: shape (..., 3).\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_singularities_in, 1, puma560_singularities_out,
+      puma560_singularities_one, puma560_singularities_many },
+    { "puma560.ik",
+      "All eight configurations of a pose.\n"
+      "T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33,\n"
+      "    T34, T41, T42, T43, T44.\n"
+      "Returns q: shape (..., 8, 6).\n"
+      "Branches: right_up_noflip, right_up_flip, right_down_noflip, right_down_flip,\n"
+      "    left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.\n"
+      "right: X >= 0, the arm faces the wrist; left: X <= 0.  up: the elbow is above\n"
+      "    the line from the shoulder to the wrist; down: below.  noflip: sin(theta5)\n"
+      "    >= 0; flip: <= 0.\n"
+      "SINGULAR: the wrist is aligned, sin(theta5) = 0, theta4 = 0 is returned; the\n"
+      "    centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal\n"
+      "    links folded with the wrist on the shoulder, theta2 = 0 is returned; or a\n"
+      "    link without length, theta3 is free.\n"
+      "INVALID: a matrix that is no homogeneous transform, a mirrored rotation\n"
+      "    included.\n"
+      "Ill-conditioned near the shoulder and elbow singularities, where the angles lose\n"
+      "    half the digits, the pose does not.\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_ik_in, 2, puma560_ik_out,
+      puma560_ik_one, puma560_ik_many },
     { "spherical_wrist.fk",
       "Rotation of the hand.\n"
       "Source: eqs. (12) and (15).\n"

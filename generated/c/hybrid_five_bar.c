@@ -15,7 +15,7 @@
  *   condition_number: 9 add, 29 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
  *   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
  *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
- *   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
+ *   workspace_volume: 15 add, 28 compare and select, 4 divide, 28 multiply
  */
 #include "hybrid_five_bar.h"
 
@@ -1065,22 +1065,21 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_par
     const int t11 = L0 <= gap * CLOSEDFORM_C(2.0);
     const real_t t12 = longer * longer;
     const real_t t13 = shorter * shorter;
-    const real_t t14 = CLOSEDFORM_C(3.141592653589793) * t12 * t13 * CLOSEDFORM_C(8.0);
-    const real_t t15 = t14 / L0;
-    const real_t t16 = t4 + t5;
-    const real_t t17 = CLOSEDFORM_C(3.141592653589793) * (t16 * t16);
-    const real_t t18 = cf_select(t11, t15, t15 + t17 * (t7 - t8) / CLOSEDFORM_C(12.0));
-    const real_t t19 = L0 * L0 * L0 - L0 * CLOSEDFORM_C(12.0) * (t12 + t13);
-    const real_t t20 = shorter * CLOSEDFORM_C(16.0) * (t13 + t12 * CLOSEDFORM_C(3.0));
-    const real_t t21 = CLOSEDFORM_C(3.141592653589793) * (t19 + t20);
-    const real_t t22 = CLOSEDFORM_C(2.6666666666666665) * CLOSEDFORM_C(3.141592653589793);
-    const real_t t23 = cf_select(t11, t21 / CLOSEDFORM_C(6.0), t10 - t22 * (gap * gap * gap));
-    const real_t t24 = cf_select(t3 <= L0, t10, cf_select(t4 < L0, t18, t23));
-    const int t25 = cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t26 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1);
-    const real_t t27 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t24) + cf_poison(failed);
-    volume[0] = t27;
+    const real_t t14 = t12 * t13 * CLOSEDFORM_C(25.132741228718345) / L0;
+    const real_t t15 = t4 + t5;
+    const real_t t16 = CLOSEDFORM_C(3.141592653589793) * (t15 * t15);
+    const real_t t17 = cf_select(t11, t14, t14 + t16 * (t7 - t8) / CLOSEDFORM_C(12.0));
+    const real_t t18 = L0 * L0 * L0 - L0 * CLOSEDFORM_C(12.0) * (t12 + t13);
+    const real_t t19 = shorter * CLOSEDFORM_C(16.0) * (t13 + t12 * CLOSEDFORM_C(3.0));
+    const real_t t20 = CLOSEDFORM_C(3.141592653589793) * (t18 + t19);
+    const real_t t21 = gap * gap * gap * CLOSEDFORM_C(8.377580409572783);
+    const real_t t22 = cf_select(t11, t20 / CLOSEDFORM_C(6.0), t10 - t21);
+    const real_t t23 = cf_select(t3 <= L0, t10, cf_select(t4 < L0, t17, t22));
+    const int t24 = cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t25 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1);
+    const real_t t26 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t23) + cf_poison(failed);
+    volume[0] = t26;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -15,7 +15,7 @@
  *   condition_number: 9 add, 29 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
  *   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
  *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
- *   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
+ *   workspace_volume: 15 add, 28 compare and select, 4 divide, 28 multiply
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not

@@ -10,7 +10,7 @@
  *   jacobian_body: 2 multiply, 2 sincos
  *   determinant: 1 sincos
  *   singularities: 1 sincos
- *   ik: 30 compare and select, 27 add, 6 atan2, 2 divide, 26 multiply, 1 sqrt
+ *   ik: 30 compare and select, 26 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
  */
 #include "spherical_wrist.h"
 
@@ -369,8 +369,8 @@ CF_INLINE void spherical_wrist_ik_kernel(const real_t R[9], real_t q[6], real_t 
     const real_t h = cf_sqrt(R13 * R13 + R23 * R23);
     const int aligned = h <= CLOSEDFORM_VANISHING;
     const real_t s4 = cf_select(aligned, CLOSEDFORM_C(0.0), R23 / h);
-    const real_t t1 = R13 / h;
-    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), t1);
+    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), R13 / h);
+    const real_t t1 = cf_atan2(s4, c4);
     const int t2 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
     const int t3 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
     const int t4 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
@@ -381,23 +381,18 @@ CF_INLINE void spherical_wrist_ik_kernel(const real_t R[9], real_t q[6], real_t 
     const int t9 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
     const int invalid = !(t2 & t3 & t4 & t6 & t8 & t9);
     const real_t t10 = cf_poison(invalid);
-    const real_t t11 = R23 * s4;
-    const real_t t12 = R11 * s4;
-    const real_t t13 = R12 * s4;
-    const real_t t14 = cf_wrap(-cf_atan2(t12 - R21 * c4, R22 * c4 - t13));
-    const real_t c4_theta5_negative = cf_select(aligned, CLOSEDFORM_C(1.0), -t1);
-    const real_t t15 = cf_wrap(-cf_atan2(s4, c4_theta5_negative)) + t10;
-    const real_t t16 = cf_atan2(t11 - R13 * c4_theta5_negative, R33);
-    const real_t t17 = cf_atan2(t12 + R21 * c4_theta5_negative, t13 + R22 * c4_theta5_negative);
-    const real_t t18 = cf_status(invalid, 0, aligned);
-    q[0] = cf_wrap(cf_atan2(s4, c4)) + t10;
-    q[1] = cf_wrap(cf_atan2(R13 * c4 + t11, R33)) + t10;
-    q[2] = t14 + t10;
-    q[3] = t15;
-    q[4] = cf_wrap(-t16) + t10;
-    q[5] = cf_wrap(t17) + t10;
-    status[0] = t18;
-    status[1] = t18;
+    const real_t t11 = cf_atan2(R13 * c4 + R23 * s4, R33);
+    const real_t t12 = cf_atan2(R11 * s4 - R21 * c4, R22 * c4 - R12 * s4);
+    const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t t13 = cf_status(invalid, 0, aligned);
+    q[0] = cf_wrap(t1) + t10;
+    q[1] = cf_wrap(t11) + t10;
+    q[2] = cf_wrap(-t12) + t10;
+    q[3] = cf_wrap(t1 + flip) + t10;
+    q[4] = cf_wrap(-t11) + t10;
+    q[5] = cf_wrap(flip - t12) + t10;
+    status[0] = t13;
+    status[1] = t13;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -14,7 +14,7 @@
 #   condition_number: 9 add, 29 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
 #   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
 #   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
-#   workspace_volume: 15 add, 28 compare and select, 4 divide, 30 multiply
+#   workspace_volume: 15 add, 28 compare and select, 4 divide, 28 multiply
 """Five-bar linkage on a revolute.
 
 The pivots A, the origin, and B lie L0 apart on the y axis.  The bars AC and BD of length L1 are
@@ -806,20 +806,19 @@ def _workspace_volume(L0, L1, L2):
     t9 = L0 <= gap * 2.0
     t10 = longer * longer
     t11 = shorter * shorter
-    t12 = 3.141592653589793 * t10 * t11 * 8.0 / L0
+    t12 = t10 * t11 * 25.132741228718345 / L0
     t13 = t3 + t4
     t14 = 3.141592653589793 * (t13 * t13) * (t6 - t7) / 12.0
     t15 = L0 * L0 * L0 - L0 * 12.0 * (t10 + t11) + shorter * 16.0 * (t11 + t10 * 3.0)
-    t16 = 2.6666666666666665 * 3.141592653589793 * (gap * gap * gap)
-    t17 = np.where(t9, 3.141592653589793 * t15 / 6.0, t8 - t16)
-    t18 = np.where(t3 < L0, np.where(t9, t12, t12 + t14), t17)
-    t19 = np.where(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, np.where(t2 <= L0, t8, t18))
-    t20 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t21 = t20 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t16 = np.where(t9, 3.141592653589793 * t15 / 6.0, t8 - gap * gap * gap * 8.377580409572783)
+    t17 = np.where(t3 < L0, np.where(t9, t12, t12 + t14), t16)
+    t18 = np.where(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, np.where(t2 <= L0, t8, t17))
+    t19 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t20 = t19 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     unreachable = np.logical_not(-(t1 * _runtime.FEASIBILITY) <= t1)
-    t22 = _runtime.poison(np.logical_not(t21) | unreachable)
+    t21 = _runtime.poison(np.logical_not(t20) | unreachable)
     return (
-        t19 + t22,
+        t18 + t21,
     )
 
 

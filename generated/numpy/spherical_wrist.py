@@ -9,7 +9,7 @@
 #   jacobian_body: 2 multiply, 2 sincos
 #   determinant: 1 sincos
 #   singularities: 1 sincos
-#   ik: 30 compare and select, 27 add, 6 atan2, 2 divide, 26 multiply, 1 sqrt
+#   ik: 30 compare and select, 26 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
 """Spherical wrist.
 
 Three revolute joints with axes through one point.  theta4 turns about z, theta5 about the y
@@ -287,8 +287,8 @@ def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33):
     h = np.sqrt(R13 * R13 + R23 * R23)
     aligned = h <= _runtime.VANISHING
     s4 = np.where(aligned, 0.0, R23 / h)
-    t1 = R13 / h
-    c4 = np.where(aligned, 1.0, t1)
+    c4 = np.where(aligned, 1.0, R13 / h)
+    t1 = np.arctan2(s4, c4)
     t2 = np.abs(R13 - R21 * R32 + R22 * R31) <= _runtime.ROTATION
     t3 = np.abs(R23 + R11 * R32 - R12 * R31) <= _runtime.ROTATION
     t4 = np.abs(R33 - R11 * R22 + R12 * R21) <= _runtime.ROTATION
@@ -298,25 +298,19 @@ def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33):
     t8 = np.abs(R11 * R12 + R21 * R22 + R31 * R32) <= _runtime.ROTATION
     invalid = np.logical_not(t7 & t8)
     t9 = _runtime.poison(invalid)
-    t10 = R23 * s4
-    t11 = _runtime.wrap(np.arctan2(R13 * c4 + t10, R33))
-    t12 = R11 * s4
-    t13 = R12 * s4
-    t14 = _runtime.wrap(-np.arctan2(t12 - R21 * c4, R22 * c4 - t13))
-    c4_theta5_negative = np.where(aligned, 1.0, -t1)
-    t15 = _runtime.wrap(-np.arctan2(s4, c4_theta5_negative))
-    t16 = np.arctan2(t10 - R13 * c4_theta5_negative, R33)
-    t17 = np.arctan2(t12 + R21 * c4_theta5_negative, t13 + R22 * c4_theta5_negative)
-    t18 = _runtime.status(invalid, np.False_, aligned)
+    t10 = np.arctan2(R13 * c4 + R23 * s4, R33)
+    t11 = np.arctan2(R11 * s4 - R21 * c4, R22 * c4 - R12 * s4)
+    flip = np.where(aligned, 0.0, 3.141592653589793)
+    t12 = _runtime.status(invalid, np.False_, aligned)
     return (
-        _runtime.wrap(np.arctan2(s4, c4)) + t9,
-        t11 + t9,
-        t14 + t9,
-        t15 + t9,
-        _runtime.wrap(-t16) + t9,
-        _runtime.wrap(t17) + t9,
-        t18,
-        t18,
+        _runtime.wrap(t1) + t9,
+        _runtime.wrap(t10) + t9,
+        _runtime.wrap(-t11) + t9,
+        _runtime.wrap(t1 + flip) + t9,
+        _runtime.wrap(-t10) + t9,
+        _runtime.wrap(flip - t11) + t9,
+        t12,
+        t12,
     )
 
 

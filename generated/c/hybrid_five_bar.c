@@ -377,14 +377,14 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_para
     const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t17 = t6 * height;
     const real_t CP_y = t16 + t17;
-    const real_t CP_y_right_of_CD = t16 - t17;
     const real_t DP_r = t7 + t11;
+    const real_t CP_y_right_of_CD = t16 - t17;
     B[0] = L2 * (C_r - DP_r_right_of_CD) + t15;
-    B[1] = -(C_r * CP_y + C_y * DP_r_right_of_CD) + t15;
-    B[2] = D_r * CP_y_right_of_CD + t2 * DP_r + t15;
+    B[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t15;
+    B[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t15;
     B[3] = L2 * (C_r - DP_r) + t15;
-    B[4] = -(C_r * CP_y_right_of_CD + C_y * DP_r) + t15;
-    B[5] = D_r * CP_y + t2 * DP_r_right_of_CD + t15;
+    B[4] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t15;
+    B[5] = t2 * DP_r_right_of_CD + D_r * CP_y + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -470,38 +470,38 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *par
     const real_t t15 = cf_poison(failed);
     const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t17 = t6 * height;
-    const real_t CP_y = t16 + t17;
-    const real_t t18 = C_r * CP_y + C_y * DP_r_right_of_CD;
     const real_t CP_y_right_of_CD = t16 - t17;
-    const real_t t19 = CP_y_right_of_CD * c1;
+    const real_t CP_y = t16 + t17;
+    const real_t t18 = C_y * DP_r_right_of_CD + C_r * CP_y;
+    const real_t t19 = CP_y_right_of_CD * t18;
     const real_t side = distance * height;
     const real_t DP_r = t7 + t11;
-    const real_t along_d = D_r * CP_y_right_of_CD + t2 * DP_r;
-    const real_t t20 = CP_y * c1;
+    const real_t along_d = t2 * DP_r + D_r * CP_y_right_of_CD;
+    const real_t t20 = CP_y * along_d;
     const real_t t21 = CLOSEDFORM_C(0.0) + t15;
-    const real_t t22 = CP_y_right_of_CD * s1;
-    const real_t t23 = CP_y * s1;
     const real_t P_r_right_of_CD = C_r - DP_r;
-    const real_t t24 = C_r * CP_y_right_of_CD + C_y * DP_r;
-    const real_t along_d_right_of_CD = D_r * CP_y + t2 * DP_r_right_of_CD;
+    const real_t t22 = C_y * DP_r + C_r * CP_y_right_of_CD;
+    const real_t t23 = CP_y * t22;
+    const real_t along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y;
+    const real_t t24 = CP_y_right_of_CD * along_d_right_of_CD;
     J[0] = P_r * s1 + t15;
-    J[1] = t18 * t19 / side + t15;
-    J[2] = -(along_d * t20 / side) + t15;
+    J[1] = c1 * t19 / side + t15;
+    J[2] = -(c1 * t20 / side) + t15;
     J[3] = t21;
     J[4] = -(DP_r * t18 / side) + t15;
     J[5] = DP_r_right_of_CD * along_d / side + t15;
     J[6] = P_r * c1 + t15;
-    J[7] = -(t18 * t22 / side) + t15;
-    J[8] = along_d * t23 / side + t15;
+    J[7] = -(s1 * t19 / side) + t15;
+    J[8] = s1 * t20 / side + t15;
     J[9] = s1 * P_r_right_of_CD + t15;
-    J[10] = -(t24 * t20 / side) + t15;
-    J[11] = along_d_right_of_CD * t19 / side + t15;
+    J[10] = -(c1 * t23 / side) + t15;
+    J[11] = c1 * t24 / side + t15;
     J[12] = t21;
-    J[13] = DP_r_right_of_CD * t24 / side + t15;
+    J[13] = DP_r_right_of_CD * t22 / side + t15;
     J[14] = -(DP_r * along_d_right_of_CD / side) + t15;
     J[15] = c1 * P_r_right_of_CD + t15;
-    J[16] = t24 * t23 / side + t15;
-    J[17] = -(along_d_right_of_CD * t22 / side) + t15;
+    J[16] = s1 * t23 / side + t15;
+    J[17] = -(s1 * t24 / side) + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -593,18 +593,18 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *
     const real_t t12 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t13 = t6 * height;
     const real_t CP_y = t12 + t13;
-    const real_t t14 = (C_r - DP_r_right_of_CD) * (C_r * CP_y + C_y * DP_r_right_of_CD);
-    const real_t CP_y_right_of_CD = t12 - t13;
+    const real_t t14 = (C_r - DP_r_right_of_CD) * (C_y * DP_r_right_of_CD + C_r * CP_y);
     const real_t DP_r = t7 + t11;
+    const real_t CP_y_right_of_CD = t12 - t13;
     const real_t side = distance * height;
-    const real_t t15 = t14 * (D_r * CP_y_right_of_CD + t2 * DP_r) / side;
+    const real_t t15 = t14 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side;
     const int t16 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t17 = t16 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t18 = t17 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int failed = !(t18 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
     const real_t t19 = cf_poison(failed);
-    const real_t t20 = (C_r - DP_r) * (C_r * CP_y_right_of_CD + C_y * DP_r);
-    const real_t t21 = t20 * (D_r * CP_y + t2 * DP_r_right_of_CD) / side;
+    const real_t t20 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
+    const real_t t21 = t20 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
     det[0] = -t15 + t19;
     det[1] = t21 + t19;
 }

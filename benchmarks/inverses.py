@@ -1,0 +1,2 @@
+PEERS={}
+def compare(report, rounds): pass

@@ -18,6 +18,9 @@ CASES = [
     ("planar_2r", "ik"),
     ("spherical_wrist", "fk"),
     ("spherical_wrist", "ik"),
+    ("irb260", "fk"),
+    ("irb260", "jacobian"),
+    ("irb260", "ik"),
 ]
 MILLION = 1_000_000
 

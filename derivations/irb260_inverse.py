@@ -33,14 +33,14 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
     reach = p.let("reach", sqrt(u**2 + h**2), nonnegative=True)
     triangle = two_link_triangle(p, l3, l4, reach, elbow, alpha, bend, scale=size)
     folded = p.vanishes("folded", reach, size, "the wrist is on the shoulder", free=(theta2,))
-    p.vanishes("no_link", l3 * l4, (l3 + l4) ** 2, "an arm has no length", free=(theta3,))
+    no_link = p.vanishes("no_link", l3 * l4, (l3 + l4) ** 2, "an arm has no length", free=(theta3,))
     turret = linear_pair(theta1, s1, c1)
     shoulder = linear_pair(theta2, u, h)
     hand = linear_pair(theta5, sin(psi) * c1 - cos(psi) * s1, cos(psi) * c1 + sin(psi) * s1)
     solution = {
         theta1: turret[theta1],
-        theta2: choose(folded, 0, shoulder[theta2] - triangle[alpha]),
-        theta3: triangle[elbow] - pi / 2,
+        theta2: choose(folded, 0, shoulder[theta2] - choose(no_link, 0, triangle[alpha])),
+        theta3: choose(no_link, -pi / 2, triangle[elbow] - pi / 2),
         theta5: hand[theta5],
     }
     wrist = py * cos(theta1) - px * sin(theta1) - l1 - l6
@@ -80,7 +80,11 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
         "cos(theta3) <= 0.  If the arms are equal and the wrist is on the shoulder, theta2 is "
         "free; we return 0.",
         {
-            r"\theta_3": solution[theta3],
+            r"r_{\mathrm{S}}^2": l3 + l4 + sqrt(u**2 + h**2),
+            r"r_{\mathrm{A}}^2": l3 + l4 - sqrt(u**2 + h**2),
+            r"r_{\mathrm{B}}^2": l3 - l4 + sqrt(u**2 + h**2),
+            r"r_{\mathrm{C}}^2": l4 - l3 + sqrt(u**2 + h**2),
+            r"\theta_3": triangle[elbow] - pi / 2,
             r"\alpha": triangle[alpha],
             r"\theta_2": shoulder[theta2] - alpha,
         },
@@ -105,7 +109,8 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
             "home; elbow_down: cos(theta3) <= 0.",
             "SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) "
             "and 0 is returned; equal arms folded with the wrist on the shoulder, theta2 is free "
-            "and 0 is returned; or an arm without length, whose angle is free.",
+            "and 0 is returned; an arm without length, its angle is free and theta3 = -pi/2 is "
+            "returned.",
             "Ill-conditioned where the arm is straight or folded: the angles lose half the digits "
             "there, the position does not.",
         ),

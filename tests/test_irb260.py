@@ -75,8 +75,10 @@ def wrapped(angle: np.ndarray) -> np.ndarray:
 
 
 def missed(robot, solutions, x, params=L) -> float:
-    """The largest miss of all reachable branches: metres and radians."""
+    """The largest miss of all reachable branches, metres and radians; their angles are wrapped."""
     found = np.isin(solutions.status, (OK, SINGULAR))
+    angles = solutions.q[found]
+    assert (angles > -np.pi).all() and (angles <= np.pi).all()
     error = robot.fk(np.where(found[..., None], solutions.q, 0.0), params) - x[..., None, :]
     error[..., 3] = wrapped(error[..., 3])
     return float(np.abs(error[found]).max(initial=0.0))
@@ -143,6 +145,59 @@ def test_four_distinct_branches(robot) -> None:
         for b in range(a):
             apart = np.abs(wrapped(solutions.q[:, a] - solutions.q[:, b])).max(axis=-1)
             assert apart.min() > 1e-3
+
+
+def moved(axis: str, angle: np.ndarray, shift) -> np.ndarray:
+    """Turn about a coordinate axis, then go on along the turned axes."""
+    i, j = {"x": (1, 2), "z": (0, 1)}[axis]
+    T = np.broadcast_to(np.eye(4), (*angle.shape, 4, 4)).copy()
+    T[..., i, i] = T[..., j, j] = np.cos(angle)
+    T[..., j, i] = np.sin(angle)
+    T[..., i, j] = -np.sin(angle)
+    T[..., :3, 3] = T[..., :3, :3] @ np.asarray(shift, dtype=float)
+    return T
+
+
+def by_links(q: np.ndarray, lengths=L) -> np.ndarray:
+    """x, y, z, yaw, link by link along the arm."""
+    l1, l2, l3, l4, l5, l6 = lengths
+    q1, q2, q3, q5 = np.moveaxis(q, -1, 0)
+    T = moved("z", q1, (0, l1, l2)) @ moved("x", -q2, (0, 0, l3)) @ moved("x", -q3, (0, l4, 0))
+    T = T @ moved("x", q2 + q3, (0, l6, -l5)) @ moved("z", q5, (0, 0, 0))
+    yaw = np.arctan2(T[..., 1, 0], T[..., 0, 0])
+    return np.concatenate([T[..., :3, 3], yaw[..., None]], axis=-1)
+
+
+@pytest.mark.parametrize("params", [L, EQUAL, (2.0, 0.1, 0.3, 0.9, 0.4, 1.5)])
+def test_newton_finds_no_other_solution(robot, params) -> None:
+    """From many starts, on the arm put together link by link."""
+
+    def gap(q: np.ndarray) -> np.ndarray:
+        miss = by_links(q, params) - x
+        miss[..., 3] = wrapped(miss[..., 3])
+        return miss
+
+    rng = np.random.default_rng(9)
+    x = by_links(rng.uniform(-np.pi, np.pi, (6, 1, 4)), params)
+    q = np.tile(rng.uniform(-np.pi, np.pi, (1, 60, 4)), (6, 1, 1))
+    for _ in range(60):
+        steps = 1e-6 * np.eye(4)
+        J = np.stack([wrapped(gap(q + s) - gap(q - s)) / 2e-6 for s in steps], axis=-1)
+        J = J + 1e-9 * np.eye(4)  # no start is exactly singular
+        step = np.linalg.solve(J, -gap(q)[..., None])[..., 0]
+        length = np.linalg.norm(step, axis=-1, keepdims=True)
+        q = q + step / np.maximum(1, 2 * length)
+    solved = np.abs(gap(q)).max(axis=-1) < 1e-10
+    solutions = robot.ik(x[:, 0], params)
+    reached = (solutions.status == OK)[:, None]
+    known = np.where(reached[..., None], solutions.q[:, None], 0.0)
+    apart = np.abs(wrapped(known - q[:, :, None])).max(axis=-1)
+    apart = np.where(reached, apart, np.inf)
+    assert solved.sum() > 60
+    assert apart.min(axis=-1)[solved].max() < 1e-6
+    nearest = apart.argmin(axis=-1)
+    for k in range(6):
+        assert set(nearest[k][solved[k]]) == set(np.flatnonzero(solutions.status[k] == OK))
 
 
 @pytest.mark.parametrize("params", [L, EQUAL])
@@ -214,12 +269,14 @@ def test_impossible_input(robot) -> None:
 
 
 def test_arms_without_length(robot) -> None:
-    for l3, l4 in [(0.0, 0.7), (0.7, 0.0), (0.0, 0.0)]:
+    for l3, l4, theta2 in [(0.0, 0.7, 0.4), (0.7, 0.0, 0.4), (0.7, 1e-17, 0.6), (0.0, 0.0, 0.4)]:
         params = (0.1, 0.6, l3, l4, 0.2, 0.1)
-        x = robot.fk([0.3, 0.4, 0.5, 0.6], params)
+        x = robot.fk([0.3, theta2, 0.5, 0.6], params)
         solutions = robot.ik(x, params)
         assert (solutions.status[:2] == SINGULAR).all()
         assert missed(robot, solutions, x, params) < 1e-15
+        np.testing.assert_array_equal(solutions.q[:2, 2], -np.pi / 2)
+        np.testing.assert_array_equal(solutions.q[0], solutions.q[1])
 
 
 def test_jacobians_by_differences(robot, q) -> None:
@@ -271,6 +328,15 @@ def test_motors(robot, q) -> None:
 def test_virtual_joint(robot, q) -> None:
     np.testing.assert_allclose(wrapped(robot.joint4(q) + q[:, 1] + q[:, 2]), 0, atol=1e-15)
     np.testing.assert_allclose(robot.pose(q)[:, :3, 2], np.tile([0, 0, 1], (300, 1)), atol=0)
+
+
+def test_virtual_joint_lies_in_the_half_open_interval(robot) -> None:
+    q = np.zeros((5, 4))
+    q[:, 1], q[:, 2] = [np.pi, -np.pi, np.pi / 2, 3.0, -3.0], [0.0, 0.0, np.pi / 2, 3.0, -3.0]
+    theta4 = robot.joint4(q)
+    assert (theta4 > -np.pi).all() and (theta4 <= np.pi).all()
+    np.testing.assert_allclose(theta4[:3], np.pi, atol=1e-15)
+    np.testing.assert_allclose(theta4[3:], [2 * np.pi - 6, 6 - 2 * np.pi], atol=1e-15)
 
 
 def test_point_velocity(robot, q) -> None:

@@ -1261,8 +1261,8 @@ const cf_function cf_functions[] = {
       "    >= 0, as at home; elbow_down: cos(theta3) <= 0.\n"
       "SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is\n"
       "    determined) and 0 is returned; equal arms folded with the wrist on the\n"
-      "    shoulder, theta2 is free and 0 is returned; or an arm without length, whose\n"
-      "    angle is free.\n"
+      "    shoulder, theta2 is free and 0 is returned; an arm without length, its angle\n"
+      "    is free and theta3 = -pi/2 is returned.\n"
       "Ill-conditioned where the arm is straight or folded: the angles lose half the\n"
       "    digits there, the position does not.\n"
       ,

@@ -16,7 +16,7 @@
  *   determinant: 4 add, 7 multiply, 2 sincos
  *   singularities: 4 add, 4 multiply, 2 sincos
  *   point_velocity: 11 add, 20 multiply, 3 sincos
- *   ik: 45 add, 83 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
+ *   ik: 45 add, 89 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
  *   workspace_section: 1 compare and select, 4 add
  *   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
  *   workspace_contains: 38 compare and select, 17 add, 6 multiply, 3 sqrt
@@ -774,15 +774,15 @@ CF_INLINE void irb260_point_velocity_kernel(const irb260_params *params, const r
     const real_t s3 = sines[2];
     const real_t c3 = cosines[2];
     const real_t s23 = s2 * c3 + c2 * s3;
-    const real_t t1 = theta3_dot * l4;
-    const real_t t2 = s23 * t1;
-    const real_t t3 = theta2_dot * (l3 * c2 - l4 * s23);
+    const real_t t1 = theta2_dot * (l3 * c2 - l4 * s23);
+    const real_t t2 = theta3_dot * l4;
+    const real_t t3 = s23 * t2;
     const real_t c23 = c2 * c3 - s2 * s3;
     const real_t t4 = l3 * s2 + l4 * c23;
     const real_t t5 = theta1_dot * (l1 + l6 + t4);
-    v[0] = s1 * t2 - s1 * t3 - c1 * t5;
-    v[1] = -(c1 * t2 - c1 * t3 + s1 * t5);
-    v[2] = -(theta2_dot * t4 + c23 * t1);
+    v[0] = -(s1 * t1 - s1 * t3 + c1 * t5);
+    v[1] = c1 * t1 - c1 * t3 - s1 * t5;
+    v[2] = -(theta2_dot * t4 + c23 * t2);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -866,70 +866,71 @@ CF_INLINE void irb260_ik_kernel(const irb260_params *params, const real_t x[4],
     const real_t t19 = cf_poison(invalid | unreachable);
     const real_t t20 = t5 + t19;
     const int folded = reach <= t4;
+    const real_t t21 = cf_atan2(-t14, h);
+    const int no_link = l3 * l4 <= CLOSEDFORM_VANISHING * (t1 * t1);
     const real_t rA = cf_sqrt(cf_max(t15, CLOSEDFORM_C(0.0)));
     const real_t rC = cf_sqrt(cf_max(t18, CLOSEDFORM_C(0.0)));
     const real_t rS = cf_sqrt(t1 + reach);
     const real_t rB = cf_sqrt(cf_max(t17, CLOSEDFORM_C(0.0)));
-    const real_t t21 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
-    const real_t t22 = cf_atan2(-t14, h);
-    const real_t t23 = cf_select(folded, CLOSEDFORM_C(0.0), t21 + t22);
-    const real_t t24 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rS, rC * rB);
-    const real_t t25 = cf_wrap(t24 - CLOSEDFORM_C(1.5707963267948966));
-    const real_t t26 = c_psi * s_turret_back_elbow_up;
-    const real_t t27 = s_psi * s_turret_back_elbow_up;
-    const real_t t28 = cf_atan2(s_psi * c_turret + t26, c_psi * c_turret - t27);
-    const real_t t29 = cf_wrap(t28) + t19;
-    const real_t t30 = cf_select(folded, CLOSEDFORM_C(0.0), t21 - t22);
-    const real_t t31 = cf_wrap(-(CLOSEDFORM_C(1.5707963267948966) + t24));
+    const real_t t22 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
+    const real_t t23 = cf_select(no_link, CLOSEDFORM_C(0.0), t22);
+    const real_t t24 = cf_select(folded, CLOSEDFORM_C(0.0), t21 + t23);
+    const real_t t25 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rS, rC * rB);
+    const real_t t26 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t25);
+    const real_t t27 = c_psi * s_turret_back_elbow_up;
+    const real_t t28 = s_psi * s_turret_back_elbow_up;
+    const real_t t29 = cf_atan2(s_psi * c_turret + t27, c_psi * c_turret - t28);
+    const real_t t30 = cf_wrap(t29) + t19;
+    const real_t t31 = cf_select(folded, CLOSEDFORM_C(0.0), t21 - t23);
+    const real_t t32 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t25);
     const real_t c_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(1.0), -py);
-    const real_t t32 = cf_atan2(s_turret_back_elbow_up, c_turret_back_elbow_up);
-    const real_t t33 = r + t2;
-    const real_t reach_back_elbow_up = cf_sqrt(t13 + t33 * t33);
-    const real_t t34 = t1 - reach_back_elbow_up;
-    const real_t t35 = t16 + reach_back_elbow_up;
-    const real_t t36 = reach_back_elbow_up - t16;
-    const int unreachable_2 = !((t12 <= t34) & (t12 <= t35) & (t12 <= t36));
-    const real_t t37 = cf_poison(invalid | unreachable_2);
-    const real_t t38 = cf_wrap(t32) + t37;
+    const real_t t33 = cf_atan2(s_turret_back_elbow_up, c_turret_back_elbow_up);
+    const real_t t34 = r + t2;
+    const real_t reach_back_elbow_up = cf_sqrt(t13 + t34 * t34);
+    const real_t t35 = t1 - reach_back_elbow_up;
+    const real_t t36 = t16 + reach_back_elbow_up;
+    const real_t t37 = reach_back_elbow_up - t16;
+    const int unreachable_2 = !((t12 <= t35) & (t12 <= t36) & (t12 <= t37));
+    const real_t t38 = cf_poison(invalid | unreachable_2);
+    const real_t t39 = cf_wrap(t33) + t38;
     const int folded_back_elbow_up = reach_back_elbow_up <= t4;
-    const real_t rA_back_elbow_up = cf_sqrt(cf_max(t34, CLOSEDFORM_C(0.0)));
-    const real_t rC_back_elbow_up = cf_sqrt(cf_max(t36, CLOSEDFORM_C(0.0)));
+    const real_t t40 = cf_atan2(t34, h);
+    const real_t rA_back_elbow_up = cf_sqrt(cf_max(t35, CLOSEDFORM_C(0.0)));
+    const real_t rC_back_elbow_up = cf_sqrt(cf_max(t37, CLOSEDFORM_C(0.0)));
     const real_t rS_back_elbow_up = cf_sqrt(t1 + reach_back_elbow_up);
-    const real_t rB_back_elbow_up = cf_sqrt(cf_max(t35, CLOSEDFORM_C(0.0)));
-    const real_t t39 = cf_atan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up);
-    const real_t t40 = CLOSEDFORM_C(2.0) * t39;
-    const real_t t41 = cf_atan2(t33, h);
-    const real_t t42 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t40 + t41);
-    const real_t t43 = cf_atan2(rA_back_elbow_up * rS_back_elbow_up, rC_back_elbow_up * rB_back_elbow_up);
-    const real_t t44 = CLOSEDFORM_C(2.0) * t43;
-    const real_t t45 = cf_wrap(t44 - CLOSEDFORM_C(1.5707963267948966));
-    const real_t t46 = cf_atan2(t26 - s_psi * c_turret_back_elbow_up, t27 + c_psi * c_turret_back_elbow_up);
-    const real_t t47 = cf_wrap(-t46) + t37;
-    const real_t t48 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t40 - t41);
-    const real_t t49 = cf_wrap(-(CLOSEDFORM_C(1.5707963267948966) + t44));
-    const int no_link = l3 * l4 <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const real_t t50 = cf_status(invalid, unreachable, on_axis | folded | no_link);
-    const real_t t51 = cf_status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
+    const real_t rB_back_elbow_up = cf_sqrt(cf_max(t36, CLOSEDFORM_C(0.0)));
+    const real_t t41 = cf_atan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up);
+    const real_t t42 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * t41);
+    const real_t t43 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t40 + t42);
+    const real_t t44 = cf_atan2(rA_back_elbow_up * rS_back_elbow_up, rC_back_elbow_up * rB_back_elbow_up);
+    const real_t t45 = CLOSEDFORM_C(2.0) * t44;
+    const real_t t46 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t45);
+    const real_t t47 = cf_atan2(t27 - s_psi * c_turret_back_elbow_up, t28 + c_psi * c_turret_back_elbow_up);
+    const real_t t48 = cf_wrap(-t47) + t38;
+    const real_t t49 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t40 - t42);
+    const real_t t50 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t45);
+    const real_t t51 = cf_status(invalid, unreachable, on_axis | folded | no_link);
+    const real_t t52 = cf_status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
     q[0] = t20;
-    q[1] = cf_wrap(-t23) + t19;
-    q[2] = t25 + t19;
-    q[3] = t29;
+    q[1] = cf_wrap(-t24) + t19;
+    q[2] = cf_wrap(-t26) + t19;
+    q[3] = t30;
     q[4] = t20;
-    q[5] = cf_wrap(t30) + t19;
-    q[6] = t31 + t19;
-    q[7] = t29;
-    q[8] = t38;
-    q[9] = cf_wrap(-t42) + t37;
-    q[10] = t45 + t37;
-    q[11] = t47;
-    q[12] = t38;
-    q[13] = cf_wrap(t48) + t37;
-    q[14] = t49 + t37;
-    q[15] = t47;
-    status[0] = t50;
-    status[1] = t50;
-    status[2] = t51;
-    status[3] = t51;
+    q[5] = cf_wrap(-t31) + t19;
+    q[6] = cf_wrap(-t32) + t19;
+    q[7] = t30;
+    q[8] = t39;
+    q[9] = cf_wrap(-t43) + t38;
+    q[10] = cf_wrap(-t46) + t38;
+    q[11] = t48;
+    q[12] = t39;
+    q[13] = cf_wrap(-t49) + t38;
+    q[14] = cf_wrap(-t50) + t38;
+    q[15] = t48;
+    status[0] = t51;
+    status[1] = t51;
+    status[2] = t52;
+    status[3] = t52;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -16,7 +16,7 @@
  *   determinant: 4 add, 7 multiply, 2 sincos
  *   singularities: 4 add, 4 multiply, 2 sincos
  *   point_velocity: 11 add, 20 multiply, 3 sincos
- *   ik: 45 add, 83 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
+ *   ik: 45 add, 89 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
  *   workspace_section: 1 compare and select, 4 add
  *   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
  *   workspace_contains: 38 compare and select, 17 add, 6 multiply, 3 sqrt
@@ -195,7 +195,7 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params, const re
  *     cos(theta3) <= 0.
  * SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0 is
  *     returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
- *     returned; or an arm without length, whose angle is free.
+ *     returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.
  * Ill-conditioned where the arm is straight or folded: the angles lose half the digits there,
  *     the position does not.
  */

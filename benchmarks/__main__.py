@@ -155,7 +155,8 @@ def machine() -> str:
     cpu = platform.processor() or platform.machine()
     if info.exists():
         cpu = next(
-            (s.split(":")[1].strip() for s in info.read_text().splitlines() if "model name" in s), cpu
+            (s.split(":")[1].strip() for s in info.read_text().splitlines() if "model name" in s),
+            cpu,
         )
     gcc = subprocess.run(["gcc", "-dumpfullversion"], capture_output=True, text=True, check=False)
     return f"{cpu}, gcc {gcc.stdout.strip()}, Python {platform.python_version()}"
@@ -169,13 +170,13 @@ def main() -> int:
     parser.add_argument(
         "--only", choices=("c", "batch", "single", "inverse"), action="append", help="these tables"
     )
-    parser.add_argument("-o", "--output", type=Path, help="file to write, RESULTS.md of a whole run")
+    parser.add_argument(
+        "-o", "--output", type=Path, help="file to write, RESULTS.md of a whole run"
+    )
     arguments = parser.parse_args()
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
-    chosen = [
-        c for c in CASES if not arguments.cases or any(w in c.title for w in arguments.cases)
-    ]
+    chosen = [c for c in CASES if not arguments.cases or any(w in c.title for w in arguments.cases)]
     tables = arguments.only or ["c", "batch", "single", "inverse"]
     report = Report()
     report.write("# Benchmarks\n\nWritten by `make bench`, on one core, competitors in turns.\n")

@@ -125,7 +125,11 @@ def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     exec("\n".join(lines).replace("AXIS", "1" if layout == "planes" else "0"), scope)
     kernel = nb.njit(fastmath=False, error_model="numpy")(scope["kernel"])
     x = planes_of(rows) if layout == "planes" else rows
-    out = np.empty((len(case.expressions), len(rows)) if layout == "planes" else (len(rows), len(case.expressions)))
+    out = np.empty(
+        (len(case.expressions), len(rows))
+        if layout == "planes"
+        else (len(rows), len(case.expressions))
+    )
     p = np.array(list(case.parameters.values()))
 
     def values() -> np.ndarray:
@@ -139,11 +143,16 @@ def pytensor(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     import pytensor as pt
     import pytensor.tensor as tensor
 
-    names = {**{n: getattr(tensor, n) for n in ("sin", "cos", "sqrt", "abs")}, "atan2": tensor.arctan2}
+    names = {
+        **{n: getattr(tensor, n) for n in ("sin", "cos", "sqrt", "abs")},
+        "atan2": tensor.arctan2,
+    }
     arguments = [tensor.vector(s.name) for s in case.source.symbols]
     values = case.translate(names)(*arguments, *case.parameters.values())
     function = pt.function(arguments, [tensor.as_tensor_variable(v) for v in values])
-    planes = list(planes_of(rows)) if layout == "planes" else [np.ascontiguousarray(c) for c in rows.T]
+    planes = (
+        list(planes_of(rows)) if layout == "planes" else [np.ascontiguousarray(c) for c in rows.T]
+    )
     return lambda: function(*planes), lambda: stacked(function(*planes), len(rows))
 
 

@@ -1,2 +1,5 @@
-PEERS={}
-def compare(report, rounds): pass
+PEERS = {}
+
+
+def compare(report, rounds):
+    pass

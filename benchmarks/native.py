@@ -123,7 +123,7 @@ def symforce(case: Case) -> str:
         '\nextern "C" __attribute__((noinline)) void evaluate(const double *in, double *out)\n{\n'
         f"    Eigen::Matrix<double, {n}, 1> x = Eigen::Map<const Eigen::Matrix<double, {n}, 1>>(in);\n"
         f"    Eigen::Matrix<double, {m}, 1> y;\n    sym::Peer<double>(x, &y);\n"
-        f"    Eigen::Map<Eigen::Matrix<double, {m}, 1>>(out) = y;\n}}\n"
+        f"    for (int i = 0; i < {m}; ++i) out[i] = y[i];\n}}\n"
     )
 
 

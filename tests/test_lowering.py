@@ -10,12 +10,14 @@ from hypothesis import strategies as st
 from sympy import cos, sin, sqrt
 
 from closedform.derivation import Derivation, Paper
-from closedform.functions import real
+from closedform.frames import exponential
+from closedform.functions import Function, Program, array, real
 from closedform.lower import Lowered, lower
 from closedform.lower.graph import Graph, reachable
 
 x, y, z = (real(n) for n in "xyz")
 SYMBOLS = (x, y, z)
+EMPTY = Derivation("test", "", Paper("", "", ()), "")
 
 
 def lowered(*exprs: sp.Expr) -> Lowered:
@@ -151,3 +153,32 @@ def test_long_products_stay_linear() -> None:
     terms = [sin(a) * b * c * k for k, (a, b, c) in enumerate([(x, y, z), (y, z, x)] * 20, 1)]
     program = lowered(sum(terms), sum(terms[::2]))
     assert len(list(reachable(program.roots))) < 200
+
+
+def jacobian_of_general_twists(n: int) -> Function:
+    """The spatial Jacobian of n joints whose axes are anything, frame by frame."""
+    program = Program()
+    q, dimensions, columns, T = [], [], [], sp.eye(4)
+    for i in range(n):
+        angle = real(f"q{i}")
+        w, v = (sp.Matrix([real(f"{name}{i}{axis}") for axis in "xyz"]) for name in "wv")
+        spun = program.matrix(f"w{i}", T[:3, :3] * w)
+        moved = program.matrix(f"v{i}", T[:3, :3] * v + T[:3, 3].cross(spun))
+        motion = program.matrix(f"E{i}", exponential(sp.Matrix([*v, *w]), angle))
+        T = program.matrix(f"T{i}", T * motion)
+        q.append(angle)
+        dimensions += [*v, *w]
+        columns.append(sp.Matrix([*moved, *spun]))
+    inputs = (array("q", sp.Matrix(q)), array("axes", sp.Matrix(dimensions)))
+    output = array("J", sp.Matrix.hstack(*columns))
+    return Function("jacobian", "", inputs, (output,), body=tuple(program.body))
+
+
+def test_long_chains_stay_linear() -> None:
+    """Each joint of a chain costs the same number of operations, and no frame is multiplied out."""
+    operations = [
+        sum(lower(jacobian_of_general_twists(n), EMPTY).operations().values()) for n in (6, 12, 18)
+    ]
+    first, second = operations[1] - operations[0], operations[2] - operations[1]
+    assert first == second
+    assert second <= 6 * 180

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import re
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -37,7 +37,23 @@ CALLS = {
     "status": "cf_status",
     "select": "cf_select",
 }
-LOCALS = frozenset(("params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start"))
+LOCALS = frozenset(
+    [
+        "params",
+        "local",
+        "lanes",
+        "sines",
+        "cosines",
+        "n",
+        "i",
+        "length",
+        "start",
+        "vector",
+        "opposite",
+        "adjacent",
+        "angles",
+    ]
+)
 RESERVED = LOCALS | frozenset(
     [
         "auto",
@@ -79,7 +95,48 @@ RESERVED = LOCALS | frozenset(
 
 
 class CPrinter(Printer):
-    """C code of a kernel over scalars."""
+    """C code of a kernel over scalars.
+
+    The ``atan2`` whose arguments need no other ``atan2`` are taken together: all lines above
+    ``head`` come first, then ``arctangents`` (pairs of y and x), then the rest.  So one call can
+    evaluate them in one vector.
+    """
+
+    def __init__(self, lowered: Lowered, reserved: Iterable[str] = ()):
+        super().__init__(lowered, reserved)
+        self.arctangents: list[tuple[str, str]] = []
+        self.head = 0
+        self._arguments = self._before_arctangents()
+
+    def _before_arctangents(self) -> set[int]:
+        """The nodes that need no ``atan2``."""
+        found: set[int] = set()
+        for node in self.lowered.schedule():
+            if node.op != "atan2" and all(a.id in found for a in node.args):
+                found.add(node.id)
+        return found
+
+    def _together(self, node: Node) -> bool:
+        return node.op == "atan2" and all(a.id in self._arguments for a in node.args)
+
+    def schedule(self) -> list[Node]:
+        """Arguments of the joint ``atan2`` first, these next, then what needs them."""
+        nodes = self.lowered.schedule()
+        if sum(map(self._together, nodes)) < 2:
+            self._arguments = set()
+            return nodes
+        return sorted(
+            nodes, key=lambda n: 0 if n.id in self._arguments else 1 if self._together(n) else 2
+        )
+
+    def render(self, node: Node) -> Text:
+        if not self._together(node):
+            return super().render(node)
+        if not self.arctangents:
+            self.head = len(self.lines)
+        y, x = (self.text[a.id].code for a in node.args)
+        self.arctangents.append((y, x))
+        return Text(f"angles[{len(self.arctangents) - 1}]")
 
     def constant(self, text: str) -> Text:
         return Text(f"CLOSEDFORM_C({text})")
@@ -97,6 +154,8 @@ class CPrinter(Printer):
 
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
         """Comparisons of calls get a name: clang warns of ``&`` between them, names are int."""
+        if self._together(node):
+            return False
         compares_calls = node.op in ("lt", "le", "eq") and "cf_" in text.code
         return compares_calls or super().deserves_name(node, text, uses)
 
@@ -201,6 +260,11 @@ def _occurs(name: str, lines: Sequence[str]) -> bool:
     return any(re.search(rf"\b{name}\b", line) for line in lines)
 
 
+def _lanes(n: int) -> int:
+    """``n`` numbers, and zeros up to whole vectors: 2, 4 or a multiple of 8."""
+    return 1 << (n - 1).bit_length() if n <= LANES else -(-n // LANES) * LANES
+
+
 class _Emission:
     """Collects the strings of one function."""
 
@@ -270,20 +334,23 @@ class _Emission:
             single=_folded([params, *(a.single for a in arrays)]),
             batch=_folded(["size_t n", params, *(a.batch for a in arrays)]),
             kernel=_folded(
-                [params] * bool(self.parameters)
+                ["const int vector"] * bool(self.printer.arctangents)
+                + [params] * bool(self.parameters)
                 + [a.single for a in self.raw]
                 + [f"const real_t *{name}" for name in trig]
                 + [f"real_t {o.name}[{o.size}]" for o in self.outputs]
             ),
             kernel_lines=tuple(kernel_lines),
             kernel_call_single=", ".join(
-                shared
+                ["1"] * bool(self.printer.arctangents)
+                + shared
                 + [a.name for a in self.raw]
                 + trig
                 + [f"{o.name}_real" if o in narrowed else o.name for o in self.outputs]
             ),
             kernel_call_batch=", ".join(
-                ["&local"] * bool(self.parameters)
+                ["0"] * bool(self.printer.arctangents)
+                + ["&local"] * bool(self.parameters)
                 + [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)]
             ),
             copies_params=bool(self.parameters),
@@ -324,15 +391,39 @@ class _Emission:
             for op, name, array in (("sin", sine, "sines"), ("cos", cosine, "cosines")):
                 if (op, angle.id) in needed:
                     lines.append(f"const real_t {name} = {array}[{k}];")
-        for line in self.printer.lines:
+        for k, line in enumerate(self.printer.lines):
+            if k == self.printer.head:
+                lines += self._arctangents()
             ctype = "int" if line.boolean else "real_t"
             lines.append(f"const {ctype} {line.name} = {line.code};")
+        if self.printer.head == len(self.printer.lines):
+            lines += self._arctangents()
         for result, values in zip(self.program.results, self.values, strict=True):
             for k, value in enumerate(values):
                 if result.kind == "bool":
                     value = f"({value}) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0)"
                 lines.append(f"{result.name}[{k}] = {value};")
         return lines
+
+    def _arctangents(self) -> list[str]:
+        """All angles at once: in one vector for a single posture, one by one in a batch."""
+        pairs = self.printer.arctangents
+        if not pairs:
+            return []
+        n = _lanes(len(pairs))
+        one_by_one = [
+            f"    angles[{k}] = cf_atan2(opposite[{k}], adjacent[{k}]);" for k in range(len(pairs))
+        ]
+        return [
+            f"const real_t opposite[{n}] = {{ {', '.join(y for y, _ in pairs)} }};",
+            f"const real_t adjacent[{n}] = {{ {', '.join(x for _, x in pairs)} }};",
+            f"real_t angles[{n}];",
+            "if (vector) {",
+            f"    cf_atan2_block({n}, opposite, adjacent, angles);",
+            "} else {",
+            *one_by_one,
+            "}",
+        ]
 
     def _angle(self, node: Node) -> tuple[str, CArray | None, int, int]:
         """The input, its place and the divisor of an angle."""
@@ -345,9 +436,7 @@ class _Emission:
 
     @property
     def _n_lanes(self) -> int:
-        """The angles, and zeros up to whole vectors: 2, 4 or a multiple of 8 numbers."""
-        n = len(self.program.angles)
-        return 1 << (n - 1).bit_length() if n <= LANES else -(-n // LANES) * LANES
+        return _lanes(len(self.program.angles))
 
     def _lanes(self) -> list[str]:
         angles = []

@@ -93,7 +93,7 @@ class Printer:
 
     def run(self) -> list[list[str]]:
         """Fill ``lines`` and return the code of every entry of every result."""
-        schedule = self.lowered.schedule()
+        schedule = self.schedule()
         uses = Counter(a.id for n in schedule for a in n.args)
         uses.update(n.id for n in self.lowered.roots)
         for node in schedule:
@@ -105,6 +105,10 @@ class Printer:
                 text = Text(name)
             self.text[node.id] = text
         return [[self.text[n.id].code for n in r.nodes] for r in self.lowered.results]
+
+    def schedule(self) -> list[Node]:
+        """The order in which nodes are printed, operands before operators."""
+        return self.lowered.schedule()
 
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
         if node.op in ("const", "input", "nan", "tolerance", "sin", "cos", "true", "false"):

@@ -188,10 +188,19 @@ def strip_sign(node: Node) -> Node:
     return node.args[0] if node.op == "neg" else node
 
 
-def reachable(roots: Iterable[Node], stop: Container[str] = ()) -> Iterator[Node]:
+def operands_of(node: Node) -> tuple[Node, ...]:
+    return node.args
+
+
+def reachable(
+    roots: Iterable[Node],
+    stop: Container[str] = (),
+    operands: Callable[[Node], tuple[Node, ...]] = operands_of,
+) -> Iterator[Node]:
     """Every node below ``roots`` once, operands before operators, without recursion.
 
-    The operands of the operators in ``stop`` are not visited.
+    The operands of the operators in ``stop`` are not visited; ``operands`` may stand in for those
+    that a node has itself.
     """
     seen: set[int] = set()
     stack: list[tuple[Node, bool]] = [(root, False) for root in reversed(list(roots))]
@@ -204,12 +213,16 @@ def reachable(roots: Iterable[Node], stop: Container[str] = ()) -> Iterator[Node
             stack.append((node, True))
             if node.op in stop:
                 continue
-            stack.extend((a, False) for a in reversed(node.args) if a.id not in seen)
+            stack.extend((a, False) for a in reversed(operands(node)) if a.id not in seen)
 
 
-def rebuild(roots: Sequence[Node], change: Callable[[Node, tuple[Node, ...]], Node]) -> list[Node]:
+def rebuild(
+    roots: Sequence[Node],
+    change: Callable[[Node, tuple[Node, ...]], Node],
+    operands: Callable[[Node], tuple[Node, ...]] = operands_of,
+) -> list[Node]:
     """The images of ``roots`` when every node is replaced, operands first, by ``change``."""
     image: dict[int, Node] = {}
-    for node in reachable(roots):
-        image[node.id] = change(node, tuple(image[a.id] for a in node.args))
+    for node in reachable(roots, operands=operands):
+        image[node.id] = change(node, tuple(image[a.id] for a in operands(node)))
     return [image[root.id] for root in roots]

@@ -6,11 +6,17 @@ occurs most often is taken out first, then the next, until no pair occurs twice.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+import heapq
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 
 from closedform.lower.graph import Graph, Node, reachable, rebuild, strip_sign
+
+Operand = tuple[int, int]
+"""The id of an operand without its sign, and the sign."""
+Pair = tuple[int, int, int]
+"""The ids of two operands, the lower first, and their relative sign."""
 
 
 def share(graph: Graph, roots: Sequence[Node]) -> list[Node]:
@@ -36,51 +42,87 @@ def _turn_differences(graph: Graph, roots: list[Node]) -> list[Node]:
 
 
 def _take_out(graph: Graph, roots: list[Node], op: str) -> list[Node]:
-    while True:
-        nodes = [n for n in reachable(roots) if n.op == op and len(n.args) >= 2]
-        if not any(len(n.args) > 2 for n in nodes):
-            return roots
-        by_id = {strip_sign(a).id: strip_sign(a) for n in nodes for a in n.args}
-        counts: Counter[tuple[int, int, int]] = Counter()
+    """One operator's common pairs. The pairs of all nodes are kept in a table and in a heap, so
+    that a part taken out costs the nodes it occurs in, not the whole graph."""
+    table = _Table(n for n in reachable(roots) if n.op == op)
+    while pair := table.most_frequent():
+        first, second = (table.node[i] for i in pair[:2])
+        part = _make(graph, op, [first, second if pair[2] > 0 else graph.neg(second)])
+        table.replace(pair, part)
+
+    def change(node: Node, args: tuple[Node, ...]) -> Node:
+        return _make(graph, op, args) if node.id in table.operands else _same(graph, node, args)
+
+    def operands(node: Node) -> tuple[Node, ...]:
+        if node.id not in table.operands:
+            return node.args
+        listed = ((table.node[i], sign) for i, sign in table.operands[node.id])
+        return tuple(graph.neg(n) if sign < 0 else n for n, sign in listed)
+
+    return rebuild(roots, change, operands)
+
+
+class _Table:
+    """The operands of every sum (or product), and for each pair of them the nodes that have it."""
+
+    def __init__(self, nodes: Iterable[Node]):
+        self.node: dict[int, Node] = {}
+        self.operands: dict[int, list[Operand]] = {}
+        self.holders: defaultdict[Pair, dict[int, None]] = defaultdict(dict)
+        self.heap: list[tuple[int, int, int, int]] = []
         for node in nodes:
-            counts.update(set(_pairs(node)))
-        first, second, sign = max(counts, key=lambda p: (counts[p], -p[0], -p[1], p[2]))
-        if counts[first, second, sign] < 2:
-            return roots
-        pair = (first, second, sign)
-        a, b = by_id[first], by_id[second]
-        part = _make(graph, op, [a, b if sign > 0 else graph.neg(b)])
+            self._enter(node)
+        for pair in self.holders:
+            self._push(pair)
 
-        def change(
-            node: Node,
-            args: tuple[Node, ...],
-            pair: tuple[int, int, int] = pair,
-            part: Node = part,
-        ) -> Node:
-            if node.op == op and len(node.args) > 2 and pair in _pairs(node):
-                return _replace(graph, node, pair, part)
-            return _same(graph, node, args)
+    def _enter(self, node: Node) -> None:
+        self.node[node.id] = node
+        self.node.update((strip_sign(a).id, strip_sign(a)) for a in node.args)
+        signed = [(strip_sign(a).id, -1 if a.op == "neg" else 1) for a in node.args]
+        self.operands[node.id] = signed
+        for pair in _pairs(signed):
+            self.holders[pair][node.id] = None
 
-        roots = rebuild(roots, change)
+    def _push(self, pair: Pair) -> None:
+        if (count := len(self.holders[pair])) > 1:
+            heapq.heappush(self.heap, (-count, pair[0], pair[1], -pair[2]))
+
+    def most_frequent(self) -> Pair | None:
+        """The pair in the most nodes that is worth taking out, the oldest of several."""
+        while self.heap:
+            count, first, second, opposite = heapq.heappop(self.heap)
+            pair = (first, second, -opposite)
+            holders = self.holders[pair]
+            if len(holders) == -count and any(len(self.operands[h]) > 2 for h in holders):
+                return pair
+        return None
+
+    def replace(self, pair: Pair, part: Node) -> None:
+        """``part`` instead of ``pair`` wherever that stands among more than two operands."""
+        changed: set[Pair] = set()
+        for holder in [h for h in self.holders[pair] if len(self.operands[h]) > 2]:
+            signed = self.operands[holder]
+            for old in _pairs(signed):
+                self.holders[old].pop(holder, None)
+                changed.add(old)
+            first = next(o for o in signed if o[0] == pair[0])
+            rest = list(signed)
+            rest.remove(first)
+            rest.remove((pair[1], first[1] * pair[2]))
+            self.operands[holder] = [(part.id, first[1]), *rest]
+            for new in _pairs(self.operands[holder]):
+                self.holders[new][holder] = None
+                changed.add(new)
+        if part.id not in self.operands:
+            self._enter(part)
+        for pair in sorted(changed):
+            self._push(pair)
 
 
-def _pairs(node: Node) -> list[tuple[int, int, int]]:
+def _pairs(signed: Sequence[Operand]) -> Iterator[Pair]:
     """Unordered pairs of operands with their relative sign."""
-    found = []
-    signed = [(strip_sign(a).id, -1 if a.op == "neg" else 1) for a in node.args]
     for (i, si), (j, sj) in combinations(signed, 2):
-        low, high = (i, j) if i <= j else (j, i)
-        found.append((low, high, si * sj))
-    return found
-
-
-def _replace(graph: Graph, node: Node, pair: tuple[int, int, int], part: Node) -> Node:
-    rest = list(node.args)
-    first = next(a for a in rest if strip_sign(a).id == pair[0])
-    rest.remove(first)
-    second = next(a for a in rest if strip_sign(a).id == pair[1])
-    rest.remove(second)
-    return _make(graph, node.op, [graph.neg(part) if first.op == "neg" else part, *rest])
+        yield (i, j, si * sj) if i <= j else (j, i, si * sj)
 
 
 def _make(graph: Graph, op: str, args: Sequence[Node]) -> Node:

@@ -309,6 +309,14 @@ CF_INLINE real_t cf_atan2(real_t y, real_t x)
     return cf_copysign(high + (offset + right_angles * CF_PIO2_LO), y);
 }
 
+/* atan2 of n pairs; the arrays must not overlap. With a constant n they become vectors. */
+CF_INLINE void cf_atan2_block(size_t n, const real_t *CF_RESTRICT y, const real_t *CF_RESTRICT x,
+                              real_t *CF_RESTRICT angle)
+{
+    for (size_t i = 0; i < n; ++i)
+        angle[i] = cf_atan2(y[i], x[i]);
+}
+
 /* The sum or difference of two angles, in [-2 pi, 2 pi], brought to (-CF_PI, CF_PI]. */
 CF_INLINE real_t cf_wrap(real_t angle)
 {

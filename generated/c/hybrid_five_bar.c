@@ -126,9 +126,9 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
     }
 }
 
-CF_INLINE void hybrid_five_bar_passive_angles_kernel(const hybrid_five_bar_params *params, const real_t
-    q[3], const real_t *sines, const real_t *cosines,
-    real_t theta[4])
+CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int vector, const hybrid_five_bar_params
+    *params, const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t theta[4])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -165,16 +165,23 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const hybrid_five_bar_param
     const int t15 = t14 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int failed = !(t15 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
     const real_t t16 = cf_poison(failed);
-    const real_t t17 = cf_wrap(-cf_atan2(DP_r_right_of_CD, CP_y)) + t16;
     const real_t DP_r = t6 + t10;
     const real_t CP_y_right_of_CD = t11 - t12;
-    const real_t t18 = cf_wrap(cf_atan2(DP_r, -CP_y_right_of_CD)) + t16;
-    const real_t t19 = cf_wrap(-cf_atan2(DP_r, CP_y_right_of_CD)) + t16;
-    const real_t t20 = cf_wrap(cf_atan2(DP_r_right_of_CD, -CP_y)) + t16;
-    theta[0] = t17;
-    theta[1] = t18;
-    theta[2] = t19;
-    theta[3] = t20;
+    const real_t opposite[4] = { DP_r_right_of_CD, DP_r, DP_r, DP_r_right_of_CD };
+    const real_t adjacent[4] = { CP_y, -CP_y_right_of_CD, CP_y_right_of_CD, -CP_y };
+    real_t angles[4];
+    if (vector) {
+        cf_atan2_block(4, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+        angles[2] = cf_atan2(opposite[2], adjacent[2]);
+        angles[3] = cf_atan2(opposite[3], adjacent[3]);
+    }
+    theta[0] = cf_wrap(-angles[0]) + t16;
+    theta[1] = cf_wrap(angles[1]) + t16;
+    theta[2] = cf_wrap(-angles[2]) + t16;
+    theta[3] = cf_wrap(angles[3]) + t16;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -184,7 +191,7 @@ void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params, const 
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_block(2, lanes, sines, cosines);
-    hybrid_five_bar_passive_angles_kernel(params, q, sines, cosines, theta);
+    hybrid_five_bar_passive_angles_kernel(1, params, q, sines, cosines, theta);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -204,7 +211,7 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t theta_i[4];
-            hybrid_five_bar_passive_angles_kernel(&local, q_i, sines_i, cosines_i, theta_i);
+            hybrid_five_bar_passive_angles_kernel(0, &local, q_i, sines_i, cosines_i, theta_i);
             theta[start + i] = theta_i[0];
             theta[theta_stride + start + i] = theta_i[1];
             theta[2 * theta_stride + start + i] = theta_i[2];
@@ -377,14 +384,14 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_para
     const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t17 = t6 * height;
     const real_t CP_y = t16 + t17;
-    const real_t CP_y_right_of_CD = t16 - t17;
     const real_t DP_r = t7 + t11;
+    const real_t CP_y_right_of_CD = t16 - t17;
     B[0] = L2 * (C_r - DP_r_right_of_CD) + t15;
-    B[1] = -(C_r * CP_y + C_y * DP_r_right_of_CD) + t15;
-    B[2] = D_r * CP_y_right_of_CD + t2 * DP_r + t15;
+    B[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t15;
+    B[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t15;
     B[3] = L2 * (C_r - DP_r) + t15;
-    B[4] = -(C_r * CP_y_right_of_CD + C_y * DP_r) + t15;
-    B[5] = D_r * CP_y + t2 * DP_r_right_of_CD + t15;
+    B[4] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t15;
+    B[5] = t2 * DP_r_right_of_CD + D_r * CP_y + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -470,38 +477,38 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *par
     const real_t t15 = cf_poison(failed);
     const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t17 = t6 * height;
-    const real_t CP_y = t16 + t17;
-    const real_t t18 = C_r * CP_y + C_y * DP_r_right_of_CD;
     const real_t CP_y_right_of_CD = t16 - t17;
-    const real_t t19 = CP_y_right_of_CD * c1;
+    const real_t CP_y = t16 + t17;
+    const real_t t18 = C_y * DP_r_right_of_CD + C_r * CP_y;
+    const real_t t19 = CP_y_right_of_CD * t18;
     const real_t side = distance * height;
     const real_t DP_r = t7 + t11;
-    const real_t along_d = D_r * CP_y_right_of_CD + t2 * DP_r;
-    const real_t t20 = CP_y * c1;
+    const real_t along_d = t2 * DP_r + D_r * CP_y_right_of_CD;
+    const real_t t20 = CP_y * along_d;
     const real_t t21 = CLOSEDFORM_C(0.0) + t15;
-    const real_t t22 = CP_y_right_of_CD * s1;
-    const real_t t23 = CP_y * s1;
     const real_t P_r_right_of_CD = C_r - DP_r;
-    const real_t t24 = C_r * CP_y_right_of_CD + C_y * DP_r;
-    const real_t along_d_right_of_CD = D_r * CP_y + t2 * DP_r_right_of_CD;
+    const real_t t22 = C_y * DP_r + C_r * CP_y_right_of_CD;
+    const real_t t23 = CP_y * t22;
+    const real_t along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y;
+    const real_t t24 = CP_y_right_of_CD * along_d_right_of_CD;
     J[0] = P_r * s1 + t15;
-    J[1] = t18 * t19 / side + t15;
-    J[2] = -(along_d * t20 / side) + t15;
+    J[1] = c1 * t19 / side + t15;
+    J[2] = -(c1 * t20 / side) + t15;
     J[3] = t21;
     J[4] = -(DP_r * t18 / side) + t15;
     J[5] = DP_r_right_of_CD * along_d / side + t15;
     J[6] = P_r * c1 + t15;
-    J[7] = -(t18 * t22 / side) + t15;
-    J[8] = along_d * t23 / side + t15;
+    J[7] = -(s1 * t19 / side) + t15;
+    J[8] = s1 * t20 / side + t15;
     J[9] = s1 * P_r_right_of_CD + t15;
-    J[10] = -(t24 * t20 / side) + t15;
-    J[11] = along_d_right_of_CD * t19 / side + t15;
+    J[10] = -(c1 * t23 / side) + t15;
+    J[11] = c1 * t24 / side + t15;
     J[12] = t21;
-    J[13] = DP_r_right_of_CD * t24 / side + t15;
+    J[13] = DP_r_right_of_CD * t22 / side + t15;
     J[14] = -(DP_r * along_d_right_of_CD / side) + t15;
     J[15] = c1 * P_r_right_of_CD + t15;
-    J[16] = t24 * t23 / side + t15;
-    J[17] = -(along_d_right_of_CD * t22 / side) + t15;
+    J[16] = s1 * t23 / side + t15;
+    J[17] = -(s1 * t24 / side) + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -593,18 +600,18 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *
     const real_t t12 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t13 = t6 * height;
     const real_t CP_y = t12 + t13;
-    const real_t t14 = (C_r - DP_r_right_of_CD) * (C_r * CP_y + C_y * DP_r_right_of_CD);
-    const real_t CP_y_right_of_CD = t12 - t13;
+    const real_t t14 = (C_r - DP_r_right_of_CD) * (C_y * DP_r_right_of_CD + C_r * CP_y);
     const real_t DP_r = t7 + t11;
+    const real_t CP_y_right_of_CD = t12 - t13;
     const real_t side = distance * height;
-    const real_t t15 = t14 * (D_r * CP_y_right_of_CD + t2 * DP_r) / side;
+    const real_t t15 = t14 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side;
     const int t16 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t17 = t16 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t18 = t17 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int failed = !(t18 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
     const real_t t19 = cf_poison(failed);
-    const real_t t20 = (C_r - DP_r) * (C_r * CP_y_right_of_CD + C_y * DP_r);
-    const real_t t21 = t20 * (D_r * CP_y + t2 * DP_r_right_of_CD) / side;
+    const real_t t20 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
+    const real_t t21 = t20 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
     det[0] = -t15 + t19;
     det[1] = t21 + t19;
 }
@@ -805,8 +812,9 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
     }
 }
 
-CF_INLINE void hybrid_five_bar_ik_kernel(const hybrid_five_bar_params *params, const real_t
-    x[3], real_t q[24], real_t status[8])
+CF_INLINE void hybrid_five_bar_ik_kernel(const int vector, const hybrid_five_bar_params
+    *params, const real_t x[3], real_t q[24], real_t
+    status[8])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -818,63 +826,74 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const hybrid_five_bar_params *params, c
     const real_t t1 = L1 + L2;
     const real_t t2 = CLOSEDFORM_VANISHING * (L0 + t1);
     const int on_axis = r <= t2;
-    const real_t t3 = cf_select(on_axis, CLOSEDFORM_C(0.0), cf_atan2(z, -x_2));
-    const int t4 = cf_is_finite(x_2) & cf_is_finite(y) & cf_is_finite(z);
-    const int t5 = t4 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int invalid = !(t6 & (CLOSEDFORM_C(0.0) <= L2));
-    const real_t t7 = -(CLOSEDFORM_FEASIBILITY * t1);
-    const real_t t8 = r * r;
-    const real_t reach_c = cf_sqrt(t8 + y * y);
-    const real_t t9 = t1 - reach_c;
-    const real_t t10 = L1 - L2;
-    const real_t t11 = reach_c + t10;
-    const real_t t12 = reach_c - t10;
-    const real_t t13 = y - L0;
-    const real_t reach_d = cf_sqrt(t8 + t13 * t13);
-    const real_t t14 = t1 - reach_d;
-    const int t15 = (t7 <= t9) & (t7 <= t11) & (t7 <= t12) & (t7 <= t14);
-    const real_t t16 = reach_d + t10;
-    const real_t t17 = reach_d - t10;
-    const int unreachable = !(t15 & (t7 <= t16) & (t7 <= t17));
-    const real_t t18 = cf_poison(invalid | unreachable);
-    const real_t t19 = cf_wrap(t3) + t18;
+    const int t3 = cf_is_finite(x_2) & cf_is_finite(y) & cf_is_finite(z);
+    const int t4 = t3 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int invalid = !(t5 & (CLOSEDFORM_C(0.0) <= L2));
+    const real_t t6 = -(CLOSEDFORM_FEASIBILITY * t1);
+    const real_t t7 = r * r;
+    const real_t reach_c = cf_sqrt(t7 + y * y);
+    const real_t t8 = t1 - reach_c;
+    const real_t t9 = L1 - L2;
+    const real_t t10 = reach_c + t9;
+    const real_t t11 = reach_c - t9;
+    const real_t t12 = y - L0;
+    const real_t reach_d = cf_sqrt(t7 + t12 * t12);
+    const real_t t13 = t1 - reach_d;
+    const int t14 = (t6 <= t8) & (t6 <= t10) & (t6 <= t11) & (t6 <= t13);
+    const real_t t15 = reach_d + t9;
+    const real_t t16 = reach_d - t9;
+    const int unreachable = !(t14 & (t6 <= t15) & (t6 <= t16));
+    const real_t t17 = cf_poison(invalid | unreachable);
     const int at_A = reach_c <= t2;
-    const real_t t20 = cf_atan2(r, y);
-    const real_t t21 = cf_sqrt(cf_max(t9, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t12, CLOSEDFORM_C(0.0)));
-    const real_t t22 = cf_sqrt(reach_c + t1) * cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0)));
-    const real_t t23 = CLOSEDFORM_C(2.0) * cf_atan2(t21, t22);
-    const real_t t24 = cf_select(at_A, CLOSEDFORM_C(0.0), t20 - t23);
-    const real_t t25 = cf_wrap(t24) + t18;
+    const real_t t18 = cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0)));
+    const real_t t19 = cf_sqrt(reach_c + t1) * cf_sqrt(cf_max(t10, CLOSEDFORM_C(0.0)));
     const int at_B = reach_d <= t2;
-    const real_t t26 = cf_atan2(r, t13);
-    const real_t t27 = cf_sqrt(cf_max(t14, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t17, CLOSEDFORM_C(0.0)));
-    const real_t t28 = cf_sqrt(reach_d + t1) * cf_sqrt(cf_max(t16, CLOSEDFORM_C(0.0)));
-    const real_t t29 = CLOSEDFORM_C(2.0) * cf_atan2(t27, t28);
-    const real_t t30 = cf_select(at_B, CLOSEDFORM_C(0.0), t26 - t29);
-    const real_t t31 = cf_wrap(t30) + t18;
-    const real_t t32 = cf_select(at_B, CLOSEDFORM_C(0.0), t26 + t29);
-    const real_t t33 = cf_wrap(t32) + t18;
-    const real_t t34 = cf_select(at_A, CLOSEDFORM_C(0.0), t20 + t23);
-    const real_t t35 = cf_wrap(t34) + t18;
-    const real_t t36 = cf_select(on_axis, CLOSEDFORM_C(0.0), cf_atan2(z, x_2));
-    const real_t t37 = cf_wrap(-t36) + t18;
-    const real_t t38 = cf_wrap(-t34) + t18;
-    const real_t t39 = cf_wrap(-t32) + t18;
-    const real_t t40 = cf_wrap(-t30) + t18;
-    const real_t t41 = cf_wrap(-t24) + t18;
-    const int t42 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
-    const real_t t43 = cf_status(invalid, unreachable, t42);
-    q[0] = t19;
-    q[1] = t25;
+    const real_t t20 = cf_sqrt(cf_max(t13, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t16, CLOSEDFORM_C(0.0)));
+    const real_t t21 = cf_sqrt(reach_d + t1) * cf_sqrt(cf_max(t15, CLOSEDFORM_C(0.0)));
+    const int t22 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
+    const real_t t23 = cf_status(invalid, unreachable, t22);
+    const real_t opposite[8] = { z, r, t18, r, t20, z };
+    const real_t adjacent[8] = { -x_2, y, t19, t12, t21, x_2 };
+    real_t angles[8];
+    if (vector) {
+        cf_atan2_block(8, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+        angles[2] = cf_atan2(opposite[2], adjacent[2]);
+        angles[3] = cf_atan2(opposite[3], adjacent[3]);
+        angles[4] = cf_atan2(opposite[4], adjacent[4]);
+        angles[5] = cf_atan2(opposite[5], adjacent[5]);
+    }
+    const real_t t24 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[0]);
+    const real_t t25 = cf_wrap(t24) + t17;
+    const real_t t26 = CLOSEDFORM_C(2.0) * angles[2];
+    const real_t t27 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[1] - t26);
+    const real_t t28 = cf_wrap(t27) + t17;
+    const real_t t29 = CLOSEDFORM_C(2.0) * angles[4];
+    const real_t t30 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[3] - t29);
+    const real_t t31 = cf_wrap(t30) + t17;
+    const real_t t32 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[3] + t29);
+    const real_t t33 = cf_wrap(t32) + t17;
+    const real_t t34 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[1] + t26);
+    const real_t t35 = cf_wrap(t34) + t17;
+    const real_t t36 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[5]);
+    const real_t t37 = cf_wrap(-t36) + t17;
+    const real_t t38 = cf_wrap(-t34) + t17;
+    const real_t t39 = cf_wrap(-t32) + t17;
+    const real_t t40 = cf_wrap(-t30) + t17;
+    const real_t t41 = cf_wrap(-t27) + t17;
+    q[0] = t25;
+    q[1] = t28;
     q[2] = t31;
-    q[3] = t19;
-    q[4] = t25;
+    q[3] = t25;
+    q[4] = t28;
     q[5] = t33;
-    q[6] = t19;
+    q[6] = t25;
     q[7] = t35;
     q[8] = t31;
-    q[9] = t19;
+    q[9] = t25;
     q[10] = t35;
     q[11] = t33;
     q[12] = t37;
@@ -889,14 +908,14 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const hybrid_five_bar_params *params, c
     q[21] = t37;
     q[22] = t41;
     q[23] = t40;
-    status[0] = t43;
-    status[1] = t43;
-    status[2] = t43;
-    status[3] = t43;
-    status[4] = t43;
-    status[5] = t43;
-    status[6] = t43;
-    status[7] = t43;
+    status[0] = t23;
+    status[1] = t23;
+    status[2] = t23;
+    status[3] = t23;
+    status[4] = t23;
+    status[5] = t23;
+    status[6] = t23;
+    status[7] = t23;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -904,7 +923,7 @@ void hybrid_five_bar_ik(const hybrid_five_bar_params *params, const real_t
     x[3], real_t q[24], uint8_t status[8])
 {
     real_t status_real[8];
-    hybrid_five_bar_ik_kernel(params, x, q, status_real);
+    hybrid_five_bar_ik_kernel(1, params, x, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -923,7 +942,7 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
             const real_t x_i[3] = { x[start + i], x[x_stride + start + i], x[2 * x_stride + start + i] };
             real_t q_i[24];
             real_t status_i[8];
-            hybrid_five_bar_ik_kernel(&local, x_i, q_i, status_i);
+            hybrid_five_bar_ik_kernel(0, &local, x_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];

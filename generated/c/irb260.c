@@ -774,15 +774,15 @@ CF_INLINE void irb260_point_velocity_kernel(const irb260_params *params, const r
     const real_t s3 = sines[2];
     const real_t c3 = cosines[2];
     const real_t s23 = s2 * c3 + c2 * s3;
-    const real_t t1 = theta2_dot * (l3 * c2 - l4 * s23);
-    const real_t t2 = theta3_dot * l4;
-    const real_t t3 = s23 * t2;
+    const real_t t1 = theta3_dot * l4;
+    const real_t t2 = s23 * t1;
+    const real_t t3 = theta2_dot * (l3 * c2 - l4 * s23);
     const real_t c23 = c2 * c3 - s2 * s3;
     const real_t t4 = l3 * s2 + l4 * c23;
     const real_t t5 = theta1_dot * (l1 + l6 + t4);
-    v[0] = -(s1 * t1 - s1 * t3 + c1 * t5);
-    v[1] = c1 * t1 - c1 * t3 - s1 * t5;
-    v[2] = -(theta2_dot * t4 + c23 * t2);
+    v[0] = s1 * t2 - s1 * t3 - c1 * t5;
+    v[1] = -(c1 * t2 - c1 * t3 + s1 * t5);
+    v[2] = -(theta2_dot * t4 + c23 * t1);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -821,9 +821,9 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params, const re
     }
 }
 
-CF_INLINE void irb260_ik_kernel(const irb260_params *params, const real_t x[4],
-    const real_t *sines, const real_t *cosines, real_t
-    q[16], real_t status[4])
+CF_INLINE void irb260_ik_kernel(const int vector, const irb260_params *params, const
+    real_t x[4], const real_t *sines, const real_t
+    *cosines, real_t q[16], real_t status[4])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -845,92 +845,100 @@ CF_INLINE void irb260_ik_kernel(const irb260_params *params, const real_t x[4],
     const int on_axis = r <= t4;
     const real_t s_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(0.0), px);
     const real_t c_turret = cf_select(on_axis, CLOSEDFORM_C(1.0), py);
-    const real_t t5 = cf_wrap(-cf_atan2(s_turret_back_elbow_up, c_turret));
-    const int t6 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(pz);
-    const int t7 = t6 & cf_is_finite(psi) & cf_is_finite(l1) & cf_is_finite(l2);
-    const int t8 = t7 & cf_is_finite(l3) & cf_is_finite(l4) & cf_is_finite(l5);
-    const int t9 = t8 & cf_is_finite(l6) & (CLOSEDFORM_C(0.0) <= l1);
-    const int t10 = t9 & (CLOSEDFORM_C(0.0) <= l2) & (CLOSEDFORM_C(0.0) <= l3);
-    const int t11 = t10 & (CLOSEDFORM_C(0.0) <= l4) & (CLOSEDFORM_C(0.0) <= l5);
-    const int invalid = !(t11 & (CLOSEDFORM_C(0.0) <= l6));
-    const real_t t12 = -(CLOSEDFORM_FEASIBILITY * t3);
+    const int t5 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(pz);
+    const int t6 = t5 & cf_is_finite(psi) & cf_is_finite(l1) & cf_is_finite(l2);
+    const int t7 = t6 & cf_is_finite(l3) & cf_is_finite(l4) & cf_is_finite(l5);
+    const int t8 = t7 & cf_is_finite(l6) & (CLOSEDFORM_C(0.0) <= l1);
+    const int t9 = t8 & (CLOSEDFORM_C(0.0) <= l2) & (CLOSEDFORM_C(0.0) <= l3);
+    const int t10 = t9 & (CLOSEDFORM_C(0.0) <= l4) & (CLOSEDFORM_C(0.0) <= l5);
+    const int invalid = !(t10 & (CLOSEDFORM_C(0.0) <= l6));
+    const real_t t11 = -(CLOSEDFORM_FEASIBILITY * t3);
     const real_t h = pz - l2 + l5;
-    const real_t t13 = h * h;
-    const real_t t14 = r - t2;
-    const real_t reach = cf_sqrt(t13 + t14 * t14);
-    const real_t t15 = t1 - reach;
-    const real_t t16 = l3 - l4;
-    const real_t t17 = t16 + reach;
-    const real_t t18 = reach - t16;
-    const int unreachable = !((t12 <= t15) & (t12 <= t17) & (t12 <= t18));
-    const real_t t19 = cf_poison(invalid | unreachable);
-    const real_t t20 = t5 + t19;
+    const real_t t12 = h * h;
+    const real_t t13 = r - t2;
+    const real_t reach = cf_sqrt(t12 + t13 * t13);
+    const real_t t14 = t1 - reach;
+    const real_t t15 = l3 - l4;
+    const real_t t16 = t15 + reach;
+    const real_t t17 = reach - t15;
+    const int unreachable = !((t11 <= t14) & (t11 <= t16) & (t11 <= t17));
+    const real_t t18 = cf_poison(invalid | unreachable);
     const int folded = reach <= t4;
-    const real_t t21 = cf_atan2(-t14, h);
     const int no_link = l3 * l4 <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const real_t rA = cf_sqrt(cf_max(t15, CLOSEDFORM_C(0.0)));
-    const real_t rC = cf_sqrt(cf_max(t18, CLOSEDFORM_C(0.0)));
+    const real_t rA = cf_sqrt(cf_max(t14, CLOSEDFORM_C(0.0)));
+    const real_t rC = cf_sqrt(cf_max(t17, CLOSEDFORM_C(0.0)));
     const real_t rS = cf_sqrt(t1 + reach);
-    const real_t rB = cf_sqrt(cf_max(t17, CLOSEDFORM_C(0.0)));
-    const real_t t22 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
-    const real_t t23 = cf_select(no_link, CLOSEDFORM_C(0.0), t22);
-    const real_t t24 = cf_select(folded, CLOSEDFORM_C(0.0), t21 + t23);
-    const real_t t25 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rS, rC * rB);
-    const real_t t26 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t25);
-    const real_t t27 = c_psi * s_turret_back_elbow_up;
-    const real_t t28 = s_psi * s_turret_back_elbow_up;
-    const real_t t29 = cf_atan2(s_psi * c_turret + t27, c_psi * c_turret - t28);
-    const real_t t30 = cf_wrap(t29) + t19;
-    const real_t t31 = cf_select(folded, CLOSEDFORM_C(0.0), t21 - t23);
-    const real_t t32 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t25);
+    const real_t rB = cf_sqrt(cf_max(t16, CLOSEDFORM_C(0.0)));
+    const real_t t19 = c_psi * s_turret_back_elbow_up;
+    const real_t t20 = s_psi * s_turret_back_elbow_up;
     const real_t c_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(1.0), -py);
-    const real_t t33 = cf_atan2(s_turret_back_elbow_up, c_turret_back_elbow_up);
-    const real_t t34 = r + t2;
-    const real_t reach_back_elbow_up = cf_sqrt(t13 + t34 * t34);
-    const real_t t35 = t1 - reach_back_elbow_up;
-    const real_t t36 = t16 + reach_back_elbow_up;
-    const real_t t37 = reach_back_elbow_up - t16;
-    const int unreachable_2 = !((t12 <= t35) & (t12 <= t36) & (t12 <= t37));
-    const real_t t38 = cf_poison(invalid | unreachable_2);
-    const real_t t39 = cf_wrap(t33) + t38;
+    const real_t t21 = r + t2;
+    const real_t reach_back_elbow_up = cf_sqrt(t12 + t21 * t21);
+    const real_t t22 = t1 - reach_back_elbow_up;
+    const real_t t23 = t15 + reach_back_elbow_up;
+    const real_t t24 = reach_back_elbow_up - t15;
+    const int unreachable_2 = !((t11 <= t22) & (t11 <= t23) & (t11 <= t24));
+    const real_t t25 = cf_poison(invalid | unreachable_2);
     const int folded_back_elbow_up = reach_back_elbow_up <= t4;
-    const real_t t40 = cf_atan2(t34, h);
-    const real_t rA_back_elbow_up = cf_sqrt(cf_max(t35, CLOSEDFORM_C(0.0)));
-    const real_t rC_back_elbow_up = cf_sqrt(cf_max(t37, CLOSEDFORM_C(0.0)));
+    const real_t rA_back_elbow_up = cf_sqrt(cf_max(t22, CLOSEDFORM_C(0.0)));
+    const real_t rC_back_elbow_up = cf_sqrt(cf_max(t24, CLOSEDFORM_C(0.0)));
     const real_t rS_back_elbow_up = cf_sqrt(t1 + reach_back_elbow_up);
-    const real_t rB_back_elbow_up = cf_sqrt(cf_max(t36, CLOSEDFORM_C(0.0)));
-    const real_t t41 = cf_atan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up);
-    const real_t t42 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * t41);
-    const real_t t43 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t40 + t42);
-    const real_t t44 = cf_atan2(rA_back_elbow_up * rS_back_elbow_up, rC_back_elbow_up * rB_back_elbow_up);
-    const real_t t45 = CLOSEDFORM_C(2.0) * t44;
-    const real_t t46 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t45);
-    const real_t t47 = cf_atan2(t27 - s_psi * c_turret_back_elbow_up, t28 + c_psi * c_turret_back_elbow_up);
-    const real_t t48 = cf_wrap(-t47) + t38;
-    const real_t t49 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t40 - t42);
-    const real_t t50 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t45);
-    const real_t t51 = cf_status(invalid, unreachable, on_axis | folded | no_link);
-    const real_t t52 = cf_status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
-    q[0] = t20;
-    q[1] = cf_wrap(-t24) + t19;
-    q[2] = cf_wrap(-t26) + t19;
-    q[3] = t30;
-    q[4] = t20;
-    q[5] = cf_wrap(-t31) + t19;
-    q[6] = cf_wrap(-t32) + t19;
-    q[7] = t30;
-    q[8] = t39;
-    q[9] = cf_wrap(-t43) + t38;
-    q[10] = cf_wrap(-t46) + t38;
-    q[11] = t48;
-    q[12] = t39;
-    q[13] = cf_wrap(-t49) + t38;
-    q[14] = cf_wrap(-t50) + t38;
-    q[15] = t48;
-    status[0] = t51;
-    status[1] = t51;
-    status[2] = t52;
-    status[3] = t52;
+    const real_t rB_back_elbow_up = cf_sqrt(cf_max(t23, CLOSEDFORM_C(0.0)));
+    const real_t t26 = cf_status(invalid, unreachable, on_axis | folded | no_link);
+    const real_t t27 = cf_status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
+    const real_t opposite[16] = { s_turret_back_elbow_up, rA * rC, -t13, rA * rS, s_psi * c_turret + t19, s_turret_back_elbow_up, rA_back_elbow_up * rC_back_elbow_up, t21, rA_back_elbow_up * rS_back_elbow_up, t19 - s_psi * c_turret_back_elbow_up };
+    const real_t adjacent[16] = { c_turret, rS * rB, h, rC * rB, c_psi * c_turret - t20, c_turret_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up, h, rC_back_elbow_up * rB_back_elbow_up, t20 + c_psi * c_turret_back_elbow_up };
+    real_t angles[16];
+    if (vector) {
+        cf_atan2_block(16, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+        angles[2] = cf_atan2(opposite[2], adjacent[2]);
+        angles[3] = cf_atan2(opposite[3], adjacent[3]);
+        angles[4] = cf_atan2(opposite[4], adjacent[4]);
+        angles[5] = cf_atan2(opposite[5], adjacent[5]);
+        angles[6] = cf_atan2(opposite[6], adjacent[6]);
+        angles[7] = cf_atan2(opposite[7], adjacent[7]);
+        angles[8] = cf_atan2(opposite[8], adjacent[8]);
+        angles[9] = cf_atan2(opposite[9], adjacent[9]);
+    }
+    const real_t t28 = cf_wrap(-angles[0]) + t18;
+    const real_t t29 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
+    const real_t t30 = cf_select(folded, CLOSEDFORM_C(0.0), t29 + angles[2]);
+    const real_t t31 = CLOSEDFORM_C(2.0) * angles[3];
+    const real_t t32 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t31);
+    const real_t t33 = cf_wrap(angles[4]) + t18;
+    const real_t t34 = cf_select(folded, CLOSEDFORM_C(0.0), t29 - angles[2]);
+    const real_t t35 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t31);
+    const real_t t36 = cf_wrap(angles[5]) + t25;
+    const real_t t37 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
+    const real_t t38 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t37 + angles[7]);
+    const real_t t39 = CLOSEDFORM_C(2.0) * angles[8];
+    const real_t t40 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t39);
+    const real_t t41 = cf_wrap(-angles[9]) + t25;
+    const real_t t42 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t37 - angles[7]);
+    const real_t t43 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t39);
+    q[0] = t28;
+    q[1] = cf_wrap(-t30) + t18;
+    q[2] = cf_wrap(-t32) + t18;
+    q[3] = t33;
+    q[4] = t28;
+    q[5] = cf_wrap(t34) + t18;
+    q[6] = cf_wrap(-t35) + t18;
+    q[7] = t33;
+    q[8] = t36;
+    q[9] = cf_wrap(-t38) + t25;
+    q[10] = cf_wrap(-t40) + t25;
+    q[11] = t41;
+    q[12] = t36;
+    q[13] = cf_wrap(t42) + t25;
+    q[14] = cf_wrap(-t43) + t25;
+    q[15] = t41;
+    status[0] = t26;
+    status[1] = t26;
+    status[2] = t27;
+    status[3] = t27;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -941,7 +949,7 @@ void irb260_ik(const irb260_params *params, const real_t x[4],
     const real_t lanes[1] = { x[3] };
     cf_sincos_block(1, lanes, sines, cosines);
     real_t status_real[4];
-    irb260_ik_kernel(params, x, sines, cosines, q, status_real);
+    irb260_ik_kernel(1, params, x, sines, cosines, q, status_real);
     for (size_t i = 0; i < 4; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -964,7 +972,7 @@ void irb260_ik_batch(size_t n, const irb260_params *params, const real_t
             const real_t cosines_i[1] = { cosines[0][i] };
             real_t q_i[16];
             real_t status_i[4];
-            irb260_ik_kernel(&local, x_i, sines_i, cosines_i, q_i, status_i);
+            irb260_ik_kernel(0, &local, x_i, sines_i, cosines_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];

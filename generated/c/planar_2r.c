@@ -358,8 +358,8 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params, con
     }
 }
 
-CF_INLINE void planar_2r_ik_kernel(const planar_2r_params *params, const real_t x[2],
-    real_t q[4], real_t status[2])
+CF_INLINE void planar_2r_ik_kernel(const int vector, const planar_2r_params *params,
+    const real_t x[2], real_t q[4], real_t status[2])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -368,33 +368,42 @@ CF_INLINE void planar_2r_ik_kernel(const planar_2r_params *params, const real_t 
     const real_t r = cf_sqrt(px * px + py * py);
     const real_t t1 = l1 + l2;
     const int at_base = r <= t1 * CLOSEDFORM_VANISHING;
-    const real_t t2 = cf_atan2(py, px);
-    const real_t t3 = t1 - r;
-    const real_t rA = cf_sqrt(cf_max(t3, CLOSEDFORM_C(0.0)));
-    const real_t t4 = l1 - l2;
-    const real_t t5 = r - t4;
-    const real_t rC = cf_sqrt(cf_max(t5, CLOSEDFORM_C(0.0)));
+    const real_t t2 = t1 - r;
+    const real_t rA = cf_sqrt(cf_max(t2, CLOSEDFORM_C(0.0)));
+    const real_t t3 = l1 - l2;
+    const real_t t4 = r - t3;
+    const real_t rC = cf_sqrt(cf_max(t4, CLOSEDFORM_C(0.0)));
     const real_t rS = cf_sqrt(r + t1);
-    const real_t t6 = r + t4;
-    const real_t rB = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0)));
-    const real_t t7 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
-    const real_t t8 = cf_select(at_base, CLOSEDFORM_C(0.0), t2 - t7);
-    const int t9 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(l1);
-    const int t10 = t9 & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
-    const int invalid = !(t10 & (CLOSEDFORM_C(0.0) <= l2));
-    const real_t t11 = -(CLOSEDFORM_FEASIBILITY * t1);
-    const int unreachable = !((t11 <= t3) & (t11 <= t6) & (t11 <= t5));
-    const real_t t12 = cf_poison(invalid | unreachable);
-    const real_t t13 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rS, rC * rB);
-    const real_t t14 = cf_select(at_base, CLOSEDFORM_C(0.0), t2 + t7);
-    const int t15 = at_base | (l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1));
-    const real_t t16 = cf_status(invalid, unreachable, t15);
-    q[0] = cf_wrap(t8) + t12;
-    q[1] = cf_wrap(t13) + t12;
-    q[2] = cf_wrap(t14) + t12;
-    q[3] = cf_wrap(-t13) + t12;
-    status[0] = t16;
-    status[1] = t16;
+    const real_t t5 = r + t3;
+    const real_t rB = cf_sqrt(cf_max(t5, CLOSEDFORM_C(0.0)));
+    const int t6 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(l1);
+    const int t7 = t6 & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
+    const int invalid = !(t7 & (CLOSEDFORM_C(0.0) <= l2));
+    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * t1);
+    const int unreachable = !((t8 <= t2) & (t8 <= t5) & (t8 <= t4));
+    const real_t t9 = cf_poison(invalid | unreachable);
+    const int t10 = at_base | (l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1));
+    const real_t t11 = cf_status(invalid, unreachable, t10);
+    const real_t opposite[4] = { py, rA * rC, rA * rS };
+    const real_t adjacent[4] = { px, rS * rB, rC * rB };
+    real_t angles[4];
+    if (vector) {
+        cf_atan2_block(4, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+        angles[2] = cf_atan2(opposite[2], adjacent[2]);
+    }
+    const real_t t12 = CLOSEDFORM_C(2.0) * angles[1];
+    const real_t t13 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[0] - t12);
+    const real_t t14 = CLOSEDFORM_C(2.0) * angles[2];
+    const real_t t15 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[0] + t12);
+    q[0] = cf_wrap(t13) + t9;
+    q[1] = cf_wrap(t14) + t9;
+    q[2] = cf_wrap(t15) + t9;
+    q[3] = cf_wrap(-t14) + t9;
+    status[0] = t11;
+    status[1] = t11;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -402,7 +411,7 @@ void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
     real_t q[4], uint8_t status[2])
 {
     real_t status_real[2];
-    planar_2r_ik_kernel(params, x, q, status_real);
+    planar_2r_ik_kernel(1, params, x, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -421,7 +430,7 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params, const
             const real_t x_i[2] = { x[start + i], x[x_stride + start + i] };
             real_t q_i[4];
             real_t status_i[2];
-            planar_2r_ik_kernel(&local, x_i, q_i, status_i);
+            planar_2r_ik_kernel(0, &local, x_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -438,8 +447,8 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params, const
     }
 }
 
-CF_INLINE void planar_2r_ik_pose_kernel(const planar_2r_params *params, const real_t T[16],
-    real_t q[2], real_t status[1])
+CF_INLINE void planar_2r_ik_pose_kernel(const int vector, const planar_2r_params *params,
+    const real_t T[16], real_t q[2], real_t status[1])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -490,11 +499,19 @@ CF_INLINE void planar_2r_ik_pose_kernel(const planar_2r_params *params, const re
     const int t23 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
     const int unreachable = !(t19 & t20 & t21 & t22 & t23);
     const real_t t24 = cf_poison(invalid | unreachable);
-    const real_t t25 = cf_atan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1);
-    const real_t t26 = cf_status(invalid, unreachable, no_first_link);
-    q[0] = cf_wrap(cf_atan2(s1, c1)) + t24;
-    q[1] = cf_wrap(-t25) + t24;
-    status[0] = t26;
+    const real_t t25 = cf_status(invalid, unreachable, no_first_link);
+    const real_t opposite[2] = { s1, T11 * s1 - T21 * c1 };
+    const real_t adjacent[2] = { c1, T11 * c1 + T21 * s1 };
+    real_t angles[2];
+    if (vector) {
+        cf_atan2_block(2, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+    }
+    q[0] = cf_wrap(angles[0]) + t24;
+    q[1] = cf_wrap(-angles[1]) + t24;
+    status[0] = t25;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -502,7 +519,7 @@ void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
     real_t q[2], uint8_t status[1])
 {
     real_t status_real[1];
-    planar_2r_ik_pose_kernel(params, T, q, status_real);
+    planar_2r_ik_pose_kernel(1, params, T, q, status_real);
     for (size_t i = 0; i < 1; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -522,7 +539,7 @@ void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params, const
             const real_t T_i[16] = { T[start + i], T[T_stride + start + i], T[2 * T_stride + start + i], T[3 * T_stride + start + i], T[4 * T_stride + start + i], T[5 * T_stride + start + i], T[6 * T_stride + start + i], T[7 * T_stride + start + i], T[8 * T_stride + start + i], T[9 * T_stride + start + i], T[10 * T_stride + start + i], T[11 * T_stride + start + i], T[12 * T_stride + start + i], T[13 * T_stride + start + i], T[14 * T_stride + start + i], T[15 * T_stride + start + i] };
             real_t q_i[2];
             real_t status_i[1];
-            planar_2r_ik_pose_kernel(&local, T_i, q_i, status_i);
+            planar_2r_ik_pose_kernel(0, &local, T_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             status_real[0][i] = status_i[0];

@@ -355,7 +355,8 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
     }
 }
 
-CF_INLINE void spherical_wrist_ik_kernel(const real_t R[9], real_t q[6], real_t status[2])
+CF_INLINE void spherical_wrist_ik_kernel(const int vector, const real_t R[9], real_t q[6],
+    real_t status[2])
 {
     const real_t R11 = R[0];
     const real_t R12 = R[1];
@@ -370,29 +371,36 @@ CF_INLINE void spherical_wrist_ik_kernel(const real_t R[9], real_t q[6], real_t 
     const int aligned = h <= CLOSEDFORM_VANISHING;
     const real_t s4 = cf_select(aligned, CLOSEDFORM_C(0.0), R23 / h);
     const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), R13 / h);
-    const real_t t1 = cf_atan2(s4, c4);
-    const int t2 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
-    const int t3 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
-    const int t4 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
-    const real_t t5 = CLOSEDFORM_C(1.0) - R11 * R11 - R21 * R21 - R31 * R31;
-    const int t6 = cf_abs(t5) <= CLOSEDFORM_ROTATION;
-    const real_t t7 = CLOSEDFORM_C(1.0) - R12 * R12 - R22 * R22 - R32 * R32;
-    const int t8 = cf_abs(t7) <= CLOSEDFORM_ROTATION;
-    const int t9 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t2 & t3 & t4 & t6 & t8 & t9);
-    const real_t t10 = cf_poison(invalid);
-    const real_t t11 = cf_atan2(R13 * c4 + R23 * s4, R33);
-    const real_t t12 = cf_atan2(R11 * s4 - R21 * c4, R22 * c4 - R12 * s4);
+    const int t1 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
+    const int t2 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
+    const int t3 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
+    const real_t t4 = CLOSEDFORM_C(1.0) - R11 * R11 - R21 * R21 - R31 * R31;
+    const int t5 = cf_abs(t4) <= CLOSEDFORM_ROTATION;
+    const real_t t6 = CLOSEDFORM_C(1.0) - R12 * R12 - R22 * R22 - R32 * R32;
+    const int t7 = cf_abs(t6) <= CLOSEDFORM_ROTATION;
+    const int t8 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t1 & t2 & t3 & t5 & t7 & t8);
+    const real_t t9 = cf_poison(invalid);
     const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t t13 = cf_status(invalid, 0, aligned);
-    q[0] = cf_wrap(t1) + t10;
-    q[1] = cf_wrap(t11) + t10;
-    q[2] = cf_wrap(-t12) + t10;
-    q[3] = cf_wrap(t1 + flip) + t10;
-    q[4] = cf_wrap(-t11) + t10;
-    q[5] = cf_wrap(flip - t12) + t10;
-    status[0] = t13;
-    status[1] = t13;
+    const real_t t10 = cf_status(invalid, 0, aligned);
+    const real_t opposite[4] = { s4, R13 * c4 + R23 * s4, R11 * s4 - R21 * c4 };
+    const real_t adjacent[4] = { c4, R33, R22 * c4 - R12 * s4 };
+    real_t angles[4];
+    if (vector) {
+        cf_atan2_block(4, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+        angles[2] = cf_atan2(opposite[2], adjacent[2]);
+    }
+    q[0] = cf_wrap(angles[0]) + t9;
+    q[1] = cf_wrap(angles[1]) + t9;
+    q[2] = cf_wrap(-angles[2]) + t9;
+    q[3] = cf_wrap(angles[0] + flip) + t9;
+    q[4] = cf_wrap(-angles[1]) + t9;
+    q[5] = cf_wrap(flip - angles[2]) + t9;
+    status[0] = t10;
+    status[1] = t10;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -401,7 +409,7 @@ void spherical_wrist_ik(const spherical_wrist_params *params, const real_t
 {
     (void)params;
     real_t status_real[2];
-    spherical_wrist_ik_kernel(R, q, status_real);
+    spherical_wrist_ik_kernel(1, R, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -420,7 +428,7 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
             const real_t R_i[9] = { R[start + i], R[R_stride + start + i], R[2 * R_stride + start + i], R[3 * R_stride + start + i], R[4 * R_stride + start + i], R[5 * R_stride + start + i], R[6 * R_stride + start + i], R[7 * R_stride + start + i], R[8 * R_stride + start + i] };
             real_t q_i[6];
             real_t status_i[2];
-            spherical_wrist_ik_kernel(R_i, q_i, status_i);
+            spherical_wrist_ik_kernel(0, R_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];

@@ -325,15 +325,15 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     t15 = distance * n_1 / 2.0
     t16 = t6 * height
     CP_y = t15 + t16
-    CP_y_right_of_CD = t15 - t16
     DP_r = t7 + t10
+    CP_y_right_of_CD = t15 - t16
     return (
         L2 * (C_r - DP_r_right_of_CD) + t14,
-        -(C_r * CP_y + C_y * DP_r_right_of_CD) + t14,
-        D_r * CP_y_right_of_CD + t2 * DP_r + t14,
+        -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14,
+        t2 * DP_r + D_r * CP_y_right_of_CD + t14,
         L2 * (C_r - DP_r) + t14,
-        -(C_r * CP_y_right_of_CD + C_y * DP_r) + t14,
-        D_r * CP_y + t2 * DP_r_right_of_CD + t14,
+        -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14,
+        t2 * DP_r_right_of_CD + D_r * CP_y + t14,
     )
 
 
@@ -392,39 +392,39 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     t14 = _runtime.poison(np.logical_not(t13) | unreachable)
     t15 = distance * n_1 / 2.0
     t16 = t6 * height
-    CP_y = t15 + t16
-    t17 = C_r * CP_y + C_y * DP_r_right_of_CD
     CP_y_right_of_CD = t15 - t16
-    t18 = CP_y_right_of_CD * c1
+    CP_y = t15 + t16
+    t17 = C_y * DP_r_right_of_CD + C_r * CP_y
+    t18 = CP_y_right_of_CD * t17
     side = distance * height
     DP_r = t7 + t10
-    along_d = D_r * CP_y_right_of_CD + t2 * DP_r
-    t19 = CP_y * c1
+    along_d = t2 * DP_r + D_r * CP_y_right_of_CD
+    t19 = CP_y * along_d
     t20 = 0.0 + t14
-    t21 = CP_y_right_of_CD * s1
-    t22 = CP_y * s1
     P_r_right_of_CD = C_r - DP_r
-    t23 = C_r * CP_y_right_of_CD + C_y * DP_r
-    along_d_right_of_CD = D_r * CP_y + t2 * DP_r_right_of_CD
+    t21 = C_y * DP_r + C_r * CP_y_right_of_CD
+    t22 = CP_y * t21
+    along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y
+    t23 = CP_y_right_of_CD * along_d_right_of_CD
     return (
         P_r * s1 + t14,
-        t17 * t18 / side + t14,
-        -(along_d * t19 / side) + t14,
+        c1 * t18 / side + t14,
+        -(c1 * t19 / side) + t14,
         t20,
         -(DP_r * t17 / side) + t14,
         DP_r_right_of_CD * along_d / side + t14,
         P_r * c1 + t14,
-        -(t17 * t21 / side) + t14,
-        along_d * t22 / side + t14,
+        -(s1 * t18 / side) + t14,
+        s1 * t19 / side + t14,
         s1 * P_r_right_of_CD + t14,
-        -(t23 * t19 / side) + t14,
-        along_d_right_of_CD * t18 / side + t14,
+        -(c1 * t22 / side) + t14,
+        c1 * t23 / side + t14,
         t20,
-        DP_r_right_of_CD * t23 / side + t14,
+        DP_r_right_of_CD * t21 / side + t14,
         -(DP_r * along_d_right_of_CD / side) + t14,
         c1 * P_r_right_of_CD + t14,
-        t23 * t22 / side + t14,
-        -(along_d_right_of_CD * t21 / side) + t14,
+        s1 * t22 / side + t14,
+        -(s1 * t23 / side) + t14,
     )
 
 
@@ -477,18 +477,18 @@ def _determinant(theta1, theta2, theta3, L0, L1, L2):
     t11 = distance * n_1 / 2.0
     t12 = t6 * height
     CP_y = t11 + t12
-    t13 = (C_r - DP_r_right_of_CD) * (C_r * CP_y + C_y * DP_r_right_of_CD)
-    CP_y_right_of_CD = t11 - t12
+    t13 = (C_r - DP_r_right_of_CD) * (C_y * DP_r_right_of_CD + C_r * CP_y)
     DP_r = t7 + t10
+    CP_y_right_of_CD = t11 - t12
     side = distance * height
-    t14 = t13 * (D_r * CP_y_right_of_CD + t2 * DP_r) / side
+    t14 = t13 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side
     t15 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     t16 = t15 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t17 = t16 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
     t18 = _runtime.poison(np.logical_not(t17) | unreachable)
-    t19 = (C_r - DP_r) * (C_r * CP_y_right_of_CD + C_y * DP_r)
-    t20 = t19 * (D_r * CP_y + t2 * DP_r_right_of_CD) / side
+    t19 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD)
+    t20 = t19 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side
     return (
         -t14 + t18,
         t20 + t18,

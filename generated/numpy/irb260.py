@@ -552,16 +552,16 @@ def _point_velocity(
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     s23 = s2 * c3 + c2 * s3
-    t1 = theta2_dot * (l3 * c2 - l4 * s23)
-    t2 = theta3_dot * l4
-    t3 = s23 * t2
+    t1 = theta3_dot * l4
+    t2 = s23 * t1
+    t3 = theta2_dot * (l3 * c2 - l4 * s23)
     c23 = c2 * c3 - s2 * s3
     t4 = l3 * s2 + l4 * c23
     t5 = theta1_dot * (l1 + l6 + t4)
     return (
-        -(s1 * t1 - s1 * t3 + c1 * t5),
-        c1 * t1 - c1 * t3 - s1 * t5,
-        -(theta2_dot * t4 + c23 * t2),
+        s1 * t2 - s1 * t3 - c1 * t5,
+        -(c1 * t2 - c1 * t3 + s1 * t5),
+        -(theta2_dot * t4 + c23 * t1),
     )
 
 
@@ -617,13 +617,13 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     t18 = _runtime.poison(invalid | unreachable)
     t19 = t5 + t18
     folded = reach <= t4
-    t20 = np.arctan2(-t13, h)
     no_link = l3 * l4 <= _runtime.VANISHING * (t1 * t1)
     rA = np.sqrt(np.maximum(t14, 0.0))
     rC = np.sqrt(np.maximum(t17, 0.0))
     rS = np.sqrt(t1 + reach)
     rB = np.sqrt(np.maximum(t16, 0.0))
-    t21 = np.where(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
+    t20 = np.where(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
+    t21 = np.arctan2(-t13, h)
     t22 = _runtime.wrap(-np.where(folded, 0.0, t20 + t21))
     t23 = 2.0 * np.arctan2(rA * rS, rC * rB)
     t24 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 - t23)
@@ -631,7 +631,7 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     t26 = s_psi * s_turret_back_elbow_up
     t27 = np.arctan2(s_psi * c_turret + t25, c_psi * c_turret - t26)
     t28 = _runtime.wrap(t27) + t18
-    t29 = _runtime.wrap(-np.where(folded, 0.0, t20 - t21))
+    t29 = _runtime.wrap(np.where(folded, 0.0, t20 - t21))
     t30 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 + t23)
     c_turret_back_elbow_up = np.where(on_axis, 1.0, -py)
     t31 = np.arctan2(s_turret_back_elbow_up, c_turret_back_elbow_up)
@@ -644,20 +644,20 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     t36 = _runtime.poison(invalid | unreachable_2)
     t37 = _runtime.wrap(t31) + t36
     folded_back_elbow_up = reach_back_elbow_up <= t4
-    t38 = np.arctan2(t32, h)
     rA_back_elbow_up = np.sqrt(np.maximum(t33, 0.0))
     rC_back_elbow_up = np.sqrt(np.maximum(t35, 0.0))
     rS_back_elbow_up = np.sqrt(t1 + reach_back_elbow_up)
     rB_back_elbow_up = np.sqrt(np.maximum(t34, 0.0))
-    t39 = np.arctan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up)
-    t40 = np.where(no_link, 0.0, 2.0 * t39)
-    t41 = np.where(folded_back_elbow_up, 0.0, t38 + t40)
+    t38 = np.arctan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up)
+    t39 = np.where(no_link, 0.0, 2.0 * t38)
+    t40 = np.arctan2(t32, h)
+    t41 = np.where(folded_back_elbow_up, 0.0, t39 + t40)
     t42 = np.arctan2(rA_back_elbow_up * rS_back_elbow_up, rC_back_elbow_up * rB_back_elbow_up)
     t43 = 2.0 * t42
     t44 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 - t43)
     t45 = np.arctan2(t25 - s_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up)
     t46 = _runtime.wrap(-t45) + t36
-    t47 = np.where(folded_back_elbow_up, 0.0, t38 - t40)
+    t47 = np.where(folded_back_elbow_up, 0.0, t39 - t40)
     t48 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 + t43)
     t49 = _runtime.status(invalid, unreachable, on_axis | folded | no_link)
     t50 = _runtime.status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link)
@@ -675,7 +675,7 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
         _runtime.wrap(-t44) + t36,
         t46,
         t37,
-        _runtime.wrap(-t47) + t36,
+        _runtime.wrap(t47) + t36,
         _runtime.wrap(-t48) + t36,
         t46,
         t49,

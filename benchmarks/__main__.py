@@ -1,0 +1,201 @@
+"""``python -m benchmarks``: the generated code beside its peers, on one core, interleaved.
+
+Every competitor's values are checked before it is timed; the times of one table are taken in turns
+and their medians printed, as nanoseconds a posture and as ratios. A competitor that fails is listed
+with its error. The result is also written to ``benchmarks/RESULTS.md``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from importlib import metadata
+from pathlib import Path
+
+
+from . import batches, inverses, native
+from .cases import CASES, Case, check
+
+MILLION = 1_000_000
+PACKAGES = {"sympy.cse": "sympy", "lambdify": "sympy"}
+Competitors = dict[str, Callable[[], float]]
+
+
+class Report:
+    """Lines of Markdown, printed as they come."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def write(self, line: str = "") -> None:
+        self.lines.append(line)
+        print(line, flush=True)
+
+    def table(self, title: str, unit: str, competitors: Competitors, rounds: int) -> None:
+        """Times all competitors in turns; ratios are to the first one."""
+        self.write(f"\n| {title} | median, {unit} | times closedform |\n|---|---:|---:|")
+        times: dict[str, list[float]] = {name: [] for name in competitors}
+        for _ in range(rounds):
+            for name, run in competitors.items():
+                times[name].append(run())
+        medians = {name: statistics.median(t) for name, t in times.items()}
+        best = next(iter(medians.values()), 1.0)
+        for name, median in medians.items():
+            self.write(f"| {name} | {median:.4g} | {median / best:.2f} |")
+
+
+def explained(error: BaseException) -> str:
+    text = re.sub(r"\S*/", "", str(error).split("\n", 1)[0])
+    return f"{type(error).__name__}: {text[:110]}"
+
+
+def attempt(
+    report: Report, failures: list[str], name: str, make: Callable[[], Callable[[], float]]
+) -> Callable[[], float] | None:
+    try:
+        return make()
+    except LookupError:
+        return None
+    except Exception as error:
+        failures.append(f"- {name}: {explained(error)}")
+        return None
+
+
+def clock(run: Callable[[], object], postures: int, repeat: int) -> Callable[[], float]:
+    def timed() -> float:
+        start = time.perf_counter_ns()
+        for _ in range(repeat):
+            run()
+        return (time.perf_counter_ns() - start) / repeat / postures
+
+    return timed
+
+
+def calls_from_c(report: Report, cases: list[Case], rounds: int, folder: Path) -> None:
+    report.write("\n## One call from C\n")
+    flags = " ".join(native.FLAGS[:4])
+    report.write(f"Every competitor compiled with `{flags}`, 512 postures in turn.")
+    for case in cases:
+        inputs = case.inputs(512)
+        expected = case.values(inputs)
+        for label, target in native.TARGETS.items():
+            failures: list[str] = []
+            competitors: Competitors = {}
+            for name in native.SOURCES:
+
+                def make(name: str = name, target: str = target) -> Callable[[], float]:
+                    run, values = native.timer(name, case, target, folder, inputs)
+                    check(name, case, values, expected)
+                    return run
+
+                if timed := attempt(report, failures, name, make):
+                    competitors[name] = timed
+            report.table(f"{case.title}, {label}", "ns", competitors, rounds)
+            for failure in failures:
+                report.write(failure)
+
+
+def calls_from_python(report: Report, cases: list[Case], rounds: int, n: int) -> None:
+    """Batches of ``n`` in both layouts, or single postures."""
+    report.write(f"\n## {'One call' if n == 1 else f'Batch of {n:,}'} from Python")
+    for case in cases:
+        rows = case.inputs(n)
+        sample = slice(None, 1000)
+        expected = case.values(rows[sample])
+        for layout in ("planes", "rows") if n > 1 else ("rows",):
+            failures: list[str] = []
+            competitors: Competitors = {}
+            makers = {
+                "closedform C": lambda layout, rows: batches.ours(case, "c", layout, rows),
+                "closedform NumPy": lambda layout, rows: batches.ours(case, "numpy", layout, rows),
+                **{
+                    name: lambda layout, rows, peer=peer: peer(case, layout, rows)
+                    for name, peer in batches.PEERS.items()
+                },
+            }
+            for name, maker in makers.items():
+
+                def make(name=name, maker=maker, layout=layout) -> Callable[[], float]:
+                    run, values = maker(layout, rows)
+                    check(name, case, values()[sample], expected)
+                    return clock(run, n, 1 if n > 1 else 2000)
+
+                if timed := attempt(report, failures, name, make):
+                    competitors[name] = timed
+            shape = {"planes": "structure of arrays, `out=`", "rows": "`(N, n)` arrays"}[layout]
+            title = f"{case.title}, {shape}" if n > 1 else case.title
+            report.table(title, "ns a posture", competitors, rounds)
+            for failure in failures:
+                report.write(failure)
+
+
+def versions() -> str:
+    names = dict.fromkeys(
+        PACKAGES.get(n, n) for n in (*native.SOURCES, *batches.PEERS, *inverses.PEERS)
+    )
+    found = []
+    for name in ("numpy", *names):
+        try:
+            found.append(f"{name} {metadata.version(name)}")
+        except metadata.PackageNotFoundError:
+            continue
+    return ", ".join(dict.fromkeys(found))
+
+
+def machine() -> str:
+    info = Path("/proc/cpuinfo")
+    cpu = platform.processor() or platform.machine()
+    if info.exists():
+        cpu = next(
+            (s.split(":")[1].strip() for s in info.read_text().splitlines() if "model name" in s),
+            cpu,
+        )
+    gcc = subprocess.run(["gcc", "-dumpfullversion"], capture_output=True, text=True, check=False)
+    return f"{cpu}, gcc {gcc.stdout.strip()}, Python {platform.python_version()}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("cases", nargs="*", help="part of a title, as in 'pose'; all without")
+    parser.add_argument("--rounds", type=int, default=9)
+    parser.add_argument("--batch", type=int, default=MILLION)
+    parser.add_argument(
+        "--only", choices=("c", "batch", "single", "inverse"), action="append", help="these tables"
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, help="file to write, RESULTS.md of a whole run"
+    )
+    arguments = parser.parse_args()
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    chosen = [c for c in CASES if not arguments.cases or any(w in c.title for w in arguments.cases)]
+    tables = arguments.only or ["c", "batch", "single", "inverse"]
+    report = Report()
+    report.write("# Benchmarks\n\nWritten by `make bench`, on one core, competitors in turns.\n")
+    report.write(f"{machine()}; {versions()}.")
+    with tempfile.TemporaryDirectory() as folder:
+        if "c" in tables:
+            calls_from_c(report, chosen, arguments.rounds, Path(folder))
+    if "batch" in tables:
+        calls_from_python(report, chosen, arguments.rounds, arguments.batch)
+    if "single" in tables:
+        calls_from_python(report, chosen, arguments.rounds, 1)
+    if "inverse" in tables:
+        inverses.compare(report, arguments.rounds)
+    whole = not (arguments.cases or arguments.only)
+    output = arguments.output or (Path(__file__).with_name("RESULTS.md") if whole else None)
+    if output:
+        output.write_text("\n".join(report.lines) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

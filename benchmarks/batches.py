@@ -1,0 +1,189 @@
+"""Peers that are called from Python: on a million postures, and on one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from .cases import Case
+
+Run = Callable[[], Any]
+NAMES = ("sin", "cos", "arctan2", "sqrt", "abs")
+
+
+def numpy_like(module: Any) -> dict[str, Any]:
+    """The names that SymPy prints, as functions of a module that is laid out as NumPy."""
+    found = {name: getattr(module, name) for name in NAMES}
+    return {**found, "atan2": found["arctan2"]}
+
+
+def planes_of(rows: np.ndarray) -> np.ndarray:
+    """Coordinate by coordinate in memory, shape (coordinates, N); no stride is a power of two."""
+    memory = np.empty((rows.shape[1], len(rows) + 24))[:, : len(rows)]
+    memory[:] = rows.T
+    return memory
+
+
+def ours(case: Case, backend: str, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+    function = case.ours(backend)
+    core = case.source.inputs[0].shape
+    if layout == "rows":
+        x = rows.reshape(-1, *core)
+        return lambda: function(x), lambda: first(function(x)).reshape(len(x), -1)
+    x = planes_of(rows).reshape((*core, len(rows)), copy=False)
+    x = np.moveaxis(x, -1, 0)
+    out = like_planes(function(x))
+    return lambda: function(x, out=out), lambda: first(function(x, out=out)).reshape(len(x), -1)
+
+
+def first(result: Any) -> np.ndarray:
+    return result[0] if isinstance(result, tuple) else result
+
+
+def like_planes(result: Any) -> Any:
+    if isinstance(result, tuple):
+        return tuple(like_planes(r) for r in result)
+    memory = np.empty((*result.shape[1:], len(result) + 24), result.dtype)[..., : len(result)]
+    return np.moveaxis(memory, -1, 0)
+
+
+def stacked(values: Any, n: int) -> np.ndarray:
+    return np.stack([np.broadcast_to(np.asarray(v), (n,)) for v in values], axis=-1)
+
+
+def lambdify(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+    function = case.translate(numpy_like(np))
+    planes = list(planes_of(rows)) if layout == "planes" else list(rows.T)
+    parameters = list(case.parameters.values())
+
+    def run() -> Any:
+        with np.errstate(all="ignore"):
+            return function(*planes, *parameters)
+
+    return run, lambda: stacked(run(), len(rows))
+
+
+def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+    if layout == "planes":
+        raise LookupError("takes rows")
+    import symengine as se
+
+    function = se.Lambdify(case.symbols, case.expressions, backend="llvm", cse=True)
+    x = np.hstack([rows, np.tile(list(case.parameters.values()), (len(rows), 1))])
+    out = np.empty((len(rows), len(case.expressions)))
+    return lambda: function(x, out=out), lambda: function(x)
+
+
+def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+    if layout == "planes":
+        raise LookupError("takes rows")
+    import casadi as ca
+
+    names = {"sin": ca.sin, "cos": ca.cos, "atan2": ca.atan2, "sqrt": ca.sqrt, "abs": ca.fabs}
+    x = ca.SX.sym("x", len(case.source.symbols))
+    p = ca.SX.sym("p", len(case.parameters))
+    values = ca.vertcat(*case.translate(names)(*ca.vertsplit(x), *ca.vertsplit(p)))
+    one = ca.Function("peer", [x, p], [values], {"cse": True})
+    many = one.map("many", "serial", len(rows), [1], []) if len(rows) > 1 else one
+    buffer, trigger = many.buffer()
+    x_rows = np.ascontiguousarray(rows)
+    constants = np.array(list(case.parameters.values()))
+    out = np.empty((len(rows), len(case.expressions)))
+    buffer.set_arg(0, memoryview(x_rows))
+    buffer.set_arg(1, memoryview(constants))
+    buffer.set_res(0, memoryview(out))
+    keep = (buffer, x_rows, constants)
+
+    def values_of() -> np.ndarray:
+        assert keep
+        trigger()
+        return out.copy()
+
+    return trigger, values_of
+
+
+def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+    import math
+
+    import numba as nb
+    import sympy as sp
+
+    temporaries, results = sp.cse(case.expressions, symbols=sp.numbered_symbols("tmp"))
+    at = "x[{k}, i]" if layout == "planes" else "x[i, {k}]"
+    to = "out[{k}, i]" if layout == "planes" else "out[i, {k}]"
+    lines = ["def kernel(x, p, out):", " for i in range(x.shape[AXIS]):"]
+    n = len(case.source.symbols)
+    for k, symbol in enumerate(case.symbols):
+        lines.append(f"  {symbol} = {at.format(k=k) if k < n else f'p[{k - n}]'}")
+    printed = sp.printing.pycode
+    lines += [f"  {s} = {printed(e)}" for s, e in temporaries]
+    lines += [f"  {to.format(k=k)} = {printed(e)}" for k, e in enumerate(results)]
+    scope: dict[str, Any] = {"math": math}
+    exec("\n".join(lines).replace("AXIS", "1" if layout == "planes" else "0"), scope)
+    kernel = nb.njit(fastmath=False, error_model="numpy")(scope["kernel"])
+    x = planes_of(rows) if layout == "planes" else rows
+    out = np.empty(
+        (len(case.expressions), len(rows))
+        if layout == "planes"
+        else (len(rows), len(case.expressions))
+    )
+    p = np.array(list(case.parameters.values()))
+
+    def values() -> np.ndarray:
+        kernel(x, p, out)
+        return (out.T if layout == "planes" else out).copy()
+
+    return lambda: kernel(x, p, out), values
+
+
+def pytensor(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+    import pytensor as pt
+    import pytensor.tensor as tensor
+
+    names = {
+        **{n: getattr(tensor, n) for n in ("sin", "cos", "sqrt", "abs")},
+        "atan2": tensor.arctan2,
+    }
+    arguments = [tensor.vector(s.name) for s in case.source.symbols]
+    values = case.translate(names)(*arguments, *case.parameters.values())
+    function = pt.function(arguments, [tensor.as_tensor_variable(v) for v in values])
+    planes = (
+        list(planes_of(rows)) if layout == "planes" else [np.ascontiguousarray(c) for c in rows.T]
+    )
+    return lambda: function(*planes), lambda: stacked(function(*planes), len(rows))
+
+
+def jax(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+    os.environ.setdefault("JAX_PLATFORMS", "cpu")
+    import jax as library
+    import jax.numpy as jnp
+
+    library.config.update("jax_enable_x64", True)
+    one = case.translate(numpy_like(jnp))
+    parameters = list(case.parameters.values())
+    axis = 1 if layout == "planes" else 0
+
+    def posture(x: Any) -> Any:
+        return jnp.stack([jnp.asarray(v, float) for v in one(*x, *parameters)])
+
+    function = library.jit(library.vmap(posture, in_axes=axis, out_axes=axis))
+    x = library.device_put(np.ascontiguousarray(rows.T) if axis else rows)
+
+    def values() -> np.ndarray:
+        result = np.asarray(function(x))
+        return result.T if axis else result
+
+    return lambda: function(x).block_until_ready(), values
+
+
+PEERS: dict[str, Callable[[Case, str, np.ndarray], tuple[Run, Run]]] = {
+    "lambdify": lambdify,
+    "symengine": symengine,
+    "casadi": casadi,
+    "numba": numba,
+    "pytensor": pytensor,
+    "jax": jax,
+}

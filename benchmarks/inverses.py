@@ -1,0 +1,5 @@
+PEERS = {}
+
+
+def compare(report, rounds):
+    pass

@@ -1,0 +1,198 @@
+"""Peers that print C or C++: one shared library each, timed by one loop in C."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib
+import inspect
+import logging
+import subprocess
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import sympy as sp
+
+from .cases import Case
+
+HERE = Path(__file__).parent
+GENERATED = HERE.parent / "generated" / "c"
+FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast", "-fPIC", "-shared"]
+TARGETS = {"AVX-512": "x86-64-v4", "AVX2": "x86-64-v3"}
+
+LOOP = """
+#include <time.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+void evaluate(const double *in, double *out);
+double run(const double *in, double *out, int n_in, int n_out, int rows, int rounds)
+{
+    struct timespec a, b;
+    clock_gettime(CLOCK_MONOTONIC, &a);
+    for (int k = 0; k < rounds; ++k)
+        for (int i = 0; i < rows; ++i)
+            evaluate(in + i * n_in, out + i * n_out);
+    clock_gettime(CLOCK_MONOTONIC, &b);
+    return (1e9 * (double)(b.tv_sec - a.tv_sec) + (double)(b.tv_nsec - a.tv_nsec)) / rounds / rows;
+}
+#ifdef __cplusplus
+}
+#endif
+"""
+
+
+def ours(case: Case) -> str:
+    n = len(case.source.symbols)
+    values = len(case.expressions)
+    status = f", (unsigned char *)(out + {values})" if case.source.has_status else ""
+    return f"""
+#include "{case.robot}.c"
+__attribute__((noinline)) void evaluate(const double *in, double *out)
+{{
+    {case.full}((const {case.robot}_params *)(in + {n}), in, out{status});
+}}
+"""
+
+
+def limit(case: Case) -> str:
+    """A kernel written by hand for this function, with one eight-lane sincos."""
+    source = HERE / "limits" / f"{case.full}.c"
+    if not source.exists():
+        raise LookupError("no kernel written by hand")
+    return f'#include "closedform.h"\n#include "{source}"\n'
+
+
+def sympy_c(case: Case) -> str:
+    temporaries, results = sp.cse(case.expressions, symbols=sp.numbered_symbols("tmp"))
+    lines = [f"const double {s} = in[{k}];" for k, s in enumerate(case.symbols)]
+    lines += [f"const double {s} = {sp.ccode(e)};" for s, e in temporaries]
+    lines += [f"out[{k}] = {sp.ccode(e)};" for k, e in enumerate(results)]
+    body = "\n    ".join(lines)
+    return (
+        "#include <math.h>\n__attribute__((noinline)) "
+        f"void evaluate(const double *in, double *out)\n{{\n    {body}\n}}\n"
+    )
+
+
+def casadi(case: Case) -> str:
+    import casadi as ca
+
+    names = {"sin": ca.sin, "cos": ca.cos, "atan2": ca.atan2, "sqrt": ca.sqrt, "abs": ca.fabs}
+    x = ca.SX.sym("x", len(case.symbols))
+    values = case.translate(names)(*ca.vertsplit(x))
+    function = ca.Function("peer", [x], [ca.vertcat(*values)], {"cse": True})
+    with tempfile.TemporaryDirectory() as folder:
+        generator = ca.CodeGenerator("peer.c")
+        generator.add(function)
+        generator.generate(folder + "/")
+        code = Path(folder, "peer.c").read_text()
+    return (
+        code + "\n__attribute__((noinline)) void evaluate(const double *in, double *out)\n"
+        "{ const double *arg[] = { in }; double *res[] = { out }; peer(arg, res, 0, 0, 0); }\n"
+    )
+
+
+def symforce(case: Case) -> str:
+    logging.disable(logging.WARNING)
+    sf = importlib.import_module("symforce.symbolic")
+    codegen = importlib.import_module("symforce.codegen")
+    values_type = importlib.import_module("symforce.values").Values
+
+    names = {
+        "sin": sf.sin,
+        "cos": sf.cos,
+        "sqrt": sf.sqrt,
+        "abs": sf.Abs,
+        "atan2": lambda y, x: sf.atan2(y, x, epsilon=0),
+    }
+    x = sf.Matrix([sf.Symbol(f"x{k}") for k in range(len(case.symbols))])
+    out = sf.Matrix(case.translate(names)(*x))
+    generator = codegen.Codegen(
+        inputs=values_type(x=x),
+        outputs=values_type(out=out),
+        config=codegen.CppConfig(),
+        name="peer",
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        paths = generator.generate_function(output_dir=folder, skip_directory_nesting=True)
+        code = Path(paths.function_dir, "peer.h").read_text()
+    n, m = len(case.symbols), len(case.expressions)
+    return code.replace("#pragma once", "#include <cmath>") + (
+        '\nextern "C" __attribute__((noinline)) void evaluate(const double *in, double *out)\n{\n'
+        f"    Eigen::Matrix<double, {n}, 1> x = Eigen::Map<const Eigen::Matrix<double, {n}, 1>>(in);\n"
+        f"    Eigen::Matrix<double, {m}, 1> y;\n    sym::Peer<double>(x, &y);\n"
+        f"    for (int i = 0; i < {m}; ++i) out[i] = y[i];\n}}\n"
+    )
+
+
+def wrenfold(case: Case) -> str:
+    from wrenfold import code_generation, sym, type_annotations
+
+    names = {n: getattr(sym, n) for n in ("sin", "cos", "atan2", "sqrt", "abs")}
+    translated = case.translate(names)
+
+    def peer(**arguments):
+        values = translated(*arguments.values())
+        return [code_generation.OutputArg(e, name=f"out{k}") for k, e in enumerate(values)]
+
+    kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    scalar = type_annotations.FloatScalar
+    symbols = [f"x{k}" for k in range(len(case.symbols))]
+    peer.__annotations__ = dict.fromkeys(symbols, scalar)
+    peer.__signature__ = inspect.Signature(
+        [inspect.Parameter(s, kind, annotation=scalar) for s in symbols]
+    )
+    code = code_generation.generate_function(peer, code_generation.CppGenerator())
+    arguments = [f"in[{k}]" for k in range(len(symbols))]
+    arguments += [f"out[{k}]" for k in range(len(case.expressions))]
+    return (
+        f"#include <cmath>\n{code}\n"
+        'extern "C" __attribute__((noinline)) void evaluate(const double *in, double *out)\n'
+        f"{{ peer<double>({', '.join(arguments)}); }}\n"
+    )
+
+
+SOURCES: dict[str, tuple[Callable[[Case], str], str]] = {
+    "closedform": (ours, "c"),
+    "limit": (limit, "c"),
+    "sympy.cse": (sympy_c, "c"),
+    "casadi": (casadi, "c"),
+    "symforce": (symforce, "c++"),
+    "wrenfold": (wrenfold, "c++"),
+}
+
+
+def build(name: str, case: Case, target: str, folder: Path) -> ctypes.CDLL:
+    """The library of one competitor, compiled for ``target``."""
+    printer, language = SOURCES[name]
+    suffix, compiler = ("c", ["gcc", "-std=gnu99"]) if language == "c" else ("cc", ["g++"])
+    stem = f"{name.replace('.', '_')}_{case.full}_{target}"
+    source, library = folder / f"{stem}.{suffix}", folder / f"{stem}.so"
+    source.write_text(printer(case))
+    loop = folder / f"loop.{suffix}"
+    loop.write_text(LOOP)
+    command = [*compiler, *FLAGS, f"-march={target}", f"-I{GENERATED}", "-I/usr/include/eigen3"]
+    command += ["-o", str(library), str(source), str(loop), "-lm"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(done.stderr.strip().splitlines()[0])
+    return ctypes.CDLL(str(library))
+
+
+def timer(
+    name: str, case: Case, target: str, folder: Path, inputs: np.ndarray
+) -> tuple[Callable[[], float], np.ndarray]:
+    """A function that returns nanoseconds a call, and the values of one pass."""
+    library = build(name, case, target, folder)
+    run = library.run
+    run.restype = ctypes.c_double
+    pointer = np.ctypeslib.ndpointer(np.float64, flags="C")
+    run.argtypes = [pointer, pointer, *[ctypes.c_int] * 4]
+    rows = np.hstack([inputs, np.tile(list(case.parameters.values()), (len(inputs), 1))])
+    width = len(case.expressions)
+    out = np.full((len(inputs), width + 8), np.nan)
+    run(rows, out, rows.shape[1], out.shape[1], len(rows), 1)
+    values = out[:, :width].copy()
+    return lambda: run(rows, out, rows.shape[1], out.shape[1], len(rows), 20), values

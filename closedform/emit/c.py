@@ -38,22 +38,8 @@ CALLS = {
     "select": "cf_select",
 }
 LOCALS = frozenset(
-    [
-        "params",
-        "local",
-        "lanes",
-        "sines",
-        "cosines",
-        "n",
-        "i",
-        "length",
-        "start",
-        "vector",
-        "opposite",
-        "adjacent",
-        "angles",
-    ]
-)
+    ["params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start"]
+) | frozenset(["vector", "opposite", "adjacent", "angles"])
 RESERVED = LOCALS | frozenset(
     [
         "auto",

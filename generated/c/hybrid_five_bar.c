@@ -12,10 +12,10 @@
  *   jacobian: 35 add, 29 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
  *   determinant: 20 add, 29 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
  *   singularities: 26 add, 29 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
- *   condition_number: 9 add, 29 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
+ *   condition_number: 9 add, 30 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
  *   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
  *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
- *   workspace_volume: 15 add, 28 compare and select, 4 divide, 28 multiply
+ *   workspace_volume: 15 add, 31 compare and select, 4 divide, 29 multiply
  */
 #include "hybrid_five_bar.h"
 
@@ -665,42 +665,45 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params
     const real_t s3 = sines[1];
     const real_t c3 = cosines[1];
     const real_t C_r = L1 * s2;
-    const real_t t1 = C_r - L1 * s3;
-    const real_t t2 = L1 * c2 - (L0 + L1 * c3);
-    const real_t apart = cf_sqrt(t1 * t1 + t2 * t2);
-    const real_t t3 = L0 + L1 + L2;
-    const real_t t4 = t3 * CLOSEDFORM_VANISHING;
-    const int coincide = apart <= t4;
+    const real_t D_r = L1 * s3;
+    const real_t t1 = C_r - D_r;
+    const real_t C_y = L1 * c2;
+    const real_t t2 = L1 * c3;
+    const real_t t3 = C_y - (L0 + t2);
+    const real_t apart = cf_sqrt(t1 * t1 + t3 * t3);
+    const real_t t4 = L0 + L1 + L2;
+    const real_t t5 = t4 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
-    const real_t t7 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t8 = t7 - apart;
-    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t9);
-    const real_t t10 = n_1 * height;
-    const real_t DP_r_right_of_CD = t6 - t10;
-    const int t11 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t12 = t11 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t13 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
-    const real_t t14 = cf_poison(failed);
-    const real_t t15 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t16 = t5 * height;
-    const real_t CP_y = t15 + t16;
-    const real_t DP_r = t6 + t10;
-    const real_t CP_y_right_of_CD = t15 - t16;
+    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t t8 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t9 = t8 - apart;
+    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
+    const real_t t11 = n_1 * height;
+    const real_t DP_r_right_of_CD = t7 - t11;
+    const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t14 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const real_t t15 = cf_poison(failed);
+    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t17 = t6 * height;
+    const real_t CP_y = t16 + t17;
+    const real_t DP_r = t7 + t11;
+    const real_t CP_y_right_of_CD = t16 - t17;
     const real_t side = distance * height;
-    factors[0] = C_r - DP_r_right_of_CD + t14;
-    factors[1] = -(c2 * DP_r_right_of_CD + s2 * CP_y) + t14;
-    factors[2] = c3 * DP_r + s3 * CP_y_right_of_CD + t14;
-    factors[3] = side + t14;
-    factors[4] = C_r - DP_r + t14;
-    factors[5] = -(c2 * DP_r + s2 * CP_y_right_of_CD) + t14;
-    factors[6] = c3 * DP_r_right_of_CD + s3 * CP_y + t14;
-    factors[7] = -side + t14;
+    factors[0] = C_r - DP_r_right_of_CD + t15;
+    factors[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t15;
+    factors[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t15;
+    factors[3] = side + t15;
+    factors[4] = C_r - DP_r + t15;
+    factors[5] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t15;
+    factors[6] = t2 * DP_r_right_of_CD + D_r * CP_y + t15;
+    factors[7] = -side + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -762,20 +765,22 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_par
     const real_t apart = cf_sqrt(t1 * t1 + t2 * t2);
     const real_t t3 = L0 + L1 + L2;
     const real_t t4 = t3 * CLOSEDFORM_VANISHING;
-    const real_t distance = cf_select(apart <= t4, CLOSEDFORM_C(0.0), apart);
+    const int coincide = apart <= t4;
+    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
     const real_t t5 = distance / CLOSEDFORM_C(2.0);
     const real_t t6 = L2 * CLOSEDFORM_C(2.0);
     const real_t t7 = t6 - apart;
     const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
     const real_t t8 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
     const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t8);
-    const int t9 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t10 = t9 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t11 = t10 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t11 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t7);
-    const real_t t12 = cf_max(t5, height) / cf_min(t5, height) + cf_poison(failed);
-    kappa[0] = t12;
-    kappa[1] = t12;
+    const real_t t9 = cf_select(coincide, CLOSEDFORM_C(1.0), cf_max(t5, height));
+    const int t10 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int t11 = t10 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
+    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int failed = !(t12 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t7);
+    const real_t t13 = t9 / cf_min(t5, height) + cf_poison(failed);
+    kappa[0] = t13;
+    kappa[1] = t13;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1070,30 +1075,30 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_par
     const real_t L2 = params->L2;
     const real_t t1 = L1 + L2;
     const real_t t2 = cf_max(t1, CLOSEDFORM_C(0.0)) * CLOSEDFORM_C(2.0);
-    const real_t longer = cf_max(L1, L2);
-    const real_t t3 = longer * CLOSEDFORM_C(2.0);
-    const real_t shorter = cf_min(L1, L2);
-    const real_t t4 = shorter * CLOSEDFORM_C(2.0);
+    const real_t M = cf_max(L1, L2);
+    const real_t t3 = M * CLOSEDFORM_C(2.0);
+    const real_t m = cf_min(L1, L2);
+    const real_t t4 = m * CLOSEDFORM_C(2.0);
     const real_t t5 = L0 - t3;
     const real_t t6 = t4 - t5;
-    const real_t t7 = shorter * CLOSEDFORM_C(4.0);
-    const real_t t8 = L0 + longer * CLOSEDFORM_C(4.0);
+    const real_t t7 = m * CLOSEDFORM_C(4.0);
+    const real_t t8 = L0 + M * CLOSEDFORM_C(4.0);
     const real_t t9 = CLOSEDFORM_C(3.141592653589793) * (t6 * t6) * (t7 + t8);
     const real_t t10 = t9 / CLOSEDFORM_C(12.0);
-    const real_t gap = longer - shorter;
-    const int t11 = L0 <= gap * CLOSEDFORM_C(2.0);
-    const real_t t12 = longer * longer;
-    const real_t t13 = shorter * shorter;
-    const real_t t14 = t12 * t13 * CLOSEDFORM_C(25.132741228718345) / L0;
-    const real_t t15 = t4 + t5;
-    const real_t t16 = CLOSEDFORM_C(3.141592653589793) * (t15 * t15);
-    const real_t t17 = cf_select(t11, t14, t14 + t16 * (t7 - t8) / CLOSEDFORM_C(12.0));
-    const real_t t18 = L0 * L0 * L0 - L0 * CLOSEDFORM_C(12.0) * (t12 + t13);
-    const real_t t19 = shorter * CLOSEDFORM_C(16.0) * (t13 + t12 * CLOSEDFORM_C(3.0));
-    const real_t t20 = CLOSEDFORM_C(3.141592653589793) * (t18 + t19);
-    const real_t t21 = gap * gap * gap * CLOSEDFORM_C(8.377580409572783);
-    const real_t t22 = cf_select(t11, t20 / CLOSEDFORM_C(6.0), t10 - t21);
-    const real_t t23 = cf_select(t3 <= L0, t10, cf_select(t4 < L0, t17, t22));
+    const real_t r = M - m;
+    const int t11 = L0 <= CLOSEDFORM_C(2.0) * cf_min(m, r);
+    const real_t t12 = M * M;
+    const real_t t13 = m * m;
+    const real_t t14 = L0 * L0 * L0 - L0 * CLOSEDFORM_C(12.0) * (t12 + t13);
+    const real_t t15 = m * CLOSEDFORM_C(16.0) * (t13 + t12 * CLOSEDFORM_C(3.0));
+    const real_t t16 = CLOSEDFORM_C(3.141592653589793) * (t14 + t15);
+    const int t17 = CLOSEDFORM_C(2.0) * cf_max(m, r) <= L0;
+    const real_t t18 = t12 * t13 * CLOSEDFORM_C(25.132741228718345) / L0;
+    const real_t t19 = t4 + t5;
+    const real_t t20 = CLOSEDFORM_C(3.141592653589793) * (t19 * t19);
+    const real_t t21 = t10 - r * r * r * CLOSEDFORM_C(8.377580409572783);
+    const real_t t22 = cf_select(t17, t18 + t20 * (t7 - t8) / CLOSEDFORM_C(12.0), cf_select(L0 <= t4, t21, t18));
+    const real_t t23 = cf_select(t3 <= L0, t10, cf_select(t11, t16 / CLOSEDFORM_C(6.0), t22));
     const int t24 = cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t25 = t24 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int failed = !(t25 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1);

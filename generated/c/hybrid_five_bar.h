@@ -12,10 +12,10 @@
  *   jacobian: 35 add, 29 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
  *   determinant: 20 add, 29 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
  *   singularities: 26 add, 29 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
- *   condition_number: 9 add, 29 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
+ *   condition_number: 9 add, 30 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
  *   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
  *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
- *   workspace_volume: 15 add, 28 compare and select, 4 divide, 28 multiply
+ *   workspace_volume: 15 add, 31 compare and select, 4 divide, 29 multiply
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
@@ -33,9 +33,9 @@ extern "C" {
 
 /* Five-bar linkage on a revolute: dimensions. */
 typedef struct {
-    real_t L0; /* distance AB of the pivots, in any length (the paper gives no value) */
-    real_t L1; /* length of the driven bars, in any length (the paper gives no value) */
-    real_t L2; /* length of the following bars, in any length (the paper gives no value) */
+    real_t L0; /* distance AB of the pivots, in any unit (the paper gives no value) */
+    real_t L1; /* length of the driven bars, in any unit (the paper gives no value) */
+    real_t L2; /* length of the following bars, in any unit (the paper gives no value) */
 } hybrid_five_bar_params;
 
 /* The example dimensions: hybrid_five_bar_params p = HYBRID_FIVE_BAR_DEFAULTS; */
@@ -48,7 +48,7 @@ typedef struct {
  * q: shape (..., 3): theta1, theta2, theta3.
  * Returns p: shape (..., 2, 3).
  * Branches: left_of_CD, right_of_CD.
- * UNREACHABLE: C and D are more than 2 L2 apart, the loop is open.
+ * UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.
  * SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point at
  *     theta4 = theta5 = +90 or -90 degrees is returned.
  * Ill-conditioned near the parallel singularities, where both modes meet or P is free.
@@ -64,6 +64,8 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
  * q: shape (..., 3): theta1, theta2, theta3.
  * Returns theta: shape (..., 2, 2).
  * Branches: left_of_CD, right_of_CD.
+ * NaN for an assembly mode that does not exist.
+ * Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
  */
 void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params, const real_t
     q[3], real_t theta[4]);
@@ -72,7 +74,7 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
     size_t theta_stride);
 
 /*
- * A of A dp = B dq; its rows are L2 k, p - c and p - d.
+ * A of A*dp = B*dq; its rows are L2*k, p - c and p - d.
  * q: shape (..., 3): theta1, theta2, theta3.
  * Returns A: shape (..., 2, 3, 3).
  * Branches: left_of_CD, right_of_CD.
@@ -85,7 +87,8 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
     A_stride);
 
 /*
- * The diagonal of B of A dp = B dq.
+ * The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 -
+ *     theta3).
  * q: shape (..., 3): theta1, theta2, theta3.
  * Returns B: shape (..., 2, 3).
  * Branches: left_of_CD, right_of_CD.
@@ -99,7 +102,7 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
     B_stride);
 
 /*
- * Derivative of p with respect to q, A^-1 B.
+ * Derivative of p with respect to q: A^-1*B.
  * q: shape (..., 3): theta1, theta2, theta3.
  * Returns J: shape (..., 2, 3, 3).
  * Branches: left_of_CD, right_of_CD.
@@ -127,8 +130,8 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
     size_t det_stride);
 
 /*
- * Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2) and L2
- *     sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the parallel one.
+ * Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and
+ *     L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.
  * q: shape (..., 3): theta1, theta2, theta3.
  * Returns factors: shape (..., 2, 4).
  * Branches: left_of_CD, right_of_CD.
@@ -146,7 +149,8 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
  * Returns kappa: shape (..., 2).
  * Branches: left_of_CD, right_of_CD.
  * NaN for an assembly mode that does not exist.
- * Infinite at a parallel singularity; it does not depend on theta1.
+ * Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
+ *     same.
  */
 void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params, const real_t
     q[3], real_t kappa[2]);

@@ -869,7 +869,7 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const real_t R1_13 = T13 * c1 - T23 * t10;
     const real_t R2_13 = T33 * s23 + c23 * R1_13;
     const real_t h = cf_sqrt(t59 + R2_13 * R2_13);
-    const real_t t60 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(128.0);
+    const real_t t60 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
     const int aligned = h <= t60;
     const real_t t61 = cf_select(aligned, CLOSEDFORM_C(0.0), t58 / h);
     const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(R2_13 / h));

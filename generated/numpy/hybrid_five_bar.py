@@ -11,17 +11,17 @@
 #   jacobian: 35 add, 29 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
 #   determinant: 20 add, 29 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
 #   singularities: 26 add, 29 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
-#   condition_number: 9 add, 29 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
+#   condition_number: 9 add, 30 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
 #   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
 #   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
-#   workspace_volume: 15 add, 28 compare and select, 4 divide, 28 multiply
+#   workspace_volume: 15 add, 31 compare and select, 4 divide, 29 multiply
 """Five-bar linkage on a revolute.
 
 The pivots A, the origin, and B lie L0 apart on the y axis.  The bars AC and BD of length L1 are
 driven at the angles theta2 and theta3, the bars CP and DP of length L2 follow at theta4 and
 theta5; all four angles are measured from the y axis.  theta1 turns the linkage about AB; at
-theta1 = 0 it lies in the plane of x and y, and a bar at the angle t points along (-sin t, cos
-t, 0).
+theta1 = 0 it lies in the plane of x and y, and a bar at the angle t points along (-sin(t),
+cos(t), 0).
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid Manipulator.
@@ -71,11 +71,11 @@ class Parameters(NamedTuple):
     """Dimensions; each field may be an array that broadcasts."""
 
     L0: Any = 7.0
-    """distance AB of the pivots, in any length (the paper gives no value)"""
+    """distance AB of the pivots, in any unit (the paper gives no value)"""
     L1: Any = 8.0
-    """length of the driven bars, in any length (the paper gives no value)"""
+    """length of the driven bars, in any unit (the paper gives no value)"""
     L2: Any = 5.0
-    """length of the following bars, in any length (the paper gives no value)"""
+    """length of the following bars, in any unit (the paper gives no value)"""
 
 
 _DEFAULT = Parameters()
@@ -142,7 +142,7 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
     q: shape (..., 3): theta1, theta2, theta3.
     Returns p: shape (..., 2, 3).
     Branches: left_of_CD, right_of_CD.
-    UNREACHABLE: C and D are more than 2 L2 apart, the loop is open.
+    UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.
     SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
         at theta4 = theta5 = +90 or -90 degrees is returned.
     Ill-conditioned near the parallel singularities, where both modes meet or P is free.
@@ -208,6 +208,8 @@ def passive_angles(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = No
     q: shape (..., 3): theta1, theta2, theta3.
     Returns theta: shape (..., 2, 2).
     Branches: left_of_CD, right_of_CD.
+    NaN for an assembly mode that does not exist.
+    Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
     return result
@@ -283,7 +285,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
 
 
 def jacobian_parallel(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """A of A dp = B dq; its rows are L2 k, p - c and p - d.
+    """A of A*dp = B*dq; its rows are L2*k, p - c and p - d.
 
     q: shape (..., 3): theta1, theta2, theta3.
     Returns A: shape (..., 2, 3, 3).
@@ -348,7 +350,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
 
 
 def jacobian_serial(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """The diagonal of B of A dp = B dq.
+    """The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 - theta3).
 
     q: shape (..., 3): theta1, theta2, theta3.
     Returns B: shape (..., 2, 3).
@@ -439,7 +441,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Derivative of p with respect to q, A^-1 B.
+    """Derivative of p with respect to q: A^-1*B.
 
     q: shape (..., 3): theta1, theta2, theta3.
     Returns J: shape (..., 2, 3, 3).
@@ -522,42 +524,45 @@ def _singularities(theta1, theta2, theta3, L0, L1, L2):
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     C_r = L1 * s2
-    t1 = C_r - L1 * s3
-    t2 = L1 * c2 - (L0 + L1 * c3)
-    apart = np.sqrt(t1 * t1 + t2 * t2)
-    t3 = L0 + L1 + L2
-    t4 = t3 * _runtime.VANISHING
-    coincide = apart <= t4
+    D_r = L1 * s3
+    t1 = C_r - D_r
+    C_y = L1 * c2
+    t2 = L1 * c3
+    t3 = C_y - (L0 + t2)
+    apart = np.sqrt(t1 * t1 + t3 * t3)
+    t4 = L0 + L1 + L2
+    t5 = t4 * _runtime.VANISHING
+    coincide = apart <= t5
     distance = np.where(coincide, 0.0, apart)
-    t5 = np.where(coincide, 0.0, t1 / apart)
-    t6 = distance * t5 / 2.0
-    n_1 = np.where(coincide, 1.0, -(t2 / apart))
-    t7 = L2 * 2.0
-    t8 = t7 - apart
-    slack = np.maximum(t8, 0.0)
-    height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
-    t9 = n_1 * height
-    DP_r_right_of_CD = t6 - t9
-    t10 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t11 = t10 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
-    t13 = _runtime.poison(np.logical_not(t12) | unreachable)
-    t14 = distance * n_1 / 2.0
-    t15 = t5 * height
-    CP_y = t14 + t15
-    DP_r = t6 + t9
-    CP_y_right_of_CD = t14 - t15
+    t6 = np.where(coincide, 0.0, t1 / apart)
+    t7 = distance * t6 / 2.0
+    n_1 = np.where(coincide, 1.0, -(t3 / apart))
+    t8 = L2 * 2.0
+    t9 = t8 - apart
+    slack = np.maximum(t9, 0.0)
+    height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    t10 = n_1 * height
+    DP_r_right_of_CD = t7 - t10
+    t11 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t12 = t11 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t13 = t12 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
+    t14 = _runtime.poison(np.logical_not(t13) | unreachable)
+    t15 = distance * n_1 / 2.0
+    t16 = t6 * height
+    CP_y = t15 + t16
+    DP_r = t7 + t10
+    CP_y_right_of_CD = t15 - t16
     side = distance * height
     return (
-        C_r - DP_r_right_of_CD + t13,
-        -(c2 * DP_r_right_of_CD + s2 * CP_y) + t13,
-        c3 * DP_r + s3 * CP_y_right_of_CD + t13,
-        side + t13,
-        C_r - DP_r + t13,
-        -(c2 * DP_r + s2 * CP_y_right_of_CD) + t13,
-        c3 * DP_r_right_of_CD + s3 * CP_y + t13,
-        -side + t13,
+        C_r - DP_r_right_of_CD + t14,
+        -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14,
+        t2 * DP_r + D_r * CP_y_right_of_CD + t14,
+        side + t14,
+        C_r - DP_r + t14,
+        -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14,
+        t2 * DP_r_right_of_CD + D_r * CP_y + t14,
+        -side + t14,
     )
 
 
@@ -572,7 +577,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2) and L2 sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the parallel one.
+    """Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.
 
     q: shape (..., 3): theta1, theta2, theta3.
     Returns factors: shape (..., 2, 4).
@@ -591,18 +596,19 @@ def _condition_number(theta1, theta2, theta3, L0, L1, L2):
     apart = np.sqrt(t1 * t1 + t2 * t2)
     t3 = L0 + L1 + L2
     t4 = t3 * _runtime.VANISHING
-    t5 = np.where(apart <= t4, 0.0, apart) / 2.0
+    coincide = apart <= t4
+    t5 = np.where(coincide, 0.0, apart) / 2.0
     t6 = L2 * 2.0
     t7 = t6 - apart
     slack = np.maximum(t7, 0.0)
     height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
-    t8 = np.maximum(t5, height) / np.minimum(t5, height)
+    t8 = np.where(coincide, 1.0, np.maximum(t5, height))
     t9 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     t10 = t9 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t7)
     t12 = _runtime.poison(np.logical_not(t11) | unreachable)
-    t13 = t8 + t12
+    t13 = t8 / np.minimum(t5, height) + t12
     return (
         t13,
         t13,
@@ -626,7 +632,8 @@ def condition_number(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = 
     Returns kappa: shape (..., 2).
     Branches: left_of_CD, right_of_CD.
     NaN for an assembly mode that does not exist.
-    Infinite at a parallel singularity; it does not depend on theta1.
+    Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
+        same.
     """
     result = _runtime.evaluate(_CONDITION_NUMBER, (q,), params, out)
     return result
@@ -793,25 +800,25 @@ def workspace_contains(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any 
 
 def _workspace_volume(L0, L1, L2):
     t1 = L1 + L2
-    longer = np.maximum(L1, L2)
-    t2 = longer * 2.0
-    shorter = np.minimum(L1, L2)
-    t3 = shorter * 2.0
+    M = np.maximum(L1, L2)
+    t2 = M * 2.0
+    m = np.minimum(L1, L2)
+    t3 = m * 2.0
     t4 = L0 - t2
     t5 = t3 - t4
-    t6 = shorter * 4.0
-    t7 = L0 + longer * 4.0
+    t6 = m * 4.0
+    t7 = L0 + M * 4.0
     t8 = 3.141592653589793 * (t5 * t5) * (t6 + t7) / 12.0
-    gap = longer - shorter
-    t9 = L0 <= gap * 2.0
-    t10 = longer * longer
-    t11 = shorter * shorter
-    t12 = t10 * t11 * 25.132741228718345 / L0
+    r = M - m
+    t9 = M * M
+    t10 = m * m
+    t11 = L0 * L0 * L0 - L0 * 12.0 * (t9 + t10) + m * 16.0 * (t10 + t9 * 3.0)
+    t12 = t9 * t10 * 25.132741228718345 / L0
     t13 = t3 + t4
     t14 = 3.141592653589793 * (t13 * t13) * (t6 - t7) / 12.0
-    t15 = L0 * L0 * L0 - L0 * 12.0 * (t10 + t11) + shorter * 16.0 * (t11 + t10 * 3.0)
-    t16 = np.where(t9, 3.141592653589793 * t15 / 6.0, t8 - gap * gap * gap * 8.377580409572783)
-    t17 = np.where(t3 < L0, np.where(t9, t12, t12 + t14), t16)
+    t15 = np.where(L0 <= t3, t8 - r * r * r * 8.377580409572783, t12)
+    t16 = np.where(2.0 * np.maximum(m, r) <= L0, t12 + t14, t15)
+    t17 = np.where(L0 <= 2.0 * np.minimum(m, r), 3.141592653589793 * t11 / 6.0, t16)
     t18 = np.where(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, np.where(t2 <= L0, t8, t17))
     t19 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t20 = t19 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)

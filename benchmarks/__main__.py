@@ -16,17 +16,21 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 
+import numpy as np
 
 from . import batches, inverses, native
 from .cases import CASES, Case, check
 
 MILLION = 1_000_000
 PACKAGES = {"sympy.cse": "sympy", "lambdify": "sympy"}
-Competitors = dict[str, Callable[[], float]]
+Run = Callable[[], float]
+Maker = Callable[[], Run]
+Competitors = dict[str, Run]
 
 
 class Report:
@@ -57,19 +61,7 @@ def explained(error: BaseException) -> str:
     return f"{type(error).__name__}: {text[:110]}"
 
 
-def attempt(
-    report: Report, failures: list[str], name: str, make: Callable[[], Callable[[], float]]
-) -> Callable[[], float] | None:
-    try:
-        return make()
-    except LookupError:
-        return None
-    except Exception as error:
-        failures.append(f"- {name}: {explained(error)}")
-        return None
-
-
-def clock(run: Callable[[], object], postures: int, repeat: int) -> Callable[[], float]:
+def clock(run: Callable[[], object], postures: int, repeat: int) -> Run:
     def timed() -> float:
         start = time.perf_counter_ns()
         for _ in range(repeat):
@@ -79,62 +71,62 @@ def clock(run: Callable[[], object], postures: int, repeat: int) -> Callable[[],
     return timed
 
 
+def compared(
+    report: Report, title: str, unit: str, makers: Mapping[str, Maker], rounds: int
+) -> None:
+    """One table of the competitors that can be made, and the errors of those that cannot."""
+    competitors: Competitors = {}
+    failures = []
+    for name, make in makers.items():
+        try:
+            competitors[name] = make()
+        except LookupError:
+            continue
+        except Exception as error:
+            failures.append(f"- {name}: {explained(error)}")
+    report.table(title, unit, competitors, rounds)
+    report.write()
+    for failure in failures:
+        report.write(failure)
+
+
+def from_c(name: str, case: Case, target: str, folder: Path, inputs: np.ndarray) -> Run:
+    run, values = native.timer(name, case, target, folder, inputs)
+    check(case, values, case.values(inputs))
+    return run
+
+
 def calls_from_c(report: Report, cases: list[Case], rounds: int, folder: Path) -> None:
     report.write("\n## One call from C\n")
     flags = " ".join(native.FLAGS[:4])
     report.write(f"Every competitor compiled with `{flags}`, 512 postures in turn.")
     for case in cases:
         inputs = case.inputs(512)
-        expected = case.values(inputs)
         for label, target in native.TARGETS.items():
-            failures: list[str] = []
-            competitors: Competitors = {}
-            for name in native.SOURCES:
+            makers = {
+                name: partial(from_c, name, case, target, folder, inputs) for name in native.SOURCES
+            }
+            compared(report, f"{case.title}, {label}", "ns", makers, rounds)
 
-                def make(name: str = name, target: str = target) -> Callable[[], float]:
-                    run, values = native.timer(name, case, target, folder, inputs)
-                    check(name, case, values, expected)
-                    return run
 
-                if timed := attempt(report, failures, name, make):
-                    competitors[name] = timed
-            report.table(f"{case.title}, {label}", "ns", competitors, rounds)
-            for failure in failures:
-                report.write(failure)
+def from_python(peer: batches.Peer, case: Case, layout: str, rows: np.ndarray) -> Run:
+    run, values = peer(case, layout, rows)
+    check(case, values()[:1000], case.values(rows[:1000]))
+    return clock(run, len(rows), 1 if len(rows) > 1 else 2000)
 
 
 def calls_from_python(report: Report, cases: list[Case], rounds: int, n: int) -> None:
     """Batches of ``n`` in both layouts, or single postures."""
     report.write(f"\n## {'One call' if n == 1 else f'Batch of {n:,}'} from Python")
+    layouts = {"planes": ", structure of arrays, `out=`", "rows": ", `(N, n)` arrays"}
     for case in cases:
-        rows = case.inputs(n)
-        sample = slice(None, 1000)
-        expected = case.values(rows[sample])
-        for layout in ("planes", "rows") if n > 1 else ("rows",):
-            failures: list[str] = []
-            competitors: Competitors = {}
+        inputs = case.inputs(n)
+        for layout, words in layouts.items() if n > 1 else [("rows", "")]:
             makers = {
-                "closedform C": lambda layout, rows: batches.ours(case, "c", layout, rows),
-                "closedform NumPy": lambda layout, rows: batches.ours(case, "numpy", layout, rows),
-                **{
-                    name: lambda layout, rows, peer=peer: peer(case, layout, rows)
-                    for name, peer in batches.PEERS.items()
-                },
+                name: partial(from_python, peer, case, layout, inputs)
+                for name, peer in batches.PEERS.items()
             }
-            for name, maker in makers.items():
-
-                def make(name=name, maker=maker, layout=layout) -> Callable[[], float]:
-                    run, values = maker(layout, rows)
-                    check(name, case, values()[sample], expected)
-                    return clock(run, n, 1 if n > 1 else 2000)
-
-                if timed := attempt(report, failures, name, make):
-                    competitors[name] = timed
-            shape = {"planes": "structure of arrays, `out=`", "rows": "`(N, n)` arrays"}[layout]
-            title = f"{case.title}, {shape}" if n > 1 else case.title
-            report.table(title, "ns a posture", competitors, rounds)
-            for failure in failures:
-                report.write(failure)
+            compared(report, case.title + words, "ns a posture", makers, rounds)
 
 
 def versions() -> str:

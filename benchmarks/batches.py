@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from .cases import Case
 
 Run = Callable[[], Any]
+Peer = Callable[[Case, str, np.ndarray], tuple[Run, Run]]
 NAMES = ("sin", "cos", "arctan2", "sqrt", "abs")
 
 
@@ -27,7 +29,7 @@ def planes_of(rows: np.ndarray) -> np.ndarray:
     return memory
 
 
-def ours(case: Case, backend: str, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+def ours(backend: str, case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     function = case.ours(backend)
     core = case.source.inputs[0].shape
     if layout == "rows":
@@ -71,7 +73,8 @@ def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
         raise LookupError("takes rows")
     import symengine as se
 
-    function = se.Lambdify(case.symbols, case.expressions, backend="llvm", cse=True)
+    backend = "llvm" if se.have_llvm else "lambda"
+    function = se.Lambdify(case.symbols, case.expressions, backend=backend, cse=True)
     x = np.hstack([rows, np.tile(list(case.parameters.values()), (len(rows), 1))])
     out = np.empty((len(rows), len(case.expressions)))
     return lambda: function(x, out=out), lambda: function(x)
@@ -95,14 +98,15 @@ def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     buffer.set_arg(0, memoryview(x_rows))
     buffer.set_arg(1, memoryview(constants))
     buffer.set_res(0, memoryview(out))
-    keep = (buffer, x_rows, constants)
+
+    def run(_alive: Any = (buffer, x_rows, constants, out)) -> None:
+        trigger()
 
     def values_of() -> np.ndarray:
-        assert keep
-        trigger()
+        run()
         return out.copy()
 
-    return trigger, values_of
+    return run, values_of
 
 
 def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
@@ -179,7 +183,9 @@ def jax(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     return lambda: function(x).block_until_ready(), values
 
 
-PEERS: dict[str, Callable[[Case, str, np.ndarray], tuple[Run, Run]]] = {
+PEERS: dict[str, Peer] = {
+    "closedform C": partial(ours, "c"),
+    "closedform NumPy": partial(ours, "numpy"),
     "lambdify": lambdify,
     "symengine": symengine,
     "casadi": casadi,

@@ -84,7 +84,7 @@ class Case:
         return function
 
 
-def check(name: str, case: Case, got: np.ndarray, expected: np.ndarray) -> None:
+def check(case: Case, got: np.ndarray, expected: np.ndarray) -> None:
     """Values agree, angles of an inverse modulo a turn; a missing branch is NaN in both."""
     gap = np.asarray(got, float) - expected
     if case.inverse:

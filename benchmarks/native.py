@@ -121,7 +121,7 @@ def symforce(case: Case) -> str:
     n, m = len(case.symbols), len(case.expressions)
     return code.replace("#pragma once", "#include <cmath>") + (
         '\nextern "C" __attribute__((noinline)) void evaluate(const double *in, double *out)\n{\n'
-        f"    Eigen::Matrix<double, {n}, 1> x = Eigen::Map<const Eigen::Matrix<double, {n}, 1>>(in);\n"
+        f"    const Eigen::Matrix<double, {n}, 1> x(in);\n"
         f"    Eigen::Matrix<double, {m}, 1> y;\n    sym::Peer<double>(x, &y);\n"
         f"    for (int i = 0; i < {m}; ++i) out[i] = y[i];\n}}\n"
     )

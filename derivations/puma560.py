@@ -25,7 +25,7 @@ d = Derivation(
     task=[f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)],
     singularities=("shoulder", "elbow", "wrist"),
 )
-SOURCE = "Corke's model of the Puma 560, Robotics Toolbox"
+SOURCE = "Puma 560 of the Robotics Toolbox (Corke)"
 
 
 def length(name: str, value: str, meaning: str, *, nonnegative: bool = True) -> sp.Symbol:

@@ -28,7 +28,7 @@ d2 = d.parameter(
     value=sp.Rational("0.154"),
     unit="m",
     meaning="offset of the boom from the base axis",
-    source="Corke's model of the Stanford arm, Robotics Toolbox",
+    source="Stanford arm of the Robotics Toolbox (Corke)",
     nonnegative=False,
 )
 theta1, theta2, d3 = d.joint("theta1"), d.joint("theta2"), d.joint("d3", "prismatic")

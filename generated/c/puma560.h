@@ -29,10 +29,10 @@ extern "C" {
 
 /* Puma 560: dimensions. */
 typedef struct {
-    real_t a2; /* length of the upper arm, in m (Corke's model of the Puma 560, Robotics Toolbox) */
-    real_t a3; /* offset of the forearm at the elbow, in m (Corke's model of the Puma 560, Robotics Toolbox) */
-    real_t d3; /* offset of the arm from the base axis, in m (Corke's model of the Puma 560, Robotics Toolbox) */
-    real_t d4; /* length of the forearm, from the elbow to the wrist, in m (Corke's model of the Puma 560, Robotics Toolbox) */
+    real_t a2; /* length of the upper arm, in m (Puma 560 of the Robotics Toolbox (Corke)) */
+    real_t a3; /* offset of the forearm at the elbow, in m (Puma 560 of the Robotics Toolbox (Corke)) */
+    real_t d3; /* offset of the arm from the base axis, in m (Puma 560 of the Robotics Toolbox (Corke)) */
+    real_t d4; /* length of the forearm, from the elbow to the wrist, in m (Puma 560 of the Robotics Toolbox (Corke)) */
 } puma560_params;
 
 /* The example dimensions: puma560_params p = PUMA560_DEFAULTS; */

@@ -29,7 +29,7 @@ extern "C" {
 
 /* Stanford arm: dimensions. */
 typedef struct {
-    real_t d2; /* offset of the boom from the base axis, in m (Corke's model of the Stanford arm, Robotics Toolbox) */
+    real_t d2; /* offset of the boom from the base axis, in m (Stanford arm of the Robotics Toolbox (Corke)) */
 } stanford_arm_params;
 
 /* The example dimensions: stanford_arm_params p = STANFORD_ARM_DEFAULTS; */

@@ -63,13 +63,13 @@ class Parameters(NamedTuple):
     """Dimensions; each field may be an array that broadcasts."""
 
     a2: Any = 0.4318
-    """length of the upper arm, in m (Corke's model of the Puma 560, Robotics Toolbox)"""
+    """length of the upper arm, in m (Puma 560 of the Robotics Toolbox (Corke))"""
     a3: Any = 0.0203
-    """offset of the forearm at the elbow, in m (Corke's model of the Puma 560, Robotics Toolbox)"""
+    """offset of the forearm at the elbow, in m (Puma 560 of the Robotics Toolbox (Corke))"""
     d3: Any = 0.15005
-    """offset of the arm from the base axis, in m (Corke's model of the Puma 560, Robotics Toolbox)"""
+    """offset of the arm from the base axis, in m (Puma 560 of the Robotics Toolbox (Corke))"""
     d4: Any = 0.4318
-    """length of the forearm, from the elbow to the wrist, in m (Corke's model of the Puma 560, Robotics Toolbox)"""
+    """length of the forearm, from the elbow to the wrist, in m (Puma 560 of the Robotics Toolbox (Corke))"""
 
 
 _DEFAULT = Parameters()

@@ -62,7 +62,7 @@ class Parameters(NamedTuple):
     """Dimensions; each field may be an array that broadcasts."""
 
     d2: Any = 0.154
-    """offset of the boom from the base axis, in m (Corke's model of the Stanford arm, Robotics Toolbox)"""
+    """offset of the boom from the base axis, in m (Stanford arm of the Robotics Toolbox (Corke))"""
 
 
 _DEFAULT = Parameters()

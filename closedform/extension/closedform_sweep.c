@@ -19,7 +19,8 @@ enum {
     TILE = 16,             /* postures moved at a time, so that both sides stay cached */
     LINE = 64,             /* bytes in a cache line */
     ALIAS = 4096,          /* planes a multiple of this apart contend for the same cache lines, */
-    ALIAS_WAYS = 4         /* which so many of them do without harm */
+    ALIAS_WAYS = 4,        /* which so many of them do without harm */
+    CROWD = 16             /* more planes than this, written at once, miss the address cache */
 };
 
 typedef struct {
@@ -262,6 +263,9 @@ usable_in_place(const plan *p, const operand *o)
         return o->spec->size == 1 || step == itemsize;
     }
     if (sweep->n_axes != p->n_outer + 1 || o->view->lead[last] != itemsize) {
+        return false;
+    }
+    if (o->spec->size > CROWD && p->n_inner > BLOCK_MAX) {
         return false;
     }
     return !planes_contend(o->spec->size, (size_t)step);

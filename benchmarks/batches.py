@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .cases import Case
+from .cases import Case, NotApplicable
 
 Run = Callable[[], Any]
 Peer = Callable[[Case, str, np.ndarray], tuple[Run, Run]]
@@ -32,6 +32,11 @@ def planes_of(rows: np.ndarray) -> np.ndarray:
 def ours(backend: str, case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     function = case.ours(backend)
     core = case.source.inputs[0].shape
+    if len(rows) == 1:
+        x = rows.reshape(core)
+        out = function(x)
+        out = out if isinstance(out, tuple) else np.asarray(out)
+        return partial(function, x, out=out), lambda: first(function(x)).reshape(1, -1)
     if layout == "rows":
         x = rows.reshape(-1, *core)
         return lambda: function(x), lambda: first(function(x)).reshape(len(x), -1)
@@ -70,7 +75,7 @@ def lambdify(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
 
 def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     if layout == "planes":
-        raise LookupError("takes rows")
+        raise NotApplicable("takes rows")
     import symengine as se
 
     backend = "llvm" if se.have_llvm else "lambda"
@@ -82,7 +87,7 @@ def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
 
 def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     if layout == "planes":
-        raise LookupError("takes rows")
+        raise NotApplicable("takes rows")
     import casadi as ca
 
     names = {"sin": ca.sin, "cos": ca.cos, "atan2": ca.atan2, "sqrt": ca.sqrt, "abs": ca.fabs}
@@ -116,12 +121,13 @@ def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     import sympy as sp
 
     temporaries, results = sp.cse(case.expressions, symbols=sp.numbered_symbols("tmp"))
-    at = "x[{k}, i]" if layout == "planes" else "x[i, {k}]"
+    at = "x_in[{k}, i]" if layout == "planes" else "x_in[i, {k}]"
     to = "out[{k}, i]" if layout == "planes" else "out[i, {k}]"
-    lines = ["def kernel(x, p, out):", " for i in range(x.shape[AXIS]):"]
+    lines = ["def kernel(x_in, p_in, out):", " for i in range(x_in.shape[AXIS]):"]
     n = len(case.source.symbols)
     for k, symbol in enumerate(case.symbols):
-        lines.append(f"  {symbol} = {at.format(k=k) if k < n else f'p[{k - n}]'}")
+        place = at.format(k=k) if k < n else f"p_in[{k - n}]"
+        lines.append(f"  {symbol} = {place}")
     printed = sp.printing.pycode
     lines += [f"  {s} = {printed(e)}" for s, e in temporaries]
     lines += [f"  {to.format(k=k)} = {printed(e)}" for k, e in enumerate(results)]

@@ -14,6 +14,10 @@ import sympy as sp
 from closedform.functions import Function
 
 
+class NotApplicable(Exception):
+    """This competitor does not take part in this table."""
+
+
 @dataclass(frozen=True)
 class Case:
     """One function of one robot."""

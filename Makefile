@@ -76,11 +76,11 @@ build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
 		> $(@D)/$*.txt || { tail -n 30 $(@D)/$*.txt; exit 1; }; done
 	@echo $@
 
-bench: all  ## time the generated code; the numbers also go to build/benchmarks.json
-	$(BIN)/python -m pytest benchmarks --benchmark-json=build/benchmarks.json $(ARGS)
+bench: all  ## time the generated code beside the peers installed; writes benchmarks/RESULTS.md
+	$(BIN)/python -m benchmarks $(ARGS)
 
 clean:  ## remove what was built, but neither .venv nor generated sources
-	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .benchmarks .hypothesis
+	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	rm -f generated/c/_native*.so
 	find closedform derivations generated templates tests -name __pycache__ -exec rm -rf {} +
 

@@ -36,8 +36,8 @@ build/native.stamp: build/derived.txt $(C_SOURCES) setup.py
 	@$(BIN)/python setup.py --quiet build_ext --inplace
 	@touch $@
 
-test: all  ## run the tests; ARGS="-k name" selects
-	$(BIN)/python -m pytest $(ARGS)
+test: all  ## run the tests on all cores; ARGS="-k name" selects
+	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
 check: lint types regenerated warnings  ## lint, types, warnings of C; generated/ is what is printed
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import ModuleType
 from typing import Any
 
@@ -177,14 +177,17 @@ def check_inverse(
     back; else (the assembly modes of a loop) inputs are sampled as they are.
     """
     finding = Finding(derivation.name, function.name, backend.name, unit="residual / eps")
+    inverse = inverse.posed(function.symbols)
     truth = _Truth(derivation, function, inverse)
     if tuple(inverse.targets) != function.symbols:
         for sample in joint_samples(derivation, function):
             _check_batch(finding, truth, backend, _round(sample, backend), None, exact=True)
         return finding
-    for sample in inverse_postures(derivation, len(inverse.unknowns)):
+    for sample in inverse_postures(derivation, inverse.unknowns):
         postures = _round(sample, backend)
         images = truth.images(postures)
+        possible = np.isfinite(images).all(axis=1)  # a posture may break a loop
+        images, postures = images[possible], replace(postures, values=postures.values[possible])
         for values, known in ((images, postures.values), (perturbed(images), None)):
             posed = _round(Sample(sample.name, values, sample.parameters), backend)
             _check_batch(finding, truth, backend, posed, known, exact=known is not None)

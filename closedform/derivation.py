@@ -9,7 +9,7 @@ nothing else.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
@@ -58,6 +58,8 @@ class Joint:
     kind: Literal["revolute", "prismatic"]
     passive: bool = False
     coupling: sp.Expr | None = None
+    beside: sp.Symbol | None = None
+    """A joint that this one stays close to, as in a twin arm; samples are drawn accordingly."""
 
     @property
     def name(self) -> str:
@@ -105,21 +107,49 @@ class Continuum:
 
 
 @dataclass(frozen=True)
+class Stages:
+    """An inverse that is too large for one Groebner basis, certified lemma by lemma.
+
+    ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas``.  The equations of
+    the lemmas, multiplied by the invertible matrix ``combination``, are those of the inverse: so both
+    have the same solutions, and each lemma is proved to give all of its own.  Where a side
+    condition keeps one in ``kept_of`` of them, ``because`` says why.
+    """
+
+    lemmas: tuple[Lemma, ...]
+    joints: Mapping[sp.Symbol, sp.Expr]
+    combination: sp.Matrix
+    kept_of: int = 1
+    because: str = ""
+
+
+@dataclass(frozen=True)
 class Inverse:
     """What an inverse must satisfy: ``forward`` in the ``unknowns`` equals the ``targets``.
 
     Targets that depend on each other (the entries of a rotation) have a ``parametrisation``: the
     same number of expressions in free symbols.  Of the targets in ``angles`` only the sine and the
     cosine count.
+
+    Where the equations that are solved are not the forward map itself, targets are expressions in
+    the inputs (such as ``tan(psi)``), ``forward`` may hold inputs too, and ``image`` is the forward
+    map: the inputs of the function in the unknowns.  A step shows that it satisfies the equations;
+    the cross-check puts the answers into it.
     """
 
     function: str
     unknowns: tuple[sp.Symbol, ...]
-    targets: tuple[sp.Symbol, ...]
+    targets: tuple[Any, ...]
     forward: tuple[sp.Expr, ...]
     continua: tuple[Continuum, ...] = ()
     parametrisation: tuple[sp.Expr, ...] = ()
     angles: tuple[sp.Symbol, ...] = ()
+    image: tuple[sp.Expr, ...] = ()
+    stages: Stages | None = None
+
+    def posed(self, inputs: tuple[sp.Symbol, ...]) -> Inverse:
+        """The same inverse with the forward map for its equations."""
+        return replace(self, targets=inputs, forward=self.image) if self.image else self
 
     @property
     def equations(self) -> tuple[sp.Expr, ...]:
@@ -193,6 +223,7 @@ class Derivation:
         *,
         passive: bool = False,
         coupling: sp.Expr | None = None,
+        beside: sp.Symbol | None = None,
     ) -> sp.Symbol:
         """Declare a joint variable.
 
@@ -201,7 +232,7 @@ class Derivation:
         """
         self._check_new(name)
         symbol = real(name)
-        self.joints.append(Joint(symbol, kind, passive, coupling))
+        self.joints.append(Joint(symbol, kind, passive, coupling, beside))
         return symbol
 
     def couple(self, expr: Any) -> Any:

@@ -11,12 +11,12 @@ satisfy the equations, and the equations have no others.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import sympy as sp
 
-from closedform.functions import Program, choose
+from closedform.functions import Program, Statement, choose, real
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,8 @@ class Lemma:
     """A lemma applied: ``equations`` vanish at ``solution`` (unknown -> closed form).
 
     ``excluded`` solutions of the equations violate the inequality that ``statement`` names.
+    ``pairs`` holds the names of the cosine and the sine of an unknown, computed without its angle,
+    for the steps that follow; ``body`` are the statements that the lemma added to the program.
     """
 
     name: str
@@ -32,6 +34,8 @@ class Lemma:
     solution: Mapping[sp.Symbol, sp.Expr]
     branches: int
     excluded: int = 0
+    pairs: Mapping[sp.Symbol, tuple[sp.Symbol, sp.Symbol]] = field(default_factory=dict)
+    body: tuple[Statement, ...] = ()
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]
@@ -62,24 +66,44 @@ def sine_cosine(
     sigma: sp.Symbol,
     *,
     suffix: str = "",
+    free: Sequence[sp.Symbol] = (),
+    scale: sp.Expr = sp.S.One,
 ) -> Lemma:
     """``a sin x + b cos x = c``: two solutions where ``a^2 + b^2 >= c^2``.
 
     With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``; half the angle
     ``x - atan2(a, b)`` has the tangent ``sqrt(h - c) / sqrt(h + c)``.  x is free where
-    ``a = b = c = 0``.
+    ``a = b = c = 0``; with ``free`` joints that is flagged, on the ``scale`` of the coefficients,
+    the answer there is x = 0, and cosine and sine of x are named too.
     """
+    start = len(program.body)
     h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
     below = program.bound(f"below{suffix}", h - c, h, "the amplitude is not smaller than c")
     above = program.bound(f"above{suffix}", h + c, h, "the amplitude is not smaller than -c")
     half = sp.atan2(sp.sqrt(below), sp.sqrt(above))
+    pairs = {}
+    if free:
+        nowhere = program.vanishes(f"nowhere{suffix}", h, scale, "the amplitude is zero", free)
+        total = program.let(f"total{suffix}", below + above)
+        turn = program.let(f"s_turn{suffix}", 2 * sigma * sp.sqrt(below) * sp.sqrt(above) / total)
+        ahead = program.let(f"c_turn{suffix}", (above - below) / total)
+        label = x.name.removeprefix("theta")
+        pairs[x] = (
+            program.let(f"c{label}", choose(nowhere, 1, (b * ahead - a * turn) / h)),
+            program.let(f"s{label}", choose(nowhere, 0, (a * ahead + b * turn) / h)),
+        )
+        direction = choose(nowhere, 0, sp.atan2(a, b) + 2 * sigma * half)
+    else:
+        direction = sp.atan2(a, b) + 2 * sigma * half
     return Lemma(
         "a sin x + b cos x = c",
         r"a\sin x + b\cos x = c \;\Rightarrow\; x = \operatorname{atan2}(a, b) + "
         r"2\sigma\operatorname{atan2}(\sqrt{h-c}, \sqrt{h+c}),\ h = \sqrt{a^2+b^2}",
         (a * sp.sin(x) + b * sp.cos(x) - c,),
-        {x: sp.atan2(a, b) + 2 * sigma * half},
+        {x: direction},
         2,
+        pairs=pairs,
+        body=tuple(program.body[start:]),
     )
 
 
@@ -93,6 +117,7 @@ def two_link_triangle(
     sigma: sp.Symbol,
     *,
     suffix: str = "",
+    sided: bool = False,
 ) -> Lemma:
     """The triangle of two links of lengths ``first``, ``second`` whose ends are ``reach`` apart.
 
@@ -102,13 +127,18 @@ def two_link_triangle(
 
         tan(elbow / 2) = sqrt(S A) / sqrt(B C),   tan(base / 2) = sqrt(A C) / sqrt(S B).
 
-    The elbow is free where a link has no length, and the base where the reach is zero.
+    The elbow is free where a link has no length, and the base where the reach is zero.  ``sided``
+    keeps a stretched elbow bent by 1e-7, so that the side can be read from the answer.
     """
     scale = first + second
     S = program.let(f"S{suffix}", first + second + reach, nonnegative=True)
-    A = program.bound(f"A{suffix}", first + second - reach, scale, "nearer than full stretch")
-    B = program.bound(f"B{suffix}", reach + first - second, scale, "farther than the fold")
-    C = program.bound(f"C{suffix}", reach - first + second, scale, "farther than the fold")
+
+    def bound(name: str, value: sp.Expr, meaning: str) -> sp.Symbol:
+        return program.bound(f"{name}{suffix}", value, scale, meaning, positive=sided)
+
+    A = bound("A", first + second - reach, "nearer than full stretch")
+    B = bound("B", reach + first - second, "farther than the fold")
+    C = bound("C", reach - first + second, "farther than the fold")
     rS, rA, rB, rC = (
         program.let(f"r{name}{suffix}", sp.sqrt(value), nonnegative=True)
         for name, value in (("S", S), ("A", A), ("B", B), ("C", C))
@@ -177,4 +207,127 @@ def zyz_angles(
             last: sp.atan2(s_last, c_last),
         },
         2,
+    )
+
+
+def two_link_arm(
+    program: Program,
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    target: tuple[sp.Expr, sp.Expr],
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    sigma: sp.Symbol,
+    *,
+    suffix: str = "",
+    sided: bool = False,
+    free: Sequence[sp.Symbol] = (),
+) -> Lemma:
+    """A planar arm with a cranked fore-arm, by the triangle of its elbow.
+
+    ``lengths`` are the upper arm l, and of the fore-arm the length a along it and its offset b;
+    ``unknowns`` are the absolute angles of both, ``target`` is (r, h):
+
+        l cos(x) + a sin(y) + b cos(y) = r,   l sin(x) - a cos(y) + b sin(y) = h.
+
+    The fore-arm is a link of length sqrt(a^2 + b^2) that lags behind y by atan2(a, b).  Both angles
+    turn together where r = h = 0, and y is free where a link has no length.
+    """
+    start = len(program.body)
+    (upper, along, across), (r, h), (x, y) = lengths, target, unknowns
+    second = program.let(f"fore{suffix}", sp.sqrt(along**2 + across**2), nonnegative=True)
+    reach = program.let(f"reach{suffix}", sp.sqrt(r**2 + h**2), nonnegative=True)
+    elbow, base = real(f"elbow{suffix}"), real(f"base{suffix}")
+    triangle = two_link_triangle(
+        program, upper, second, reach, elbow, base, sigma, suffix=suffix, sided=sided
+    )
+    S, A, B, C, rS, rA, rB, rC = (
+        real(f"{root}{name}{suffix}", nonnegative=True) for root in ("", "r") for name in "SABC"
+    )
+    folded = program.vanishes(
+        f"folded{suffix}", reach, upper + second, "the end is on the shoulder", free
+    )
+    short = program.vanishes(
+        f"short{suffix}", upper * second, (upper + second) ** 2, "a link has no length", free
+    )
+    lost = sp.Or(folded, short)
+    area = program.let(f"area{suffix}", 2 * sigma * (rS * rA) * (rB * rC))
+    at_base = program.let(f"at_base{suffix}", S * B + A * C)
+    at_elbow = program.let(f"at_elbow{suffix}", B * C + S * A)
+    c_base = program.let(f"c_base{suffix}", choose(lost, 1, (S * B - A * C) / at_base))
+    s_base = program.let(f"s_base{suffix}", choose(lost, 0, area / at_base))
+    c_elbow = program.let(f"c_elbow{suffix}", choose(short, 1, (B * C - S * A) / at_elbow))
+    s_elbow = program.let(f"s_elbow{suffix}", choose(short, 0, area / at_elbow))
+    c_sight = program.let(f"c_sight{suffix}", choose(folded, 1, r / reach))
+    s_sight = program.let(f"s_sight{suffix}", choose(folded, 0, h / reach))
+    c_lag = program.let(f"c_lag{suffix}", choose(short, 1, across / second))
+    s_lag = program.let(f"s_lag{suffix}", choose(short, 0, along / second))
+    cx = program.let(f"c{x.name}", c_sight * c_base + s_sight * s_base)
+    sx = program.let(f"s{x.name}", s_sight * c_base - c_sight * s_base)
+    c_bend = program.let(f"c_bend{suffix}", c_elbow * c_lag - s_elbow * s_lag)
+    s_bend = program.let(f"s_bend{suffix}", s_elbow * c_lag + c_elbow * s_lag)
+    cy = program.let(f"c{y.name}", cx * c_bend - sx * s_bend)
+    sy = program.let(f"s{y.name}", sx * c_bend + cx * s_bend)
+    direction = choose(folded, 0, sp.atan2(h, r)) - choose(lost, 0, triangle[base])
+    bend = choose(short, 0, triangle[elbow] + sp.atan2(along, across))
+    return Lemma(
+        "two-link arm",
+        r"l e^{ix} + (b - ia) e^{iy} = r + ih \;\Rightarrow\; x = \operatorname{atan2}(h, r) - "
+        r"\alpha,\ y = x + \theta + \operatorname{atan2}(a, b), \text{ with } \theta, \alpha "
+        r"\text{ of the two-link triangle}",
+        (
+            upper * sp.cos(x) + along * sp.sin(y) + across * sp.cos(y) - r,
+            upper * sp.sin(x) - along * sp.cos(y) + across * sp.sin(y) - h,
+        ),
+        {x: direction, y: direction + bend},
+        2,
+        pairs={x: (cx, sx), y: (cy, sy)},
+        body=tuple(program.body[start:]),
+    )
+
+
+def two_sines(
+    program: Program,
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    u: tuple[sp.Expr, sp.Expr],
+    v: tuple[sp.Expr, sp.Expr],
+    p: tuple[sp.Expr, sp.Expr],
+    *,
+    free: Sequence[sp.Symbol] = (),
+) -> Lemma:
+    """``u sin x + v sin y = p`` for vectors of the plane, and cosines that are not negative.
+
+    The part of the equation across u gives sin y; what is left along u gives sin x, so that an
+    error of y does no harm where u and v are nearly parallel.  Where they are parallel a
+    combination of the sines is free; the convention is y = 0.
+    """
+    start = len(program.body)
+    x, y = unknowns
+    size = program.let("size_u", sp.sqrt(u[0] ** 2 + u[1] ** 2), nonnegative=True)
+    other = program.let("size_v", sp.sqrt(v[0] ** 2 + v[1] ** 2), nonnegative=True)
+    uv = program.let("uv", u[0] * v[1] - u[1] * v[0])
+    up = program.let("up", u[0] * p[1] - u[1] * p[0])
+    scale = size * other
+    below = program.bound("below_y", sp.Abs(uv) - sp.Abs(up), scale, "the sine of y is at most 1")
+    above = program.let("above_y", sp.Abs(uv) + sp.Abs(up), nonnegative=True)
+    parallel = program.vanishes("parallel", sp.Abs(uv), scale, "both vectors are parallel", free)
+    root = program.let("root_y", sp.sqrt(below) * sp.sqrt(above), nonnegative=True)
+    norm = program.let("norm_y", sp.sqrt(up**2 + root**2), nonnegative=True)
+    sy = program.let(f"s{y.name}", choose(parallel, 0, uv / sp.Abs(uv) * up / norm))
+    cy = program.let(f"c{y.name}", choose(parallel, 1, root / norm))
+    along = program.let("along", ((p[0] - sy * v[0]) * u[0] + (p[1] - sy * v[1]) * u[1]) / size)
+    below = program.bound("below_x", size - sp.Abs(along), size, "the sine of x is at most 1")
+    above = program.let("above_x", size + sp.Abs(along), nonnegative=True)
+    root = program.let("root_x", sp.sqrt(below) * sp.sqrt(above), nonnegative=True)
+    norm = program.let("norm_x", sp.sqrt(along**2 + root**2), nonnegative=True)
+    sx, cx = program.let(f"s{x.name}", along / norm), program.let(f"c{x.name}", root / norm)
+    return Lemma(
+        "two sines",
+        r"u\sin x + v\sin y = p,\ \cos x \ge 0,\ \cos y \ge 0 \;\Rightarrow\; "
+        r"\sin y = \frac{u \times p}{u \times v},\ "
+        r"\sin x = \frac{u \cdot (p - v \sin y)}{u \cdot u}",
+        tuple(u[k] * sp.sin(x) + v[k] * sp.sin(y) - p[k] for k in (0, 1)),
+        {x: sp.atan2(sx, cx), y: sp.atan2(sy, cy)},
+        1,
+        excluded=3,
+        pairs={x: (cx, sx), y: (cy, sy)},
+        body=tuple(program.body[start:]),
     )

@@ -7,7 +7,7 @@ every run.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,25 +57,40 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
         "huge": rng.choice(HUGE, (24, n)) * rng.uniform(-1, 1, (24, n)),
     }
     return [
-        Sample(name, values, parameters)
+        Sample(name, _besides(derivation, function.symbols, values), parameters)
         for parameters in parameter_sets(derivation, rng)
         for name, values in rows.items()
     ]
 
 
-def inverse_postures(derivation: Derivation, n: int, seed: int = 2) -> list[Sample]:
+def inverse_postures(
+    derivation: Derivation, unknowns: Sequence[sp.Symbol], seed: int = 2
+) -> list[Sample]:
     """Joint values whose images are the targets of an inverse, singular ones among them."""
     rng = np.random.default_rng(seed)
+    n = len(unknowns)
     rows = {
         "random": rng.uniform(-np.pi, np.pi, (60, n)),
         "right angles": _approaches(rng, n, 60),
         "one joint singular": _one_singular(rng, n),
     }
     return [
-        Sample(name, values, parameters)
+        Sample(name, _besides(derivation, unknowns, values), parameters)
         for parameters in parameter_sets(derivation, rng)
         for name, values in rows.items()
     ]
+
+
+def _besides(derivation: Derivation, symbols: Sequence[sp.Symbol], values: Array) -> Array:
+    """Of two rows in three, a joint that stays beside another is drawn close to it."""
+    values = values.copy()
+    for joint in derivation.joints:
+        if joint.beside is not None and joint.symbol in symbols:
+            own, other = symbols.index(joint.symbol), symbols.index(joint.beside)
+            for start, fraction in ((0, 16.0), (1, 256.0)):
+                rows = values[start::3]
+                values[start::3, own] = rows[:, other] + rows[:, own] / fraction
+    return values
 
 
 def perturbed(targets: Array, seed: int = 3) -> Array:

@@ -7,3 +7,10 @@ REDDY_BABU = Paper(
     "Kinematic Attitudes of a Planar Robot and a Spherical Wrist",
     ("S. Baswanth Kumar Reddy", "K. Rajesh Babu"),
 )
+
+RAO_RAJU = Paper(
+    "rao-raju",
+    "Forward and inverse kinematics of a hybrid series-parallel manipulator",
+    ("Sachit Rao", "Jagannath Raju"),
+    "15th National Conference on Machines and Mechanisms, NaCoMM2011-134",
+)

@@ -157,7 +157,9 @@ class _Branch:
                 raw = build(statement.value)
                 allowed = graph.neg(limit("feasibility", statement.scale))
                 reachable.append(graph.node("le", allowed, raw))
-                clamped = graph.node("max", raw, graph.const(0))
+                scale = statement.scale
+                least = limit("vanishing", scale) if statement.positive else graph.const(0)
+                clamped = graph.node("max", raw, least)
                 self._name(names, build, statement.symbol, clamped, label)
             elif isinstance(statement, Match):
                 size = graph.even("abs", build(statement.value))

@@ -267,7 +267,7 @@ def two_link_arm(
     cy = program.let(f"c{y.name}", cx * c_bend - sx * s_bend)
     sy = program.let(f"s{y.name}", sx * c_bend + cx * s_bend)
     direction = choose(folded, 0, sp.atan2(h, r)) - choose(lost, 0, triangle[base])
-    bend = choose(short, 0, triangle[elbow] + sp.atan2(along, across))
+    bend = choose(short, 0, triangle[elbow] + sp.atan2(s_lag, c_lag))
     return Lemma(
         "two-link arm",
         r"l e^{ix} + (b - ia) e^{iy} = r + ih \;\Rightarrow\; x = \operatorname{atan2}(h, r) - "

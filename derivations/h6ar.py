@@ -12,6 +12,7 @@ from closedform.derivations.h6ar_mechanism import (
     arm_frames,
     beta,
     declare,
+    design,
     extended,
     in_space,
     named,
@@ -26,10 +27,12 @@ from closedform.derivations.h6ar_mechanism import (
     sigma_elbow,
     sigma_waist,
     solve_mid_plane,
-    target,
     theta2A,
     theta23A,
+    straight,
+    target,
     tip,
+    turned,
     tip_system,
     wrist_frames,
     wrist_given,
@@ -216,11 +219,6 @@ def stand(p: Program) -> tuple[Posture, sp.Matrix]:
     )
 
 
-def turned(angle: sp.Expr) -> sp.Expr:
-    """An angle as it stands in (-pi, pi]."""
-    return atan2(sin(angle), cos(angle))
-
-
 p = Program()
 here, gap = stand(p)
 fk = [*tip(m, here), *(atan2(a.s, a.c) for a in (here.yaw, here.roll)), turned(theta)]
@@ -276,12 +274,6 @@ for k in (0, 1):
     inner[3 + k, :] = atan2(gap[k], m.d).diff(gap[k]) * rate
 aside, along, across = extended(m, posture)
 outward = reach(m, posture.upper, posture.fore, along, across)[0]
-
-
-def straight(along: sp.Expr, across: sp.Expr, upper: Pair, fore: Pair) -> sp.Expr:
-    """Vanishes where an arm is straight or folded: its fore-arm across its upper arm."""
-    bend = Pair(upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
-    return along * bend.c - across * bend.s
 
 
 with_wrist = straight(along, across, posture.upper, posture.fore)
@@ -394,3 +386,4 @@ d.inverses.append(
         stages=Stages(lemmas, joints, sp.diag(MID_PLANE_ROWS, 1 / m.d, 1 / m.d)),
     )
 )
+design(d, m, cos(psi))

@@ -10,7 +10,7 @@ from functools import reduce
 from typing import NamedTuple
 
 import sympy as sp
-from sympy import Rational, cos, pi, sin, sqrt
+from sympy import Rational, atan2, cos, pi, sin, sqrt
 
 from closedform.derivation import Derivation
 from closedform.frames import denavit_hartenberg, homogeneous, rotation
@@ -169,6 +169,17 @@ def tip(m: Dimensions, p: Posture) -> sp.Matrix:
     return in_space(m, p.waist, reach(m, p.upper, p.fore, along, across), -aside)
 
 
+def straight(along: sp.Expr, across: sp.Expr, upper: Pair, fore: Pair) -> sp.Expr:
+    """Vanishes where an arm is straight or folded: its fore-arm across its upper arm."""
+    bend = Pair(upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
+    return along * bend.c - across * bend.s
+
+
+def turned(angle: sp.Expr) -> sp.Expr:
+    """An angle as it stands in (-pi, pi]."""
+    return atan2(sin(angle), cos(angle))
+
+
 def pose_matrix(m: Dimensions, program: Program, p: Posture) -> sp.Matrix:
     """The frame of the tip, R03 Rz(phi) Rx(psi) Ry(theta), from the pairs of a posture."""
     (c1, s1), (c23, s23) = p.waist, p.fore
@@ -293,3 +304,59 @@ def named(expr, p: Posture, q: Joints):
     state = (q.theta1, theta2A, theta23A, psi, phi, q.theta)
     names = {f: n for s, t in zip(state, p[:6], strict=True) for f, n in zip(pair(s), t, strict=True)}
     return expr.xreplace(names)
+
+
+def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
+    """The wrist's dimensions and angles, where half the base line is d / ``level``."""
+    p = Program()
+    length = wrist_given(p, m, level)[0]
+    d.function(
+        "wrist_length",
+        "The variable length l_W of the wrist; NaN where the links are too short.",
+        {"psi": psi, "phi": phi},
+        {"l_W": length},
+        program=p,
+        source="eq. (8)",
+    )
+    psi_max, phi_max, beta_min = real("psi_max"), real("phi_max"), real("beta_min")
+    needed = (m.d / level - m.gs).xreplace({psi: psi_max, phi: phi_max}) / cos(beta_min)
+    span = m.al * cos(beta_min) + m.gs
+    rolls = level.has(cos(phi))
+    room, w = real("room", positive=True), real("w", positive=True)
+    d.step(
+        "Wrist design",
+        "The separation angle beta stands between a wrist link and the base line, so that "
+        "al cos(beta) spans half the base line but for half the gears.  It is smallest at the "
+        "largest angles, which gives the length of the links, or for given links the largest yaw.",
+        {r"al \ge": needed, r"\cos\psi_{max}": m.d / (span * (cos(phi) if rolls else 1))},
+        published=("(10)",),
+        equal=[(cos(2 * atan2(sqrt(room), sqrt(room + 2 * w))), w / (w + room))],
+    )
+    d.function(
+        "minimum_link_length",
+        "The shortest wrist links that keep the separation angle up to the given yaw and roll.",
+        {"psi_max": psi_max, "phi_max": phi_max, "beta_min": beta_min},
+        {"al": needed},
+        source="eq. (10)" + (", with yaw and roll combined" if rolls else ""),
+    )
+    p = Program()
+    w = p.let("span", span * (cos(phi) if rolls else 1))
+    room = p.bound("room", w - m.d, m.al + m.gs, "the links are long enough for that roll")
+    d.function(
+        "largest_yaw",
+        "The largest yaw at a roll that keeps the separation angle; NaN where there is none.",
+        {"phi": phi, "beta_min": beta_min},
+        {"psi": 2 * atan2(sqrt(room), sqrt(w + m.d))},
+        program=p,
+    )
+    p = Program()
+    w = p.let("span", span)
+    room = p.bound("room", w - m.d, m.al + m.gs, "the links are long enough")
+    adjacent = sqrt(w) + sqrt(m.d) if rolls else sqrt(w + m.d)
+    d.function(
+        "largest_angle",
+        "The largest angle that yaw and roll may both have; NaN where there is none.",
+        {"beta_min": beta_min},
+        {"angle": 2 * atan2(sqrt(room), adjacent)},
+        program=p,
+    )

@@ -3,6 +3,7 @@
  */
 #include "closedform_module.h"
 #include "h6ar.h"
+#include "h6ar_loop_closed.h"
 #include "planar_2r.h"
 #include "spherical_wrist.h"
 
@@ -160,6 +161,322 @@ static const cf_array h6ar_ik_in[] = {
 static const cf_array h6ar_ik_out[] = {
     { "q", 2, { 4, 6 }, 24, CF_REAL },
     { "status", 1, { 4 }, 4, CF_STATUS },
+};
+
+static void h6ar_wrist_length_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_wrist_length((const h6ar_params *)params, in[0], in[1], out[0]);
+}
+
+static void h6ar_wrist_length_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_wrist_length_batch(n, (const h6ar_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_wrist_length_in[] = {
+    { "psi", 0, { 0 }, 1, CF_REAL },
+    { "phi", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array h6ar_wrist_length_out[] = {
+    { "l_W", 0, { 0 }, 1, CF_REAL },
+};
+
+static void h6ar_minimum_link_length_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_minimum_link_length((const h6ar_params *)params, in[0], in[1], in[2], out[0]);
+}
+
+static void h6ar_minimum_link_length_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_minimum_link_length_batch(n, (const h6ar_params *)params, in[0], in_stride[0], in[1], in_stride[1], in[2], in_stride[2], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_minimum_link_length_in[] = {
+    { "psi_max", 0, { 0 }, 1, CF_REAL },
+    { "phi_max", 0, { 0 }, 1, CF_REAL },
+    { "beta_min", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array h6ar_minimum_link_length_out[] = {
+    { "al", 0, { 0 }, 1, CF_REAL },
+};
+
+static void h6ar_largest_yaw_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_largest_yaw((const h6ar_params *)params, in[0], in[1], out[0]);
+}
+
+static void h6ar_largest_yaw_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_largest_yaw_batch(n, (const h6ar_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_largest_yaw_in[] = {
+    { "phi", 0, { 0 }, 1, CF_REAL },
+    { "beta_min", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array h6ar_largest_yaw_out[] = {
+    { "psi", 0, { 0 }, 1, CF_REAL },
+};
+
+static void h6ar_largest_angle_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_largest_angle((const h6ar_params *)params, in[0], out[0]);
+}
+
+static void h6ar_largest_angle_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_largest_angle_batch(n, (const h6ar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_largest_angle_in[] = {
+    { "beta_min", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array h6ar_largest_angle_out[] = {
+    { "angle", 0, { 0 }, 1, CF_REAL },
+};
+
+static const char *const h6ar_loop_closed_fields[] = { "L1", "L2", "a3", "d1", "d", "gs", "al", "loff", "lp" };
+static const double h6ar_loop_closed_values[] = H6AR_LOOP_CLOSED_DEFAULTS;
+
+static void h6ar_loop_closed_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_fk((const h6ar_loop_closed_params *)params, in[0], out[0]);
+}
+
+static void h6ar_loop_closed_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_fk_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_fk_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_fk_out[] = {
+    { "x", 1, { 6 }, 6, CF_REAL },
+};
+
+static void h6ar_loop_closed_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_pose((const h6ar_loop_closed_params *)params, in[0], out[0]);
+}
+
+static void h6ar_loop_closed_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_pose_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_pose_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void h6ar_loop_closed_arm_tips_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_arm_tips((const h6ar_loop_closed_params *)params, in[0], out[0]);
+}
+
+static void h6ar_loop_closed_arm_tips_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_arm_tips_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_arm_tips_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_arm_tips_out[] = {
+    { "tips", 2, { 2, 3 }, 6, CF_REAL },
+};
+
+static void h6ar_loop_closed_invariant_point_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_invariant_point((const h6ar_loop_closed_params *)params, in[0], out[0]);
+}
+
+static void h6ar_loop_closed_invariant_point_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_invariant_point_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_invariant_point_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_invariant_point_out[] = {
+    { "p", 1, { 3 }, 3, CF_REAL },
+};
+
+static void h6ar_loop_closed_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_jacobian((const h6ar_loop_closed_params *)params, in[0], out[0]);
+}
+
+static void h6ar_loop_closed_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_jacobian_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_jacobian_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_jacobian_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void h6ar_loop_closed_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_determinant((const h6ar_loop_closed_params *)params, in[0], out[0]);
+}
+
+static void h6ar_loop_closed_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_determinant_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_determinant_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void h6ar_loop_closed_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_singularities((const h6ar_loop_closed_params *)params, in[0], out[0]);
+}
+
+static void h6ar_loop_closed_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_singularities_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_singularities_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_singularities_out[] = {
+    { "factors", 1, { 6 }, 6, CF_REAL },
+};
+
+static void h6ar_loop_closed_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_ik((const h6ar_loop_closed_params *)params, in[0], out[0], out[1]);
+}
+
+static void h6ar_loop_closed_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_ik_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array h6ar_loop_closed_ik_in[] = {
+    { "x", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_ik_out[] = {
+    { "q", 2, { 8, 6 }, 48, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
+};
+
+static void h6ar_loop_closed_wrist_length_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_wrist_length((const h6ar_loop_closed_params *)params, in[0], in[1], out[0]);
+}
+
+static void h6ar_loop_closed_wrist_length_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_wrist_length_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_wrist_length_in[] = {
+    { "psi", 0, { 0 }, 1, CF_REAL },
+    { "phi", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_wrist_length_out[] = {
+    { "l_W", 0, { 0 }, 1, CF_REAL },
+};
+
+static void h6ar_loop_closed_minimum_link_length_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_minimum_link_length((const h6ar_loop_closed_params *)params, in[0], in[1], in[2], out[0]);
+}
+
+static void h6ar_loop_closed_minimum_link_length_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_minimum_link_length_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], in[1], in_stride[1], in[2], in_stride[2], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_minimum_link_length_in[] = {
+    { "psi_max", 0, { 0 }, 1, CF_REAL },
+    { "phi_max", 0, { 0 }, 1, CF_REAL },
+    { "beta_min", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_minimum_link_length_out[] = {
+    { "al", 0, { 0 }, 1, CF_REAL },
+};
+
+static void h6ar_loop_closed_largest_yaw_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_largest_yaw((const h6ar_loop_closed_params *)params, in[0], in[1], out[0]);
+}
+
+static void h6ar_loop_closed_largest_yaw_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_largest_yaw_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_largest_yaw_in[] = {
+    { "phi", 0, { 0 }, 1, CF_REAL },
+    { "beta_min", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_largest_yaw_out[] = {
+    { "psi", 0, { 0 }, 1, CF_REAL },
+};
+
+static void h6ar_loop_closed_largest_angle_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_largest_angle((const h6ar_loop_closed_params *)params, in[0], out[0]);
+}
+
+static void h6ar_loop_closed_largest_angle_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_largest_angle_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_largest_angle_in[] = {
+    { "beta_min", 0, { 0 }, 1, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_largest_angle_out[] = {
+    { "angle", 0, { 0 }, 1, CF_REAL },
 };
 
 static const char *const planar_2r_fields[] = { "l1", "l2" };
@@ -570,6 +887,187 @@ const cf_function cf_functions[] = {
       9, h6ar_values, h6ar_fields,
       1, h6ar_ik_in, 2, h6ar_ik_out,
       h6ar_ik_one, h6ar_ik_many },
+    { "h6ar.wrist_length",
+      "The variable length l_W of the wrist; NaN where the links are too short.\n"
+      "Source: eq. (8).\n"
+      "psi: shape (...): psi.\n"
+      "phi: shape (...): phi.\n"
+      "Returns l_W: shape (...).\n"
+      ,
+      9, h6ar_values, h6ar_fields,
+      2, h6ar_wrist_length_in, 1, h6ar_wrist_length_out,
+      h6ar_wrist_length_one, h6ar_wrist_length_many },
+    { "h6ar.minimum_link_length",
+      "The shortest wrist links that keep the separation angle up to the given yaw and\n"
+      "    roll.\n"
+      "Source: eq. (10).\n"
+      "psi_max: shape (...): psi_max.\n"
+      "phi_max: shape (...): phi_max.\n"
+      "beta_min: shape (...): beta_min.\n"
+      "Returns al: shape (...).\n"
+      ,
+      9, h6ar_values, h6ar_fields,
+      3, h6ar_minimum_link_length_in, 1, h6ar_minimum_link_length_out,
+      h6ar_minimum_link_length_one, h6ar_minimum_link_length_many },
+    { "h6ar.largest_yaw",
+      "The largest yaw at a roll that keeps the separation angle; NaN where there is\n"
+      "    none.\n"
+      "phi: shape (...): phi.\n"
+      "beta_min: shape (...): beta_min.\n"
+      "Returns psi: shape (...).\n"
+      ,
+      9, h6ar_values, h6ar_fields,
+      2, h6ar_largest_yaw_in, 1, h6ar_largest_yaw_out,
+      h6ar_largest_yaw_one, h6ar_largest_yaw_many },
+    { "h6ar.largest_angle",
+      "The largest angle that yaw and roll may both have; NaN where there is none.\n"
+      "beta_min: shape (...): beta_min.\n"
+      "Returns angle: shape (...).\n"
+      ,
+      9, h6ar_values, h6ar_fields,
+      1, h6ar_largest_angle_in, 1, h6ar_largest_angle_out,
+      h6ar_largest_angle_one, h6ar_largest_angle_many },
+    { "h6ar_loop_closed.fk",
+      "Position of the tip, and yaw, roll and pitch.\n"
+      "Source: eqs. (1), (2), (6) and (9), with the closed loop.\n"
+      "q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.\n"
+      "Returns x: shape (..., 6).\n"
+      "NaN where the tips are farther apart than the wrist links can span, or where the\n"
+      "    virtual arm cannot reach their middle.\n"
+      "Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the\n"
+      "    reference of yaw and roll.\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_fk_in, 1, h6ar_loop_closed_fk_out,
+      h6ar_loop_closed_fk_one, h6ar_loop_closed_fk_many },
+    { "h6ar_loop_closed.pose",
+      "Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).\n"
+      "Source: eq. (9) and its frames.\n"
+      "q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      "NaN where the tips are farther apart than the wrist links can span, or where the\n"
+      "    virtual arm cannot reach their middle.\n"
+      "Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the\n"
+      "    reference of yaw and roll.\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_pose_in, 1, h6ar_loop_closed_pose_out,
+      h6ar_loop_closed_pose_one, h6ar_loop_closed_pose_many },
+    { "h6ar_loop_closed.arm_tips",
+      "Tips of the right and of the left fore-arm.\n"
+      "Source: eqs. (1) and (2).\n"
+      "q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.\n"
+      "Returns tips: shape (..., 2, 3).\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_arm_tips_in, 1, h6ar_loop_closed_arm_tips_out,
+      h6ar_loop_closed_arm_tips_one, h6ar_loop_closed_arm_tips_many },
+    { "h6ar_loop_closed.invariant_point",
+      "The invariant point, the middle of the tips.\n"
+      "Source: eq. (6).\n"
+      "q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.\n"
+      "Returns p: shape (..., 3).\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_invariant_point_in, 1, h6ar_loop_closed_invariant_point_out,
+      h6ar_loop_closed_invariant_point_one, h6ar_loop_closed_invariant_point_many },
+    { "h6ar_loop_closed.jacobian",
+      "Derivative of the task by the joints.\n"
+      "Source: derivative of the forward map.\n"
+      "q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      "NaN where the tips are farther apart than the wrist links can span, or where the\n"
+      "    virtual arm cannot reach their middle.\n"
+      "Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the\n"
+      "    reference of yaw and roll.\n"
+      "Unbounded where the wrist links are stretched: there l_W turns over.\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_jacobian_in, 1, h6ar_loop_closed_jacobian_out,
+      h6ar_loop_closed_jacobian_one, h6ar_loop_closed_jacobian_many },
+    { "h6ar_loop_closed.determinant",
+      "Determinant of the Jacobian; it has a pole where the virtual arm is straight.\n"
+      "q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.\n"
+      "Returns det: shape (...).\n"
+      "NaN where the tips are farther apart than the wrist links can span, or where the\n"
+      "    virtual arm cannot reach their middle.\n"
+      "Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the\n"
+      "    reference of yaw and roll.\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_determinant_in, 1, h6ar_loop_closed_determinant_out,
+      h6ar_loop_closed_determinant_one, h6ar_loop_closed_determinant_many },
+    { "h6ar_loop_closed.singularities",
+      "The factors of the determinant, its pole, and the length of the wrist.\n"
+      "q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.\n"
+      "Returns factors: shape (..., 6).\n"
+      "NaN where the tips are farther apart than the wrist links can span, or where the\n"
+      "    virtual arm cannot reach their middle.\n"
+      "Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the\n"
+      "    reference of yaw and roll.\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_singularities_in, 1, h6ar_loop_closed_singularities_out,
+      h6ar_loop_closed_singularities_one, h6ar_loop_closed_singularities_many },
+    { "h6ar_loop_closed.ik",
+      "All postures of the mechanism that reach a tip; mixed ones have the left elbow\n"
+      "    on the other side.\n"
+      "Source: eqs. (11), (13) and (14), then each arm by itself.\n"
+      "x: shape (..., 6): x, y, z, psi, phi, pitch.\n"
+      "Returns q: shape (..., 8, 6).\n"
+      "Branches: front_elbow_up_alike, front_elbow_up_mixed, front_elbow_down_alike,\n"
+      "    front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed,\n"
+      "    rear_elbow_down_alike, rear_elbow_down_mixed.\n"
+      "UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer\n"
+      "    to the waist axis than L_theta, or an arm is out of reach.\n"
+      "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its\n"
+      "    shoulder (the link at the shoulder is returned horizontal), or a link\n"
+      "    without length.\n"
+      "A stretched right arm is returned bent by 1e-7, so that fk can read the side.\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_ik_in, 2, h6ar_loop_closed_ik_out,
+      h6ar_loop_closed_ik_one, h6ar_loop_closed_ik_many },
+    { "h6ar_loop_closed.wrist_length",
+      "The variable length l_W of the wrist; NaN where the links are too short.\n"
+      "Source: eq. (8).\n"
+      "psi: shape (...): psi.\n"
+      "phi: shape (...): phi.\n"
+      "Returns l_W: shape (...).\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      2, h6ar_loop_closed_wrist_length_in, 1, h6ar_loop_closed_wrist_length_out,
+      h6ar_loop_closed_wrist_length_one, h6ar_loop_closed_wrist_length_many },
+    { "h6ar_loop_closed.minimum_link_length",
+      "The shortest wrist links that keep the separation angle up to the given yaw and\n"
+      "    roll.\n"
+      "Source: eq. (10), with yaw and roll combined.\n"
+      "psi_max: shape (...): psi_max.\n"
+      "phi_max: shape (...): phi_max.\n"
+      "beta_min: shape (...): beta_min.\n"
+      "Returns al: shape (...).\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      3, h6ar_loop_closed_minimum_link_length_in, 1, h6ar_loop_closed_minimum_link_length_out,
+      h6ar_loop_closed_minimum_link_length_one, h6ar_loop_closed_minimum_link_length_many },
+    { "h6ar_loop_closed.largest_yaw",
+      "The largest yaw at a roll that keeps the separation angle; NaN where there is\n"
+      "    none.\n"
+      "phi: shape (...): phi.\n"
+      "beta_min: shape (...): beta_min.\n"
+      "Returns psi: shape (...).\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      2, h6ar_loop_closed_largest_yaw_in, 1, h6ar_loop_closed_largest_yaw_out,
+      h6ar_loop_closed_largest_yaw_one, h6ar_loop_closed_largest_yaw_many },
+    { "h6ar_loop_closed.largest_angle",
+      "The largest angle that yaw and roll may both have; NaN where there is none.\n"
+      "beta_min: shape (...): beta_min.\n"
+      "Returns angle: shape (...).\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_largest_angle_in, 1, h6ar_loop_closed_largest_angle_out,
+      h6ar_loop_closed_largest_angle_one, h6ar_loop_closed_largest_angle_many },
     { "planar_2r.fk",
       "Position of the hand.\n"
       "Source: eqs. (1) and (2).\n"

@@ -12,6 +12,10 @@
  *   determinant: 58 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
  *   singularities: 58 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
  *   ik: 212 compare and select, 183 add, 18 atan2, 43 divide, 215 multiply, 3 sincos, 48 sqrt
+ *   wrist_length: 6 add, 26 compare and select, 1 divide, 4 multiply, 2 sincos, 2 sqrt
+ *   minimum_link_length: 2 divide, 2 sincos, 1 add
+ *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
+ *   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
  */
 #include "h6ar.h"
 
@@ -1274,7 +1278,7 @@ CF_INLINE void h6ar_ik_kernel(const h6ar_params *params, const real_t x[6], cons
     const real_t root_x = cf_sqrt(size_u + t73) * cf_sqrt(cf_max(t74, CLOSEDFORM_C(0.0)));
     const real_t norm_x = cf_sqrt(t72 * t72 + root_x * root_x);
     const real_t t81 = cf_atan2(t72 / norm_x, root_x / norm_x);
-    const real_t t82 = cf_atan2(L_2W, a_3W);
+    const real_t t82 = cf_atan2(s_lag, c_lag);
     const real_t t83 = CLOSEDFORM_C(2.0) * cf_atan2(t51, t52);
     const real_t t84 = cf_select(t46, CLOSEDFORM_C(0.0), t82 - t83);
     const real_t cbeta = cf_select(t70, CLOSEDFORM_C(1.0), root_y / norm_y);
@@ -1583,5 +1587,225 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params, const real_t
         CF_INDEPENDENT
         for (size_t i = 0; i < m; ++i)
             status[3 * status_stride + start + i] = (uint8_t)status_real[3][i];
+    }
+}
+
+CF_INLINE void h6ar_wrist_length_kernel(const h6ar_params *params, const real_t psi[1],
+    const real_t phi[1], const real_t *cosines, real_t
+    l_W[1])
+{
+    const real_t d = params->d;
+    const real_t gs = params->gs;
+    const real_t al = params->al;
+    const real_t psi_2 = psi[0];
+    const real_t phi_2 = phi[0];
+    const real_t c_psi = cosines[0];
+    const real_t c_phi = cosines[1];
+    const real_t t1 = d - c_psi * (gs - al);
+    const real_t t2 = gs + al;
+    const real_t t3 = t2 * c_psi - d;
+    const real_t t4 = cf_sqrt(cf_max(t1, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t3, CLOSEDFORM_C(0.0)));
+    const int t5 = cf_is_finite(psi_2) & cf_is_finite(phi_2) & cf_is_finite(d);
+    const int t6 = t5 & cf_is_finite(gs) & cf_is_finite(al) & (CLOSEDFORM_C(0.0) <= d);
+    const int t7 = t6 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
+    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * (d + t2));
+    const int t9 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (t8 <= t3);
+    const real_t t10 = cf_select(!t7 | !(t9 & (t8 <= t1)), CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    l_W[0] = t4 / c_psi + t10;
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_wrist_length(const h6ar_params *params, const real_t psi[1],
+    const real_t phi[1], real_t l_W[1])
+{
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { psi[0], phi[0] };
+    cf_sincos_block(2, lanes, sines, cosines);
+    h6ar_wrist_length_kernel(params, psi, phi, cosines, l_W);
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_wrist_length_batch(size_t n, const h6ar_params *params, const real_t
+    *psi, size_t psi_stride, const real_t *phi, size_t
+    phi_stride, real_t *l_W, size_t l_W_stride)
+{
+    (void)psi_stride;
+    (void)phi_stride;
+    (void)l_W_stride;
+    const h6ar_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(m, psi + start, sines[0], cosines[0]);
+        cf_sincos_block(m, phi + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < m; ++i) {
+            const real_t psi_i[1] = { psi[start + i] };
+            const real_t phi_i[1] = { phi[start + i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            real_t l_W_i[1];
+            h6ar_wrist_length_kernel(&local, psi_i, phi_i, cosines_i, l_W_i);
+            l_W[start + i] = l_W_i[0];
+        }
+    }
+}
+
+CF_INLINE void h6ar_minimum_link_length_kernel(const h6ar_params *params, const real_t *cosines,
+    real_t al[1])
+{
+    const real_t d = params->d;
+    const real_t gs = params->gs;
+    const real_t c_psi_max = cosines[0];
+    const real_t c_beta_min = cosines[1];
+    al[0] = -((gs - d / c_psi_max) / c_beta_min);
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_minimum_link_length(const h6ar_params *params, const real_t psi_max[1],
+    const real_t phi_max[1], const real_t beta_min[1],
+    real_t al[1])
+{
+    (void)phi_max;
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { psi_max[0], beta_min[0] };
+    cf_sincos_block(2, lanes, sines, cosines);
+    h6ar_minimum_link_length_kernel(params, cosines, al);
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params, const real_t
+    *psi_max, size_t psi_max_stride, const real_t
+    *phi_max, size_t phi_max_stride, const real_t
+    *beta_min, size_t beta_min_stride, real_t *al,
+    size_t al_stride)
+{
+    (void)psi_max_stride;
+    (void)phi_max;
+    (void)phi_max_stride;
+    (void)beta_min_stride;
+    (void)al_stride;
+    const h6ar_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(m, psi_max + start, sines[0], cosines[0]);
+        cf_sincos_block(m, beta_min + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < m; ++i) {
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            real_t al_i[1];
+            h6ar_minimum_link_length_kernel(&local, cosines_i, al_i);
+            al[start + i] = al_i[0];
+        }
+    }
+}
+
+CF_INLINE void h6ar_largest_yaw_kernel(const h6ar_params *params, const real_t phi[1],
+    const real_t beta_min[1], const real_t *cosines,
+    real_t psi[1])
+{
+    const real_t d = params->d;
+    const real_t gs = params->gs;
+    const real_t al = params->al;
+    const real_t phi_2 = phi[0];
+    const real_t beta_min_2 = beta_min[0];
+    const real_t c_beta_min = cosines[0];
+    const real_t span = gs + al * c_beta_min;
+    const real_t t1 = span - d;
+    const real_t t2 = cf_atan2(cf_sqrt(cf_max(t1, CLOSEDFORM_C(0.0))), cf_sqrt(d + span));
+    const int t3 = cf_is_finite(phi_2) & cf_is_finite(beta_min_2);
+    const int t4 = t3 & cf_is_finite(d) & cf_is_finite(gs) & cf_is_finite(al);
+    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
+    const int failed = !(t5 & (CLOSEDFORM_C(0.0) <= al)) | unreachable;
+    const real_t t6 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    psi[0] = cf_wrap(CLOSEDFORM_C(2.0) * t2) + t6;
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_largest_yaw(const h6ar_params *params, const real_t phi[1],
+    const real_t beta_min[1], real_t psi[1])
+{
+    real_t sines[1], cosines[1];
+    const real_t lanes[1] = { beta_min[0] };
+    cf_sincos_block(1, lanes, sines, cosines);
+    h6ar_largest_yaw_kernel(params, phi, beta_min, cosines, psi);
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params, const real_t
+    *phi, size_t phi_stride, const real_t *beta_min,
+    size_t beta_min_stride, real_t *psi, size_t
+    psi_stride)
+{
+    (void)phi_stride;
+    (void)beta_min_stride;
+    (void)psi_stride;
+    const h6ar_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
+        cf_sincos_block(m, beta_min + start, sines[0], cosines[0]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < m; ++i) {
+            const real_t phi_i[1] = { phi[start + i] };
+            const real_t beta_min_i[1] = { beta_min[start + i] };
+            const real_t cosines_i[1] = { cosines[0][i] };
+            real_t psi_i[1];
+            h6ar_largest_yaw_kernel(&local, phi_i, beta_min_i, cosines_i, psi_i);
+            psi[start + i] = psi_i[0];
+        }
+    }
+}
+
+CF_INLINE void h6ar_largest_angle_kernel(const h6ar_params *params, const real_t beta_min[1],
+    const real_t *cosines, real_t angle[1])
+{
+    const real_t d = params->d;
+    const real_t gs = params->gs;
+    const real_t al = params->al;
+    const real_t beta_min_2 = beta_min[0];
+    const real_t c_beta_min = cosines[0];
+    const real_t span = gs + al * c_beta_min;
+    const real_t t1 = span - d;
+    const real_t t2 = cf_atan2(cf_sqrt(cf_max(t1, CLOSEDFORM_C(0.0))), cf_sqrt(d + span));
+    const int t3 = cf_is_finite(beta_min_2) & cf_is_finite(d) & cf_is_finite(gs);
+    const int t4 = t3 & cf_is_finite(al) & (CLOSEDFORM_C(0.0) <= d);
+    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
+    const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
+    const real_t t6 = cf_select(!t5 | unreachable, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    angle[0] = cf_wrap(CLOSEDFORM_C(2.0) * t2) + t6;
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_largest_angle(const h6ar_params *params, const real_t beta_min[1],
+    real_t angle[1])
+{
+    real_t sines[1], cosines[1];
+    const real_t lanes[1] = { beta_min[0] };
+    cf_sincos_block(1, lanes, sines, cosines);
+    h6ar_largest_angle_kernel(params, beta_min, cosines, angle);
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_largest_angle_batch(size_t n, const h6ar_params *params, const real_t
+    *beta_min, size_t beta_min_stride, real_t *angle,
+    size_t angle_stride)
+{
+    (void)beta_min_stride;
+    (void)angle_stride;
+    const h6ar_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
+        cf_sincos_block(m, beta_min + start, sines[0], cosines[0]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < m; ++i) {
+            const real_t beta_min_i[1] = { beta_min[start + i] };
+            const real_t cosines_i[1] = { cosines[0][i] };
+            real_t angle_i[1];
+            h6ar_largest_angle_kernel(&local, beta_min_i, cosines_i, angle_i);
+            angle[start + i] = angle_i[0];
+        }
     }
 }

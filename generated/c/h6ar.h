@@ -12,6 +12,10 @@
  *   determinant: 58 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
  *   singularities: 58 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
  *   ik: 212 compare and select, 183 add, 18 atan2, 43 divide, 215 multiply, 3 sincos, 48 sqrt
+ *   wrist_length: 6 add, 26 compare and select, 1 divide, 4 multiply, 2 sincos, 2 sqrt
+ *   minimum_link_length: 2 divide, 2 sincos, 1 add
+ *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
+ *   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
@@ -138,6 +142,60 @@ void h6ar_ik(const h6ar_params *params, const real_t x[6], real_t
 void h6ar_ik_batch(size_t n, const h6ar_params *params, const real_t
     *x, size_t x_stride, real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride);
+
+/*
+ * The variable length l_W of the wrist; NaN where the links are too short.
+ * Source: eq. (8).
+ * psi: shape (...): psi.
+ * phi: shape (...): phi.
+ * Returns l_W: shape (...).
+ */
+void h6ar_wrist_length(const h6ar_params *params, const real_t psi[1],
+    const real_t phi[1], real_t l_W[1]);
+void h6ar_wrist_length_batch(size_t n, const h6ar_params *params, const real_t
+    *psi, size_t psi_stride, const real_t *phi, size_t
+    phi_stride, real_t *l_W, size_t l_W_stride);
+
+/*
+ * The shortest wrist links that keep the separation angle up to the given yaw and roll.
+ * Source: eq. (10).
+ * psi_max: shape (...): psi_max.
+ * phi_max: shape (...): phi_max.
+ * beta_min: shape (...): beta_min.
+ * Returns al: shape (...).
+ */
+void h6ar_minimum_link_length(const h6ar_params *params, const real_t psi_max[1],
+    const real_t phi_max[1], const real_t beta_min[1],
+    real_t al[1]);
+void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params, const real_t
+    *psi_max, size_t psi_max_stride, const real_t
+    *phi_max, size_t phi_max_stride, const real_t
+    *beta_min, size_t beta_min_stride, real_t *al,
+    size_t al_stride);
+
+/*
+ * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
+ * phi: shape (...): phi.
+ * beta_min: shape (...): beta_min.
+ * Returns psi: shape (...).
+ */
+void h6ar_largest_yaw(const h6ar_params *params, const real_t phi[1],
+    const real_t beta_min[1], real_t psi[1]);
+void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params, const real_t
+    *phi, size_t phi_stride, const real_t *beta_min,
+    size_t beta_min_stride, real_t *psi, size_t
+    psi_stride);
+
+/*
+ * The largest angle that yaw and roll may both have; NaN where there is none.
+ * beta_min: shape (...): beta_min.
+ * Returns angle: shape (...).
+ */
+void h6ar_largest_angle(const h6ar_params *params, const real_t beta_min[1],
+    real_t angle[1]);
+void h6ar_largest_angle_batch(size_t n, const h6ar_params *params, const real_t
+    *beta_min, size_t beta_min_stride, real_t *angle,
+    size_t angle_stride);
 
 #ifdef __cplusplus
 }

@@ -30,6 +30,10 @@ __all__ = [
     "determinant",
     "singularities",
     "ik",
+    "wrist_length",
+    "minimum_link_length",
+    "largest_yaw",
+    "largest_angle",
 ]
 
 fk = _native.function("h6ar.fk")
@@ -40,3 +44,7 @@ jacobian = _native.function("h6ar.jacobian")
 determinant = _native.function("h6ar.determinant")
 singularities = _native.function("h6ar.singularities")
 ik = _native.function("h6ar.ik", Solutions)
+wrist_length = _native.function("h6ar.wrist_length")
+minimum_link_length = _native.function("h6ar.minimum_link_length")
+largest_yaw = _native.function("h6ar.largest_yaw")
+largest_angle = _native.function("h6ar.largest_angle")

@@ -11,6 +11,10 @@
 #   determinant: 58 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
 #   singularities: 58 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
 #   ik: 212 compare and select, 183 add, 18 atan2, 43 divide, 215 multiply, 3 sincos, 48 sqrt
+#   wrist_length: 6 add, 26 compare and select, 1 divide, 4 multiply, 2 sincos, 2 sqrt
+#   minimum_link_length: 2 divide, 2 sincos, 1 add
+#   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
+#   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
 """H6AR, published model.
 
 A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist of
@@ -55,6 +59,10 @@ __all__ = [
     "determinant",
     "singularities",
     "ik",
+    "wrist_length",
+    "minimum_link_length",
+    "largest_yaw",
+    "largest_angle",
 ]
 
 
@@ -988,7 +996,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     root_x = np.sqrt(size_u + t70) * np.sqrt(np.maximum(t71, 0.0))
     norm_x = np.sqrt(t69 * t69 + root_x * root_x)
     t77 = np.arctan2(t69 / norm_x, root_x / norm_x)
-    t78 = np.arctan2(L_2W, a_3W)
+    t78 = np.arctan2(s_lag, c_lag)
     t79 = 2.0 * np.arctan2(t49, t50)
     t80 = np.where(t44, 0.0, t78 - t79)
     t81 = np.arctan2(sbeta, np.where(t67, 1.0, root_y / norm_y))
@@ -1238,3 +1246,145 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return _runtime.Solutions(*result)
+
+
+def _wrist_length(psi, phi, d, gs, al):
+    c_psi = np.cos(psi)
+    c_phi = np.cos(phi)
+    t1 = d - c_psi * (gs - al)
+    t2 = gs + al
+    t3 = t2 * c_psi - d
+    t4 = np.sqrt(np.maximum(t1, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
+    t5 = np.isfinite(psi) & np.isfinite(phi) & np.isfinite(d)
+    t6 = t5 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
+    invalid = np.logical_not(t6 & (0.0 <= gs) & (0.0 <= al))
+    t7 = -(_runtime.FEASIBILITY * (d + t2))
+    t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t3)
+    t9 = np.where(invalid | np.logical_not(t8 & (t7 <= t1)), np.nan, 0.0)
+    return (
+        t4 / c_psi + t9,
+    )
+
+
+_WRIST_LENGTH = _runtime.Kernel(
+    "h6ar.wrist_length",
+    _wrist_length,
+    (_runtime.Array("psi", ()), _runtime.Array("phi", ())),
+    (_runtime.Array("l_W", ()),),
+    Parameters._fields,
+    ('d', 'gs', 'al'),
+)
+
+
+def wrist_length(psi: ArrayLike, phi: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """The variable length l_W of the wrist; NaN where the links are too short.
+
+    Source: eq. (8).
+    psi: shape (...): psi.
+    phi: shape (...): phi.
+    Returns l_W: shape (...).
+    """
+    result = _runtime.evaluate(_WRIST_LENGTH, (psi, phi), params, out)
+    return result
+
+
+def _minimum_link_length(psi_max, _phi_max, beta_min, d, gs):
+    c_psi_max = np.cos(psi_max)
+    c_beta_min = np.cos(beta_min)
+    return (
+        -((gs - d / c_psi_max) / c_beta_min),
+    )
+
+
+_MINIMUM_LINK_LENGTH = _runtime.Kernel(
+    "h6ar.minimum_link_length",
+    _minimum_link_length,
+    (_runtime.Array("psi_max", ()), _runtime.Array("phi_max", ()), _runtime.Array("beta_min", ())),
+    (_runtime.Array("al", ()),),
+    Parameters._fields,
+    ('d', 'gs'),
+)
+
+
+def minimum_link_length(psi_max: ArrayLike, phi_max: ArrayLike, beta_min: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """The shortest wrist links that keep the separation angle up to the given yaw and roll.
+
+    Source: eq. (10).
+    psi_max: shape (...): psi_max.
+    phi_max: shape (...): phi_max.
+    beta_min: shape (...): beta_min.
+    Returns al: shape (...).
+    """
+    result = _runtime.evaluate(_MINIMUM_LINK_LENGTH, (psi_max, phi_max, beta_min), params, out)
+    return result
+
+
+def _largest_yaw(phi, beta_min, d, gs, al):
+    c_beta_min = np.cos(beta_min)
+    span = gs + al * c_beta_min
+    t1 = span - d
+    t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
+    t3 = np.isfinite(phi) & np.isfinite(beta_min) & np.isfinite(d)
+    t4 = t3 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
+    invalid = np.logical_not(t4 & (0.0 <= gs) & (0.0 <= al))
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
+    t5 = _runtime.wrap(2.0 * t2) + np.where(invalid | unreachable, np.nan, 0.0)
+    return (
+        t5,
+    )
+
+
+_LARGEST_YAW = _runtime.Kernel(
+    "h6ar.largest_yaw",
+    _largest_yaw,
+    (_runtime.Array("phi", ()), _runtime.Array("beta_min", ())),
+    (_runtime.Array("psi", ()),),
+    Parameters._fields,
+    ('d', 'gs', 'al'),
+)
+
+
+def largest_yaw(phi: ArrayLike, beta_min: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """The largest yaw at a roll that keeps the separation angle; NaN where there is none.
+
+    phi: shape (...): phi.
+    beta_min: shape (...): beta_min.
+    Returns psi: shape (...).
+    """
+    result = _runtime.evaluate(_LARGEST_YAW, (phi, beta_min), params, out)
+    return result
+
+
+def _largest_angle(beta_min, d, gs, al):
+    c_beta_min = np.cos(beta_min)
+    span = gs + al * c_beta_min
+    t1 = span - d
+    t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
+    t3 = np.isfinite(beta_min) & np.isfinite(d) & np.isfinite(gs)
+    t4 = t3 & np.isfinite(al) & (0.0 <= d) & (0.0 <= gs)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
+    failed = np.logical_not(t4 & (0.0 <= al)) | unreachable
+    t5 = _runtime.wrap(2.0 * t2) + np.where(failed, np.nan, 0.0)
+    return (
+        t5,
+    )
+
+
+_LARGEST_ANGLE = _runtime.Kernel(
+    "h6ar.largest_angle",
+    _largest_angle,
+    (_runtime.Array("beta_min", ()),),
+    (_runtime.Array("angle", ()),),
+    Parameters._fields,
+    ('d', 'gs', 'al'),
+)
+
+
+def largest_angle(beta_min: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """The largest angle that yaw and roll may both have; NaN where there is none.
+
+    beta_min: shape (...): beta_min.
+    Returns angle: shape (...).
+    """
+    result = _runtime.evaluate(_LARGEST_ANGLE, (beta_min,), params, out)
+    return result

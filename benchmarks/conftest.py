@@ -1,11 +1,8 @@
-"""Prints, after pytest-benchmark's own table, nanoseconds a posture and ratios to the peer."""
-
-import os
-from pathlib import Path
+"""Prints nanoseconds a posture, and how many times the peer takes, as one table."""
 
 import pytest
 
-RATIOS = Path(__file__).parent / "RESULTS.md"
+PEER = "lambdify"
 
 
 def pytest_terminal_summary(
@@ -22,27 +19,13 @@ def pytest_terminal_summary(
         row = medians.setdefault((info["case"], info["size"]), {})
         row[info["backend"]] = 1e9 * bench.stats.median / info["postures"]
     backends = list(dict.fromkeys(b for row in medians.values() for b in row))
-    lines = [
-        "| function | postures | "
-        + " | ".join(f"{b}, ns" for b in backends)
-        + " | best / lambdify |",
-        "|---" * (len(backends) + 3) + "|",
-    ]
-    for (case, size), row in medians.items():
-        peer = row.get("lambdify", float("nan"))
-        best = min(v for b, v in row.items() if b != "lambdify")
-        cells = [f"{row[b]:.1f}" if b in row else "" for b in backends]
-        lines.append(f"| {case} | {size} | " + " | ".join(cells) + f" | {peer / best:.1f}x |")
-    terminalreporter.write_line("")
-    for line in lines:
-        terminalreporter.write_line(line)
-    if os.environ.get("CLOSEDFORM_WRITE_RESULTS"):
-        RATIOS.write_text("\n".join([HEADER, *lines, ""]))
-
-
-HEADER = """# Speed
-
-Median time of one posture, measured by `make bench`. `lambdify` is `sympy.lambdify(cse=True)` with
-NumPy, of the same expressions (for an inverse: all branches, no statuses). `(N, n)` are plain
-arrays; `planes` are structures of arrays with `out=`.
-"""
+    ours = [b for b in backends if b != PEER]
+    header = ["function", "postures", *(f"{b}, ns" for b in backends)]
+    header += [f"{PEER} / {b}" for b in ours]
+    terminalreporter.section("median of one posture")
+    terminalreporter.write_line("| " + " | ".join(header) + " |")
+    terminalreporter.write_line("|---|---" + "|---:" * (len(header) - 2) + "|")
+    for key, row in medians.items():
+        cells = [f"{row.get(b, float('nan')):.1f}" for b in backends]
+        cells += [f"{row.get(PEER, float('nan')) / row.get(b, float('nan')):.2g}" for b in ours]
+        terminalreporter.write_line("| " + " | ".join([*key, *cells]) + " |")

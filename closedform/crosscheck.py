@@ -124,6 +124,8 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     symbols = _symbols(derivation, function)
     reference = Evaluator(symbols, exprs)
     scales = [sp.lambdify(symbols, magnitude(e), "math") for e in exprs]
+    margins = [Evaluator(symbols, _margins(function, signs)) for _, signs in function.cases()]
+    entries = len(exprs) // len(cases)
     for sample in joint_samples(derivation, function):
         sample = _round(sample, backend)
         if not len(sample.values):
@@ -133,8 +135,14 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
         computed = np.concatenate([o.reshape(rows, -1) for o in outputs], axis=1)
         for row in range(rows):
             values = [*map(float, sample.values[row]), *sample.parameters]
+            slack = 2 * backend.tolerances.feasibility
+            exists = [_feasible(margin, values, slack) for margin in margins]
             for k, exact in enumerate(reference(values)):
-                scale = float(scales[k](*values))
+                if not exists[k // entries]:
+                    if exists[k // entries] is False and not np.isnan(computed[row, k]):
+                        finding.fail(f"a value out of bounds, entry {k} at {values}")
+                    continue
+                scale = _scale(scales[k], values, backend)
                 error = _ulps(float(computed[row, k]), exact, scale, backend)
                 if error > WELL_CONDITIONED:
                     scale += _variation(reference, k, values, exact, backend) / backend.eps
@@ -143,6 +151,15 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     if not finding.worst <= backend.tolerances.ulps:
         finding.fail(f"{finding.worst:.3g} ulp: {finding.where}")
     return finding
+
+
+def _scale(magnitude: Callable[..., Any], values: Sequence[float], backend: Backend) -> float:
+    """The natural scale; infinite, so that nothing is compared, where the float type overflows."""
+    try:
+        with np.errstate(over="ignore", under="ignore"):
+            return float(magnitude(*map(backend.dtype, values)))
+    except OverflowError:
+        return math.inf
 
 
 def _variation(
@@ -205,7 +222,9 @@ class _Truth:
         place = (*inverse.unknowns, *function.symbols, *parameters)
         self._equations = Evaluator(place, inverse.equations)
         pairs = list(zip(inverse.forward, inverse.targets, strict=True))
-        self._is_turn = [t for _, x in pairs for t in ([True] * 2 if x in inverse.angles else [False])]
+        self._is_turn = [
+            t for _, x in pairs for t in [x in inverse.angles] * (1 + (x in inverse.angles))
+        ]
         lengths = [f for f, x in pairs if x not in inverse.angles]
         self._scales = [sp.lambdify(place, magnitude(f), "math") for f in lengths]
         self._is_image = tuple(inverse.targets) == function.symbols
@@ -242,10 +261,7 @@ class _Truth:
         self, given: NDArray[Any], parameters: Sequence[float], branch: int, slack: float
     ) -> bool | None:
         """Whether the branch exists; ``None`` if that hangs on a bound within ``slack`` of zero."""
-        margins = list(map(to_float, self._bounds[branch]([*map(float, given), *parameters])))
-        if min(margins, default=1.0) > slack:
-            return True
-        return False if min(margins) < -slack else None
+        return _feasible(self._bounds[branch], [*map(float, given), *parameters], slack)
 
     def condition(self, posture: NDArray[Any], parameters: Sequence[float]) -> float:
         """The smallest factor of the singular set, at most 1."""
@@ -257,6 +273,14 @@ class _Truth:
         difference = solutions.astype(float) - posture
         turned = np.abs(np.angle(np.exp(1j * difference)))
         return np.asarray(np.where(self.angular, turned, np.abs(difference)).max(axis=-1))
+
+
+def _feasible(margins: Evaluator, values: Sequence[float], slack: float) -> bool | None:
+    """Whether all margins are positive; ``None`` if that hangs on one within ``slack`` of zero."""
+    found = list(map(to_float, margins(values)))
+    if min(found, default=1.0) > slack:
+        return True
+    return False if min(found) < -slack else None
 
 
 def _margins(function: Function, signs: Mapping[sp.Symbol, int]) -> list[sp.Expr]:
@@ -343,11 +367,10 @@ def _check_known(
         finding.fail(f"{posture.tolist()} is not among {solutions.tolist()}; {where}")
 
 
-def _movement(
-    truth: _Truth, backend: Backend, sample: Sample, solutions: NDArray[Any]
-) -> float:
+def _movement(truth: _Truth, backend: Backend, sample: Sample, solutions: NDArray[Any]) -> float:
     """How far the answers move when every coordinate of the target moves by an ulp."""
-    signs = np.array([[(-1) ** ((k >> (i % 2)) & 1) for i in range(sample.values.shape[1])] for k in range(4)])
+    columns = np.arange(sample.values.shape[1])
+    signs = np.array([(-1) ** ((pattern >> (columns % 2)) & 1) for pattern in range(4)])
     nearby = Sample(sample.name, sample.values * (1 + signs * backend.eps), sample.parameters)
     moved = truth.gap(_call(backend, truth.function, nearby)[0], solutions)
     return float(np.max(moved, initial=0.0, where=np.isfinite(moved)))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from closedform.functions import Array, Branches, Function, Number, Program, array, real
+from closedform.functions import Branches, Function, Number, Program, array, real
 
 if TYPE_CHECKING:
     from closedform.claims import Check
@@ -67,14 +67,6 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Published:
-    """An equation as the paper prints it: its label and the printed form, transcribed."""
-
-    label: str
-    printed: str
-
-
-@dataclass(frozen=True)
 class Step:
     """One step: why, what was derived, and what must be zero for the step to hold."""
 
@@ -98,12 +90,16 @@ class Solved:
 
 @dataclass(frozen=True)
 class Continuum:
-    """A flagged case: on ``locus`` a joint is free, and ``relation`` says what the others keep."""
+    """A flagged case: on ``locus`` a joint is free, and ``relation`` says what the others keep.
+
+    It occurs in the named ``branches``; in all of them if none is named.
+    """
 
     flag: sp.Symbol
     locus: Mapping[sp.Symbol, sp.Expr]
     free: sp.Symbol
     relation: str
+    branches: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -164,6 +160,20 @@ class Inverse:
 
 
 @dataclass(frozen=True)
+class Table:
+    """Numbers to print: ``columns`` of expressions in one ``variable``, a row for each value.
+
+    The parameters have their example values.  The header of a column names its unit.
+    """
+
+    name: str
+    header: str
+    variable: sp.Symbol
+    values: tuple[sp.Rational, ...]
+    columns: Mapping[str, sp.Expr]
+
+
+@dataclass(frozen=True)
 class Claim:
     """A statement of the paper, transcribed as printed, and the computation that judges it."""
 
@@ -191,6 +201,7 @@ class Derivation:
     solved: list[Solved] = field(default_factory=list)
     inverses: list[Inverse] = field(default_factory=list)
     functions: list[Function] = field(default_factory=list)
+    tables: list[Table] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
 
     def parameter(
@@ -286,12 +297,11 @@ class Derivation:
         """Export a function.  Inputs and outputs are named scalars, vectors, matrices or arrays."""
         if any(f.name == name for f in self.functions):
             raise ValueError(f"{self.name}: the function {name} is defined twice")
-        angles = [j.symbol for j in self.joints if j.kind == "revolute"]
         function = Function(
             name,
             summary,
-            tuple(array(k, v, angles=angles) for k, v in inputs.items()),
-            tuple(_output(k, v) for k, v in outputs.items()),
+            tuple(array(k, v) for k, v in inputs.items()),
+            tuple(array(k, v) for k, v in outputs.items()),
             tuple(program.body) if program else (),
             branches,
             result,
@@ -344,9 +354,3 @@ class Derivation:
                 f"{self.name}.{function.name}: the symbol {name} is neither a parameter nor an "
                 f"input nor defined by an earlier statement"
             )
-
-
-def _output(name: str, value: Any) -> Array:
-    if isinstance(value, tuple) and len(value) == 2 and isinstance(value[1], str):
-        return array(name, value[0], meaning=value[1])
-    return array(name, value)

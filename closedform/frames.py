@@ -112,6 +112,34 @@ def reduce_circle(value: sp.Matrix) -> sp.Matrix:
     return value.applyfunc(shorter)
 
 
+def simplest(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
+    """Reduced by ``s^2 + c^2 = 1``, with the angles of parallel axes added, then factored.
+
+    Of these forms and the given one, entry by entry, the shortest.
+    """
+    if isinstance(value, sp.MatrixBase):
+        return value.applyfunc(simplest)
+    reduced = merge_angles(normal(value))
+    return min((value, reduced, sp.factor(reduced)), key=sp.count_ops)
+
+
+def inverse(T: sp.Matrix) -> sp.Matrix:
+    """The inverse of a rigid motion."""
+    R, p = T[:3, :3], T[:3, 3]
+    return homogeneous(R.T, tuple(-R.T * p))
+
+
+def twist_of(V: sp.Matrix) -> sp.Matrix:
+    """The twist ``(v; omega)`` of a 4x4 matrix of se(3)."""
+    return sp.Matrix([*V[:3, 3], *vee(V[:3, :3])])
+
+
+def twist_matrix(twist: sp.Matrix) -> sp.Matrix:
+    """The 4x4 matrix of a twist ``(v; omega)``, the inverse of :func:`twist_of`."""
+    v, w = sp.Matrix(twist[:3]), sp.Matrix(twist[3:])
+    return sp.Matrix.vstack(sp.Matrix.hstack(hat(w), v), sp.zeros(1, 4))
+
+
 def determinant(J: sp.Matrix) -> sp.Expr:
     """The determinant of a Jacobian, factored, with the angles of parallel axes added."""
     reduced = normal(J.det(method="berkowitz"))

@@ -108,15 +108,13 @@ class Array:
     name: str
     shape: tuple[int, ...]
     entries: tuple[sp.Expr, ...]
-    meaning: str = ""
-    is_angle: tuple[bool, ...] = ()
 
     @property
     def size(self) -> int:
         return len(self.entries)
 
 
-def array(name: str, value: Any, meaning: str = "", angles: Sequence[sp.Symbol] = ()) -> Array:
+def array(name: str, value: Any) -> Array:
     """An :class:`Array` from a scalar, a (nested) sequence, a matrix or an N-dimensional array.
 
     Column matrices are vectors: a shape of ``(n, 1)`` becomes ``(n,)``.
@@ -132,7 +130,7 @@ def array(name: str, value: Any, meaning: str = "", angles: Sequence[sp.Symbol] 
     exact = tuple(sp.sympify(e) for e in entries)
     for entry in exact:
         reject_floats(entry, name)
-    return Array(name, shape, exact, meaning, tuple(bool(e in angles) for e in exact))
+    return Array(name, shape, exact)
 
 
 @dataclass(frozen=True)

@@ -116,6 +116,7 @@ def two_link_triangle(
     base: sp.Symbol,
     sigma: sp.Symbol,
     *,
+    scale: sp.Expr | None = None,
     suffix: str = "",
     sided: bool = False,
 ) -> Lemma:
@@ -127,10 +128,12 @@ def two_link_triangle(
 
         tan(elbow / 2) = sqrt(S A) / sqrt(B C),   tan(base / 2) = sqrt(A C) / sqrt(S B).
 
-    The elbow is free where a link has no length, and the base where the reach is zero.  ``sided``
-    keeps a stretched elbow bent by 1e-7, so that the side can be read from the answer.
+    The elbow is free where a link has no length, and the base where the reach is zero.  ``scale``
+    is the natural scale of the lengths: by default that of the links, more where the reach is a
+    difference of larger lengths.  ``sided`` keeps a stretched elbow bent by 1e-7, so that the side
+    can be read from the answer.
     """
-    scale = first + second
+    scale = first + second if scale is None else scale
     S = program.let(f"S{suffix}", first + second + reach, nonnegative=True)
 
     def bound(name: str, value: sp.Expr, meaning: str) -> sp.Symbol:
@@ -155,6 +158,43 @@ def two_link_triangle(
             elbow: 2 * sigma * sp.atan2(rS * rA, rB * rC),
             base: 2 * sigma * sp.atan2(rA * rC, rS * rB),
         },
+        2,
+    )
+
+
+def parallelogram(
+    crank: sp.Expr,
+    coupler: sp.Expr,
+    angle: sp.Expr,
+    frame: sp.Expr,
+    turn: sp.Symbol,
+    rod: sp.Symbol,
+    sigma: sp.Symbol,
+) -> Lemma:
+    """The four-bar linkage with equal opposite sides: its two assemblies.
+
+    The crank and the rod have the length ``crank``, the coupler and the fixed link the length
+    ``coupler``; the crank is at ``angle`` and the fixed link at ``frame`` in a common plane.
+    Unknown are the ``turn`` of the coupler against the fixed link and the angle of the ``rod``.
+
+    With the plus sign the linkage is a parallelogram, and the coupler does not turn; with the minus
+    sign it is an antiparallelogram.  They meet where the linkage is flat.  The antiparallelogram
+    has a free turn where it is flat with equal sides.
+    """
+    bend = angle - frame
+    half = sp.atan2(crank * sp.sin(bend), crank * sp.cos(bend) - coupler)
+    turned = (1 - sigma) * half
+    return Lemma(
+        "parallelogram",
+        r"l\,e^{i\theta} + a\,e^{i(\gamma + \varphi)} = a\,e^{i\gamma} + l\,e^{i\beta} "
+        r"\;\Rightarrow\; (\varphi, \beta) = (0, \theta) \text{ or } "
+        r"\tan\frac{\varphi}{2} = \frac{l\sin(\theta - \gamma)}{l\cos(\theta - \gamma) - a},\ "
+        r"\beta = 2\gamma + \varphi - \theta",
+        tuple(
+            crank * (f(angle) - f(rod)) + coupler * (f(frame + turn) - f(frame))
+            for f in (sp.cos, sp.sin)
+        ),
+        {turn: turned, rod: sigma * angle + (1 - sigma) * frame + turned},
         2,
     )
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from closedform.derivation import Derivation
     from closedform.prove import Proof
 
-BACKENDS = ("numpy", "c", "latex")
+BACKENDS = ("numpy", "c", "latex", "data")
 EXTRA = ("sympy", "flint", "jinja2")
 TOOLS = frozenset({"cli.py", "pipeline.py", "__main__.py"})
 OUTPUT = frozenset({"emit", "lower", "derivations", "generated", "templates"})

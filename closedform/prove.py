@@ -249,13 +249,16 @@ def _prove_continuum(
 ) -> None:
     """On its locus the flagged case returns a solution, whatever the convention."""
     for label, signs in function.cases():
+        if continuum.branches and label not in continuum.branches:
+            continue
         values = function.at(signs, {continuum.flag: True}, continuum.locus)
         solution = dict(zip(inverse.unknowns, values, strict=True))
         difference = sp.Matrix(
             [substitute(substitute(e, solution), continuum.locus) for e in inverse.equations]
         )
+        bounds = tuple(substitute(b, continuum.locus) for b in function.bounds(signs))
         where = f"{derivation.name}.{function.name}, {continuum.flag}, branch {label}"
-        _require(difference, (), where)
+        _require(difference, bounds, where)
 
 
 def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, ...]:

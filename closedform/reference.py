@@ -126,14 +126,6 @@ def to_float(ball: arb) -> float:
         return math.copysign(math.inf, int(mantissa))
 
 
-def ulp_error(computed: float, enclosure: arb, scale: float) -> float:
-    """Upper bound of `|computed - exact|` in units in the last place of `scale`."""
-    if not (math.isfinite(computed) and enclosure.is_finite()):
-        return 0.0 if math.isnan(computed) and enclosure.is_nan() else math.inf
-    error = abs(arb(computed) - enclosure) / arb(math.ulp(scale))
-    return math.nextafter(to_float(error.abs_upper()), math.inf) if not error.is_zero() else 0.0
-
-
 class _Point:
     """One exact value: its ball at the current precision, and its turns if a multiple of pi."""
 

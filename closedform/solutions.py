@@ -71,11 +71,16 @@ def count_solutions(
     system = _System(list(equations), unknowns, target_substitution or {}, list(saturate))
     draw = random.Random(seed)
     if method == "generic":
-        ring = PolyRing(system.variables, _function_field(system.parameters), grevlex)
-        basis = groebner([_element(ring, p) for p in system.polynomials], ring)
-        monomials = _standard_monomials(basis, ring)
-        distinct = _are_distinct(_specialised(basis, system.parameters, draw), monomials)
-        return SolutionCount(len(monomials), distinct, "generic")
+        total, distinct = 1, True
+        for variables, polynomials in system.blocks():
+            free = {s for p in polynomials for s in p.free_symbols} - set(variables)
+            parameters = sorted(free, key=str)
+            ring = PolyRing(variables, _function_field(parameters), grevlex)
+            basis = groebner([_element(ring, p) for p in polynomials], ring)
+            monomials = _standard_monomials(basis, ring)
+            alone = _are_distinct(_specialised(basis, parameters, draw), monomials)
+            total, distinct = total * len(monomials), distinct and alone
+        return SolutionCount(total, distinct, "generic")
 
     ring = PolyRing(system.variables, QQ, grevlex)
     points, counts, distinct = [], set(), True
@@ -136,8 +141,34 @@ class _System:
             inverse = sp.Dummy(f"inverse{len(self.variables)}")
             self.variables.append(inverse)
             self.polynomials.append(inverse * factor - 1)
+        self._merge_parameters()
         free = {s for p in self.polynomials for s in p.free_symbols}
         self.parameters = sorted(free - set(self.variables), key=str)
+
+    def _merge_parameters(self) -> None:
+        """Of parameters that occur only as one sum or difference, such as `a + b`, keep one.
+
+        The system at `(a, b)` is the system at `(a + b, 0)`; fewer parameters are much faster.
+        """
+        free = {s for p in self.polynomials for s in p.free_symbols}
+        for a, b in combinations(sorted(free - set(self.variables), key=str), 2):
+            slopes = [(p.diff(a), p.diff(b)) for p in self.polynomials]
+            if any(sp.expand(x - y) != 0 for x, y in slopes) and any(
+                sp.expand(x + y) != 0 for x, y in slopes
+            ):
+                continue
+            self.polynomials = [p.subs(b, 0) for p in self.polynomials]
+
+    def blocks(self) -> list[tuple[list[Symbol], list[Expr]]]:
+        """Parts without a common variable: their solutions combine freely, so counts multiply."""
+        parts: list[tuple[list[Symbol], list[Expr]]] = [([v], []) for v in self.variables]
+        for polynomial in self.polynomials:
+            touched = [part for part in parts if polynomial.has(*part[0])] or parts[:1]
+            parts = [part for part in parts if part not in touched]
+            variables = {v for part in touched for v in part[0]}
+            equations = [p for part in touched for p in part[1]] + [polynomial]
+            parts.append(([v for v in self.variables if v in variables], equations))
+        return parts
 
     def _without_angles(self, e: Expr) -> Expr:
         """Unknown angles by sine and cosine, known ones by the tangent of their half."""

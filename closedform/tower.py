@@ -431,7 +431,10 @@ class Tower:
         return signs.pop() if len(signs) == 1 else 0
 
     def _license(self, guard: Expr) -> None:
-        constant, powers = self._factored(self.convert(guard))
+        value = self.convert(guard)
+        if value.num.is_zero():
+            return
+        constant, powers = self._factored(value)
         sign, unknown = 1 if constant > 0 else -1, []
         for f, power in powers:
             if power % 2:

@@ -8,6 +8,12 @@ REDDY_BABU = Paper(
     ("S. Baswanth Kumar Reddy", "K. Rajesh Babu"),
 )
 
+SHI_ZHU_LI = Paper(
+    "shi-zhu-li",
+    "New Method for Kinematic Analysis of a Hybrid Manipulator",
+    ("Jun Shi", "Xiaorui Zhu", "Zexiang Li"),
+)
+
 RAO_RAJU = Paper(
     "rao-raju",
     "Forward and inverse kinematics of a hybrid series-parallel manipulator",

@@ -72,9 +72,9 @@ d.function(
 )
 d.function(
     "orientation",
-    "Angle phi of the last link against the x axis, the plain sum of the joint angles.",
+    "Angle phi of the last link against the x axis: the sum of the joint angles, in (-pi, pi].",
     {"q": q},
-    {"phi": phi},
+    {"phi": atan2(sin(phi), cos(phi))},
     source="eq. (5)",
 )
 
@@ -194,7 +194,7 @@ d.inverses.append(
                 at_base,
                 {px: sp.Integer(0), py: sp.Integer(0), l2: l1},
                 theta1,
-                r"\theta_2 = \pi, \theta_1 any",
+                r"\theta_2 = \pi",
             ),
         ),
     )

@@ -277,3 +277,9 @@ def test_normal_form_has_the_same_value(e: sp.Expr) -> None:
     point = {theta: Rational(7, 10), phi: Rational(-13, 10), x: Rational(5, 3), l1: 2}
     with mpmath.workdps(30):
         assert abs(sp.N((normal(e) - e).subs(point), 20, maxn=200, strict=False)) < 1e-12
+
+
+def test_a_guard_that_vanishes_licenses_nothing() -> None:
+    assert not is_zero(
+        sqrt(x**2) - x, nonnegative=[y - y, sp.sin(theta) ** 2 + sp.cos(theta) ** 2 - 1]
+    )

@@ -15,7 +15,7 @@ import pytest
 from flint import arb, ctx
 
 ROOT = Path(__file__).resolve().parent.parent
-HEADER = ROOT / "templates" / "c"
+HEADER = ROOT / "generated" / "c"
 DRIVER = ROOT / "tests" / "c" / "header_driver.c"
 WARNINGS = [
     "-pedantic",

@@ -6,7 +6,14 @@ import pytest
 import sympy as sp
 
 from closedform.functions import Program, real
-from closedform.lemmas import Lemma, linear_pair, sine_cosine, two_link_triangle, zyz_angles
+from closedform.lemmas import (
+    Lemma,
+    linear_pair,
+    parallelogram,
+    sine_cosine,
+    two_link_triangle,
+    zyz_angles,
+)
 from closedform.prove import ProofError, prove_lemma
 from closedform.solutions import rotation_parametrisation
 
@@ -26,12 +33,15 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         first, second = (real(n, positive=True) for n in ("l1", "l2"))
         reach = real("r", positive=True)
         return two_link_triangle(program, first, second, reach, x, y, sigma), program, {}
+    if name == "parallelogram":
+        crank, coupler = (real(n, positive=True) for n in ("l", "a"))
+        return parallelogram(crank, coupler, z, real("gamma"), x, y, sigma), program, {}
     R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
     given = dict(zip(R, rotation_parametrisation(), strict=True))
     return zyz_angles(program, R, x, y, z, sigma), program, given
 
 
-NAMES = ["linear pair", "sine and cosine", "triangle", "zyz"]
+NAMES = ["linear pair", "sine and cosine", "triangle", "parallelogram", "zyz"]
 
 
 @pytest.mark.parametrize("name", NAMES)

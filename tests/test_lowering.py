@@ -89,6 +89,18 @@ def test_common_parts_are_computed_once() -> None:
     assert lowered(x + y + z, x + z - y, x + z).operations() == {"add": 2, "sub": 1}
 
 
+@pytest.mark.parametrize("signs", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+def test_a_shared_pair_keeps_its_sign(signs: tuple[int, int]) -> None:
+    """The pair y, z stands in three sums, with all signs, and never first."""
+    b, c = signs
+    exprs = [x + b * y + c * z, x - b * y - c * z, 2 * x + b * y + c * z]
+    values = {"x": 0.3, "y": 1.7, "z": -0.4}
+    got = run(lowered(*exprs), values)
+    exact = [float(e.subs(dict(zip(SYMBOLS, values.values(), strict=True)))) for e in exprs]
+    assert got == pytest.approx(exact, abs=1e-14)
+    assert sum(lowered(*exprs).operations().values()) <= 5
+
+
 def test_trigonometry_is_taken_of_joint_angles_alone() -> None:
     program = lowered(cos(x + y), sin(x + y), sin(-x), cos(-y), sin(2 * x))
     assert len(program.angles) == 2

@@ -81,7 +81,7 @@ def test_the_wheel_holds_everything(installed: Path) -> None:
     assert ROOT is not None
     package = installed / "closedform"
     for folder in ("derivations", "generated", "templates"):
-        suffixes = (".py", ".c", ".h", ".in", ".txt", ".tex", ".md", ".jinja")
+        suffixes = (".py", ".c", ".h", ".in", ".txt", ".tex", ".csv", ".md", ".jinja")
         assert below(package / folder, *suffixes) == below(ROOT / folder, *suffixes)
     toolkit = below(ROOT / "closedform", ".py", ".typed")
     assert toolkit <= below(package, ".py", ".typed")

@@ -33,9 +33,12 @@ CALLS = {
     "min": "cf_min",
     "finite": "cf_is_finite",
     "wrap": "cf_wrap",
+    "poison": "cf_poison",
+    "status": "cf_status",
     "select": "cf_select",
 }
-RESERVED = frozenset(
+LOCALS = frozenset(("params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start"))
+RESERVED = LOCALS | frozenset(
     [
         "auto",
         "break",
@@ -71,13 +74,6 @@ RESERVED = frozenset(
         "void",
         "volatile",
         "while",
-        "params",
-        "sines",
-        "cosines",
-        "n",
-        "i",
-        "m",
-        "start",
     ]
 )
 
@@ -218,6 +214,8 @@ class _Emission:
             for k, entry in enumerate(a.entries)
         }
         names = [a.name for a in (*self.inputs, *self.outputs)]
+        if taken := LOCALS.intersection(names):
+            raise ValueError(f"{function.name}: the C code uses the name {', '.join(taken)} itself")
         self.printer = CPrinter(program, reserved={*RESERVED, *names})
         self.values = self.printer.run()
         read = program.used_inputs(below_angles=False)
@@ -374,9 +372,9 @@ class _Emission:
                 )
                 source = f"angle_{j}"
                 lines.append(f"real_t {source}[CLOSEDFORM_BLOCK];")
-                lines.append("for (size_t i = 0; i < m; ++i)")
+                lines.append("for (size_t i = 0; i < length; ++i)")
                 lines.append(f"    {source}[i] = {place} / CLOSEDFORM_C({divisor}.0);")
-            lines.append(f"cf_sincos_block(m, {source}, sines[{j}], cosines[{j}]);")
+            lines.append(f"cf_sincos_block(length, {source}, sines[{j}], cosines[{j}]);")
         return lines
 
     def _stores(self) -> list[str]:

@@ -25,6 +25,8 @@ CALLS = {
     "not": "np.logical_not",
     "finite": "np.isfinite",
     "wrap": "_runtime.wrap",
+    "poison": "_runtime.poison",
+    "status": "_runtime.status",
 }
 DTYPES = {"real": "np.float64", "status": "np.uint8", "bool": "np.bool_"}
 
@@ -84,9 +86,13 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
     lines = []
     needed = {(n.op, n.args[0].id) for n in program.schedule() if n.op in ("sin", "cos")}
     for angle, sine, cosine in printer.trig:
-        for op, name in (("sin", sine), ("cos", cosine)):
-            if (op, angle.id) in needed:
-                lines.append(f"{name} = np.{op}({printer.text[angle.id].code})")
+        code = printer.text[angle.id].code
+        if {("sin", angle.id), ("cos", angle.id)} <= needed:
+            lines.append(f"{sine}, {cosine} = _runtime.sincos({code})")
+        elif ("sin", angle.id) in needed:
+            lines.append(f"{sine} = np.sin({code})")
+        else:
+            lines.append(f"{cosine} = np.cos({code})")
     lines += [f"{line.name} = {line.code}" for line in printer.lines]
     entries = [str(e) for a in function.inputs for e in a.entries]
     parameters = list(program.parameters)

@@ -13,10 +13,11 @@ import jinja2
 from closedform.derivation import Derivation
 from closedform.emit import c, latex, numpy
 from closedform.emit.errata import errata
+from closedform.emit.table import csv
 from closedform.lower import lower
 from closedform.prove import Proof
 
-BACKENDS = ("numpy", "c", "latex")
+BACKENDS = ("numpy", "c", "latex", "data")
 
 
 @cache
@@ -52,6 +53,9 @@ def robot_files(
     if "latex" in backends:
         context = latex.document(derivation, proof)
         printed[Path("latex", f"{name}.tex")] = render("latex/robot.tex.jinja", context)
+    if "data" in backends:
+        for table in derivation.tables:
+            printed[Path("data", f"{table.name}.csv")] = csv(derivation, table)
     return printed
 
 

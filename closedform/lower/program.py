@@ -14,7 +14,6 @@ from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.graph import Graph, Node, reachable
 from closedform.lower.share import share
 
-STATUS = {"OK": 0, "UNREACHABLE": 1, "SINGULAR": 2, "INVALID": 3}
 LEAVES = frozenset({"const", "input", "nan", "tolerance", "true", "false", "sin", "cos"})
 
 
@@ -166,7 +165,7 @@ class _Branch:
                 reachable.append(graph.node("le", size, limit("feasibility", statement.scale)))
             elif isinstance(statement, Vanishes):
                 flag = graph.node("le", build(statement.value), limit("vanishing", statement.scale))
-                build.define(statement.symbol, flag)
+                self._name(names, build, statement.symbol, flag, label)
                 if statement.free:
                     singular.append(flag)
             else:
@@ -206,22 +205,28 @@ class _Branch:
             node = self.graph.node("wrap", node)
         if failed.op == "false":
             return node
-        poison = self.graph.select(failed, self.graph.node("nan"), self.graph.const(0))
-        return self.graph.node("add", node, poison)
+        return self.graph.node("add", node, self.graph.node("poison", failed))
 
     def _status(self, invalid: Node, unreachable: Node, singular: Node) -> Node:
-        graph = self.graph
-        result = graph.select(singular, graph.const(STATUS["SINGULAR"]), graph.const(STATUS["OK"]))
-        result = graph.select(unreachable, graph.const(STATUS["UNREACHABLE"]), result)
-        return graph.select(invalid, graph.const(STATUS["INVALID"]), result)
+        return self.graph.node("status", invalid, unreachable, singular)
 
     def _valid_input(self) -> list[Node]:
-        """Every input and parameter is finite, and no length is negative."""
+        """Every input and parameter is finite, and no length is negative.
+
+        An input that a requirement compares needs no such test: it fails there.
+        """
         graph = self.graph
         used = {s for e in _expressions(self.function) for s in e.free_symbols}
         parameters = [p for p in self.derivation.parameters if p.symbol in used]
         entries = [*self.function.symbols, *(p.symbol for p in parameters)]
-        finite = [graph.node("finite", self.leaves[s]) for s in entries]
+        required = {
+            s
+            for statement in self.function.body
+            if isinstance(statement, Require)
+            for e in statement.values
+            for s in e.free_symbols
+        }
+        finite = [graph.node("finite", self.leaves[s]) for s in entries if s not in required]
         lengths = [
             graph.node("le", graph.const(0), self.leaves[p.symbol])
             for p in parameters

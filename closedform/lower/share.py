@@ -12,8 +12,6 @@ from itertools import combinations
 
 from closedform.lower.graph import Graph, Node, reachable, rebuild, strip_sign
 
-Terms = list[tuple[int, int]]  # (sign, node id)
-
 
 def share(graph: Graph, roots: Sequence[Node]) -> list[Node]:
     """``roots`` with common pairs taken out of products and then of sums, in binary operators."""

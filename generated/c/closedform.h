@@ -121,6 +121,20 @@ CF_INLINE real_t cf_select(int condition, real_t a, real_t b)
     return cf_from_word((cf_to_word(a) & mask) | (cf_to_word(b) & ~mask));
 }
 
+/* NaN where `failed`, else zero: added to an answer, it is one selection for all entries. */
+CF_INLINE real_t cf_poison(int failed)
+{
+    return cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+}
+
+/* The status of a branch; an invalid input outweighs all, a free joint nothing. */
+CF_INLINE real_t cf_status(int invalid, int unreachable, int singular)
+{
+    const real_t reached = cf_select(singular, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
+    const real_t valid = cf_select(unreachable, CLOSEDFORM_C(1.0), reached);
+    return cf_select(invalid, CLOSEDFORM_C(3.0), valid);
+}
+
 CF_INLINE real_t cf_sqrt(real_t x) { return CF_LIBM(sqrt)(x); }
 CF_INLINE real_t cf_abs(real_t x) { return CF_LIBM(fabs)(x); }
 CF_INLINE real_t cf_copysign(real_t size, real_t sign) { return CF_LIBM(copysign)(size, sign); }

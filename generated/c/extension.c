@@ -4,6 +4,7 @@
 #include "closedform_module.h"
 #include "h6ar.h"
 #include "h6ar_loop_closed.h"
+#include "irb260.h"
 #include "planar_2r.h"
 #include "spherical_wrist.h"
 
@@ -477,6 +478,294 @@ static const cf_array h6ar_loop_closed_largest_angle_in[] = {
 
 static const cf_array h6ar_loop_closed_largest_angle_out[] = {
     { "angle", 0, { 0 }, 1, CF_REAL },
+};
+
+static const char *const irb260_fields[] = { "l1", "l2", "l3", "l4", "l5", "l6" };
+static const double irb260_values[] = IRB260_DEFAULTS;
+
+static void irb260_joint4_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_joint4((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_joint4_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_joint4_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_joint4_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_joint4_out[] = {
+    { "theta4", 0, { 0 }, 1, CF_REAL },
+};
+
+static void irb260_joints_from_motors_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_joints_from_motors((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_joints_from_motors_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_joints_from_motors_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_joints_from_motors_in[] = {
+    { "motors", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_joints_from_motors_out[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static void irb260_motors_from_joints_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_motors_from_joints((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_motors_from_joints_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_motors_from_joints_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_motors_from_joints_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_motors_from_joints_out[] = {
+    { "motors", 1, { 4 }, 4, CF_REAL },
+};
+
+static void irb260_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_fk((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_fk_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_fk_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_fk_out[] = {
+    { "x", 1, { 4 }, 4, CF_REAL },
+};
+
+static void irb260_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_pose((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_pose_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_pose_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void irb260_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_jacobian((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_jacobian_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_jacobian_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_jacobian_out[] = {
+    { "J", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void irb260_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_jacobian_space((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_jacobian_space_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_jacobian_space_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_jacobian_space_out[] = {
+    { "J", 2, { 6, 4 }, 24, CF_REAL },
+};
+
+static void irb260_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_jacobian_body((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_jacobian_body_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_jacobian_body_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_jacobian_body_out[] = {
+    { "J", 2, { 6, 4 }, 24, CF_REAL },
+};
+
+static void irb260_jacobian_motors_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_jacobian_motors((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_jacobian_motors_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_jacobian_motors_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_jacobian_motors_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_jacobian_motors_out[] = {
+    { "J", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void irb260_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_determinant((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_determinant_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_determinant_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void irb260_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_singularities((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_singularities_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_singularities_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_singularities_out[] = {
+    { "factors", 1, { 2 }, 2, CF_REAL },
+};
+
+static void irb260_point_velocity_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_point_velocity((const irb260_params *)params, in[0], in[1], out[0]);
+}
+
+static void irb260_point_velocity_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_point_velocity_batch(n, (const irb260_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_point_velocity_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+    { "qdot", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_point_velocity_out[] = {
+    { "v", 1, { 3 }, 3, CF_REAL },
+};
+
+static void irb260_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_ik((const irb260_params *)params, in[0], out[0], out[1]);
+}
+
+static void irb260_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_ik_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array irb260_ik_in[] = {
+    { "x", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_ik_out[] = {
+    { "q", 2, { 4, 4 }, 16, CF_REAL },
+    { "status", 1, { 4 }, 4, CF_STATUS },
+};
+
+static void irb260_workspace_section_one(const double *params, const double *const *in, void *const *out)
+{
+    (void)in;
+    irb260_workspace_section((const irb260_params *)params, out[0]);
+}
+
+static void irb260_workspace_section_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    (void)in, (void)in_stride;
+    irb260_workspace_section_batch(n, (const irb260_params *)params, out[0], out_stride[0]);
+}
+
+static const cf_array irb260_workspace_section_out[] = {
+    { "section", 1, { 4 }, 4, CF_REAL },
+};
+
+static void irb260_workspace_margin_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_workspace_margin((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_workspace_margin_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_workspace_margin_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_workspace_margin_in[] = {
+    { "p", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array irb260_workspace_margin_out[] = {
+    { "margin", 0, { 0 }, 1, CF_REAL },
 };
 
 static const char *const planar_2r_fields[] = { "l1", "l2" };
@@ -1068,6 +1357,151 @@ const cf_function cf_functions[] = {
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_largest_angle_in, 1, h6ar_loop_closed_largest_angle_out,
       h6ar_loop_closed_largest_angle_one, h6ar_loop_closed_largest_angle_many },
+    { "irb260.joint4",
+      "Angle theta4 of the virtual joint, which keeps the wrist bracket level.\n"
+      "Source: the virtual constraint, section III.\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns theta4: shape (...).\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_joint4_in, 1, irb260_joint4_out,
+      irb260_joint4_one, irb260_joint4_many },
+    { "irb260.joints_from_motors",
+      "Joint angles of motor angles: theta3 = m3 - m2.\n"
+      "motors: shape (..., 4): m1, m2, m3, m5.\n"
+      "Returns q: shape (..., 4).\n"
+      "The map is linear and counts turns: its angles are not reduced to (-pi, pi].\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_joints_from_motors_in, 1, irb260_joints_from_motors_out,
+      irb260_joints_from_motors_one, irb260_joints_from_motors_many },
+    { "irb260.motors_from_joints",
+      "Motor angles of joint angles: m3 = theta2 + theta3.\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns motors: shape (..., 4).\n"
+      "The map is linear and counts turns: its angles are not reduced to (-pi, pi].\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_motors_from_joints_in, 1, irb260_motors_from_joints_out,
+      irb260_motors_from_joints_one, irb260_motors_from_joints_many },
+    { "irb260.fk",
+      "Position of the hand and its angle about z.\n"
+      "Source: eq. (13).\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns x: shape (..., 4).\n"
+      "The yaw theta1 + theta5 is reduced to (-pi, pi].\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_fk_in, 1, irb260_fk_out,
+      irb260_fk_one, irb260_fk_many },
+    { "irb260.pose",
+      "Pose of the hand in the base frame.\n"
+      "Source: eq. (13).\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_pose_in, 1, irb260_pose_out,
+      irb260_pose_one, irb260_pose_many },
+    { "irb260.jacobian",
+      "Derivative of (x, y, z, yaw) with respect to the joint angles.\n"
+      "Source: derivative of eq. (13).\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns J: shape (..., 4, 4).\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_jacobian_in, 1, irb260_jacobian_out,
+      irb260_jacobian_one, irb260_jacobian_many },
+    { "irb260.jacobian_space",
+      "Twist (v; omega) of the hand in the base frame per joint rate.\n"
+      "Source: eq. (18).\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns J: shape (..., 6, 4).\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_jacobian_space_in, 1, irb260_jacobian_space_out,
+      irb260_jacobian_space_one, irb260_jacobian_space_many },
+    { "irb260.jacobian_body",
+      "Twist (v; omega) of the hand in its own frame per joint rate.\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns J: shape (..., 6, 4).\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_jacobian_body_in, 1, irb260_jacobian_body_out,
+      irb260_jacobian_body_one, irb260_jacobian_body_many },
+    { "irb260.jacobian_motors",
+      "Derivative of (x, y, z, yaw) with respect to the motor angles, at joint angles.\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns J: shape (..., 4, 4).\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_jacobian_motors_in, 1, irb260_jacobian_motors_out,
+      irb260_jacobian_motors_one, irb260_jacobian_motors_many },
+    { "irb260.determinant",
+      "Determinant of the task Jacobian.\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns det: shape (...).\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_determinant_in, 1, irb260_determinant_out,
+      irb260_determinant_one, irb260_determinant_many },
+    { "irb260.singularities",
+      "The factors rho (hand on the base axis) and cos(theta3) (arm straight or\n"
+      "    folded).\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "Returns factors: shape (..., 2).\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_singularities_in, 1, irb260_singularities_out,
+      irb260_singularities_one, irb260_singularities_many },
+    { "irb260.point_velocity",
+      "Velocity of the origin of the hand, in the base frame.\n"
+      "Source: eq. (23).\n"
+      "q: shape (..., 4): theta1, theta2, theta3, theta5.\n"
+      "qdot: shape (..., 4): theta1_dot, theta2_dot, theta3_dot, theta5_dot.\n"
+      "Returns v: shape (..., 3).\n"
+      ,
+      6, irb260_values, irb260_fields,
+      2, irb260_point_velocity_in, 1, irb260_point_velocity_out,
+      irb260_point_velocity_one, irb260_point_velocity_many },
+    { "irb260.ik",
+      "All four configurations of a position and a yaw.\n"
+      "Source: solved from eq. (13); the paper leaves the inverse out.\n"
+      "x: shape (..., 4): px, py, pz, psi.\n"
+      "Returns q: shape (..., 4, 4).\n"
+      "Branches: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.\n"
+      "front: the arm faces the hand, rho >= 0; back: it reaches over the base axis,\n"
+      "    rho <= 0, where rho = y cos(theta1) - x sin(theta1).  elbow_up: cos(theta3)\n"
+      "    >= 0, as at home; elbow_down: cos(theta3) <= 0.\n"
+      "SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is\n"
+      "    determined) and 0 is returned; equal arms folded with the wrist on the\n"
+      "    shoulder, theta2 is free and 0 is returned; or an arm without length, whose\n"
+      "    angle is free.\n"
+      "Ill-conditioned where the arm is straight or folded: the angles lose half the\n"
+      "    digits there, the position does not.\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_ik_in, 2, irb260_ik_out,
+      irb260_ik_one, irb260_ik_many },
+    { "irb260.workspace_section",
+      "The annulus that the hand can reach in the plane of the arm.\n"
+      "Returns section: shape (..., 4).\n"
+      "Radius and height of the centre, inner and outer radius.\n"
+      ,
+      6, irb260_values, irb260_fields,
+      0, NULL, 1, irb260_workspace_section_out,
+      irb260_workspace_section_one, irb260_workspace_section_many },
+    { "irb260.workspace_margin",
+      "How far a position is inside the workspace, in the plane of the arm; negative\n"
+      "    outside.\n"
+      "p: shape (..., 3): px, py, pz.\n"
+      "Returns margin: shape (...).\n"
+      "Some configuration reaches the position exactly where the margin is not\n"
+      "    negative.\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_workspace_margin_in, 1, irb260_workspace_margin_out,
+      irb260_workspace_margin_one, irb260_workspace_margin_many },
     { "planar_2r.fk",
       "Position of the hand.\n"
       "Source: eqs. (1) and (2).\n"
@@ -1087,8 +1521,8 @@ const cf_function cf_functions[] = {
       1, planar_2r_pose_in, 1, planar_2r_pose_out,
       planar_2r_pose_one, planar_2r_pose_many },
     { "planar_2r.orientation",
-      "Angle phi of the last link against the x axis, the plain sum of the joint\n"
-      "    angles.\n"
+      "Angle phi of the last link against the x axis: the sum of the joint angles, in\n"
+      "    (-pi, pi].\n"
       "Source: eq. (5).\n"
       "q: shape (..., 2): theta1, theta2.\n"
       "Returns phi: shape (...).\n"

@@ -11,7 +11,7 @@
  *   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
  *   determinant: 58 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
  *   singularities: 58 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
- *   ik: 212 compare and select, 183 add, 18 atan2, 43 divide, 215 multiply, 3 sincos, 48 sqrt
+ *   ik: 204 compare and select, 183 add, 18 atan2, 43 divide, 215 multiply, 3 sincos, 48 sqrt
  *   wrist_length: 6 add, 26 compare and select, 1 divide, 4 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -107,7 +107,7 @@ CF_INLINE void h6ar_fk_kernel(const h6ar_params *params, const real_t q[6], cons
     const int t47 = t46 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t48 = t47 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const real_t t49 = -(CLOSEDFORM_FEASIBILITY * t27);
-    const real_t t50 = cf_select(!t48 | !((t49 <= t28) & (t49 <= t26)), CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    const real_t t50 = cf_poison(!t48 | !((t49 <= t28) & (t49 <= t26)));
     const real_t t51 = d1 + L1 * (side2A * t23) - c23A * t30 + s23A * t36;
     x[0] = c1 * t37 - s1 * t38 + t50;
     x[1] = c1 * t38 + s1 * t37 + t50;
@@ -133,28 +133,28 @@ void h6ar_fk_batch(size_t n, const h6ar_params *params, const real_t
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
         real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_1[i] = q[3 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_1, sines[1], cosines[1]);
+        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
         real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_2[i] = q[q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_2, sines[2], cosines[2]);
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_3[i] = q[4 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
         real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_4[i] = q[2 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_4, sines[4], cosines[4]);
-        cf_sincos_block(m, q + 5 * q_stride + start, sines[5], cosines[5]);
+        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[5], cosines[5]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
             const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
             const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
@@ -256,7 +256,7 @@ CF_INLINE void h6ar_pose_kernel(const h6ar_params *params, const real_t q[6], co
     const real_t t46 = -(CLOSEDFORM_FEASIBILITY * t45);
     const real_t t47 = t45 - base;
     const real_t t48 = base - (gs - al);
-    const real_t t49 = cf_select(!t44 | !((t46 <= t47) & (t46 <= t48)), CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    const real_t t49 = cf_poison(!t44 | !((t46 <= t47) & (t46 <= t48)));
     const real_t hand_22 = cpsi * cphi;
     const real_t hand_12 = cpsi * t26;
     const real_t t50 = s1 * hand_22 + t15 * hand_12 - t31 * t29 + t49;
@@ -312,28 +312,28 @@ void h6ar_pose_batch(size_t n, const h6ar_params *params, const real_t
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
         real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_0[i] = q[3 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_0, sines[0], cosines[0]);
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
         real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_1[i] = q[q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_1, sines[1], cosines[1]);
+        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
         real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_2[i] = q[4 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_2, sines[2], cosines[2]);
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_3[i] = q[2 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(m, q + start, sines[4], cosines[4]);
-        cf_sincos_block(m, q + 5 * q_stride + start, sines[5], cosines[5]);
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + start, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[5], cosines[5]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
             const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
             const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
@@ -410,15 +410,15 @@ void h6ar_arm_tips_batch(size_t n, const h6ar_params *params, const real_t
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
-        cf_sincos_block(m, q + 3 * q_stride + start, sines[3], cosines[3]);
-        cf_sincos_block(m, q + 4 * q_stride + start, sines[4], cosines[4]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[4], cosines[4]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
             const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
             real_t tips_i[6];
@@ -498,7 +498,7 @@ CF_INLINE void h6ar_invariant_point_kernel(const h6ar_params *params, const real
     const real_t ahead = L1 * (t29 - t30) * t31 - t32;
     const real_t base = cf_sqrt(ahead * ahead + d * d);
     const int t33 = (t28 <= t27 - base) & (t28 <= base - (gs - al));
-    const real_t t34 = cf_select(!t26 | !t33, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    const real_t t34 = cf_poison(!t26 | !t33);
     const real_t t35 = d1 + L1 * (side2A * t31) - L2 * c23A + a3 * s23A;
     p[0] = t18 * c1 + t34;
     p[1] = t18 * s1 + t34;
@@ -521,27 +521,27 @@ void h6ar_invariant_point_batch(size_t n, const h6ar_params *params, const real_
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
         real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_0[i] = q[3 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_0, sines[0], cosines[0]);
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
         real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_1[i] = q[q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_1, sines[1], cosines[1]);
+        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
         real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_2[i] = q[4 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_2, sines[2], cosines[2]);
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_3[i] = q[2 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(m, q + start, sines[4], cosines[4]);
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + start, sines[4], cosines[4]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
             const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
             const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
@@ -655,7 +655,7 @@ CF_INLINE void h6ar_jacobian_kernel(const h6ar_params *params, const real_t q[6]
     const int t59 = t58 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t60 = t59 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const real_t t61 = -(CLOSEDFORM_FEASIBILITY * t40);
-    const real_t t62 = cf_select(!t60 | !((t61 <= t41) & (t61 <= t39)), CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    const real_t t62 = cf_poison(!t60 | !((t61 <= t41) & (t61 <= t39)));
     const real_t t63 = s23A * cpsi;
     const real_t t64 = t63 + c23A * t48;
     const real_t t65 = (gs - d / cpsi) * (d * t36);
@@ -773,28 +773,28 @@ void h6ar_jacobian_batch(size_t n, const h6ar_params *params, const real_t
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 5 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[1], cosines[1]);
         real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_2[i] = q[3 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_2, sines[2], cosines[2]);
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_3[i] = q[q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
         real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_4[i] = q[4 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_4, sines[4], cosines[4]);
+        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
         real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_5[i] = q[2 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_5, sines[5], cosines[5]);
+        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
             const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
             const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
@@ -926,7 +926,7 @@ CF_INLINE void h6ar_determinant_kernel(const h6ar_params *params, const real_t q
     const int t46 = t45 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t47 = t46 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const real_t t48 = -(CLOSEDFORM_FEASIBILITY * t32);
-    const real_t t49 = cf_select(!t47 | !((t48 <= t33) & (t48 <= t31)), CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    const real_t t49 = cf_poison(!t47 | !((t48 <= t33) & (t48 <= t31)));
     det[0] = -t38 + t49;
 }
 
@@ -947,27 +947,27 @@ void h6ar_determinant_batch(size_t n, const h6ar_params *params, const real_t
     (void)det_stride;
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
         real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_0[i] = q[3 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_0, sines[0], cosines[0]);
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
         real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_1[i] = q[q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_1, sines[1], cosines[1]);
+        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
         real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_2[i] = q[4 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_2, sines[2], cosines[2]);
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_3[i] = q[2 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(m, q + 5 * q_stride + start, sines[4], cosines[4]);
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[4], cosines[4]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
             const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
             const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
@@ -1057,7 +1057,7 @@ CF_INLINE void h6ar_singularities_kernel(const h6ar_params *params, const real_t
     const int t41 = t40 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t42 = t41 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const real_t t43 = -(CLOSEDFORM_FEASIBILITY * t29);
-    const real_t t44 = cf_select(!t42 | !((t43 <= t30) & (t43 <= t28)), CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    const real_t t44 = cf_poison(!t42 | !((t43 <= t30) & (t43 <= t28)));
     const real_t s2A = side2A * t26;
     const real_t t45 = c2A * c23A + s2A * s23A;
     const real_t t46 = s2A * c23A - c2A * s23A;
@@ -1086,27 +1086,27 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params, const real_t
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
         real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_0[i] = q[3 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_0, sines[0], cosines[0]);
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
         real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_1[i] = q[q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_1, sines[1], cosines[1]);
+        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
         real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_2[i] = q[4 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_2, sines[2], cosines[2]);
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             angle_3[i] = q[2 * q_stride + start + i] / CLOSEDFORM_C(2.0);
-        cf_sincos_block(m, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(m, q + 5 * q_stride + start, sines[4], cosines[4]);
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[4], cosines[4]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
             const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
             const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
@@ -1148,24 +1148,25 @@ CF_INLINE void h6ar_ik_kernel(const h6ar_params *params, const real_t x[6], cons
     const real_t s_psi = sines[2];
     const real_t c_psi = cosines[2];
     const real_t h = cf_sqrt(x_2 * x_2 + y * y);
-    const int t1 = h <= CLOSEDFORM_VANISHING * (L1 + L2);
-    const real_t t2 = cf_atan2(x_2, y);
-    const real_t t3 = lp * s_pitch;
-    const real_t t4 = d - c_psi * (gs - al);
-    const real_t t5 = gs + al;
-    const real_t t6 = t5 * c_psi - d;
-    const real_t t7 = cf_sqrt(cf_max(t4, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0)));
-    const real_t t8 = loff + t7 / c_psi + lp * c_pitch;
-    const real_t t9 = s_psi * t8;
-    const real_t t10 = s_phi * t3 - c_phi * t9;
-    const real_t t11 = h + t10;
-    const real_t below = cf_max(t11, CLOSEDFORM_C(0.0));
-    const real_t t12 = cf_sqrt(below);
-    const real_t t13 = h - t10;
-    const real_t above = cf_max(t13, CLOSEDFORM_C(0.0));
-    const real_t t14 = cf_sqrt(above);
-    const real_t t15 = CLOSEDFORM_C(2.0) * cf_atan2(t12, t14);
-    const real_t t16 = cf_wrap(-cf_select(t1, CLOSEDFORM_C(0.0), t2 - t15));
+    const int nowhere = h <= CLOSEDFORM_VANISHING * (L1 + L2);
+    const real_t t1 = cf_atan2(x_2, y);
+    const real_t t2 = lp * s_pitch;
+    const real_t t3 = d - c_psi * (gs - al);
+    const real_t t4 = gs + al;
+    const real_t t5 = t4 * c_psi - d;
+    const real_t t6 = cf_sqrt(cf_max(t3, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t5, CLOSEDFORM_C(0.0)));
+    const real_t t7 = loff + t6 / c_psi + lp * c_pitch;
+    const real_t t8 = s_psi * t7;
+    const real_t t9 = s_phi * t2 - c_phi * t8;
+    const real_t t10 = h + t9;
+    const real_t below = cf_max(t10, CLOSEDFORM_C(0.0));
+    const real_t t11 = cf_sqrt(below);
+    const real_t t12 = h - t9;
+    const real_t above = cf_max(t12, CLOSEDFORM_C(0.0));
+    const real_t t13 = cf_sqrt(above);
+    const real_t t14 = CLOSEDFORM_C(2.0) * cf_atan2(t11, t13);
+    const real_t t15 = cf_select(nowhere, CLOSEDFORM_C(0.0), t1 - t14);
+    const real_t t16 = cf_wrap(-t15);
     const int t17 = cf_is_finite(x_2) & cf_is_finite(y) & cf_is_finite(z);
     const int t18 = t17 & cf_is_finite(psi) & cf_is_finite(phi) & cf_is_finite(pitch);
     const int t19 = t18 & cf_is_finite(L1) & cf_is_finite(L2) & cf_is_finite(a3);
@@ -1176,12 +1177,12 @@ CF_INLINE void h6ar_ik_kernel(const h6ar_params *params, const real_t x[6], cons
     const int t24 = t23 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
     const int t25 = t24 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
     const int invalid = !(t25 & (CLOSEDFORM_C(0.0) <= lp));
-    const real_t t26 = -(CLOSEDFORM_FEASIBILITY * (d + t5));
-    const int t27 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (t26 <= t6);
+    const real_t t26 = -(CLOSEDFORM_FEASIBILITY * (d + t4));
+    const int t27 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (t26 <= t5);
     const real_t t28 = -(CLOSEDFORM_FEASIBILITY * h);
-    const int t29 = t27 & (t26 <= t4) & (t28 <= t11) & (t28 <= t13);
-    const real_t L_2W = L2 + c_psi * t8;
-    const real_t a_3W = a3 + c_phi * t3 + s_phi * t9;
+    const int t29 = t27 & (t26 <= t3) & (t28 <= t10) & (t28 <= t12);
+    const real_t L_2W = L2 + c_psi * t7;
+    const real_t a_3W = a3 + c_phi * t2 + s_phi * t8;
     const real_t fore = cf_sqrt(L_2W * L_2W + a_3W * a_3W);
     const real_t t30 = L1 + fore;
     const real_t t31 = -(CLOSEDFORM_FEASIBILITY * t30);
@@ -1190,12 +1191,12 @@ CF_INLINE void h6ar_ik_kernel(const h6ar_params *params, const real_t x[6], cons
     const real_t total = below + above;
     const real_t t34 = (below - above) / total;
     const real_t t35 = y * t34;
-    const real_t s_turn = CLOSEDFORM_C(2.0) * t12 * t14 / total;
+    const real_t s_turn = CLOSEDFORM_C(2.0) * t11 * t13 / total;
     const real_t t36 = x_2 * s_turn;
-    const real_t c1 = cf_select(t1, CLOSEDFORM_C(1.0), -((t35 - t36) / h));
+    const real_t c1 = cf_select(nowhere, CLOSEDFORM_C(1.0), -((t35 - t36) / h));
     const real_t t37 = x_2 * t34;
     const real_t t38 = y * s_turn;
-    const real_t s1 = cf_select(t1, CLOSEDFORM_C(0.0), (t37 + t38) / h);
+    const real_t s1 = cf_select(nowhere, CLOSEDFORM_C(0.0), (t37 + t38) / h);
     const real_t outward = x_2 * c1 + y * s1;
     const real_t reach = cf_sqrt(t33 + outward * outward);
     const real_t t39 = t30 - reach;
@@ -1204,312 +1205,311 @@ CF_INLINE void h6ar_ik_kernel(const h6ar_params *params, const real_t x[6], cons
     const real_t t42 = reach - t40;
     const int t43 = t29 & (t31 <= t39) & (t31 <= t41) & (t31 <= t42);
     const real_t t44 = CLOSEDFORM_VANISHING * t30;
-    const int t45 = reach <= t44;
-    const real_t s_sight = cf_select(t45, CLOSEDFORM_C(0.0), t32 / reach);
-    const int t46 = L1 * fore <= CLOSEDFORM_VANISHING * (t30 * t30);
-    const int t47 = t45 | t46;
+    const int folded = reach <= t44;
+    const real_t s_sight = cf_select(folded, CLOSEDFORM_C(0.0), t32 / reach);
+    const int short_2 = L1 * fore <= CLOSEDFORM_VANISHING * (t30 * t30);
+    const int t45 = folded | short_2;
     const real_t A = cf_max(t39, CLOSEDFORM_C(0.0));
     const real_t C = cf_max(t42, CLOSEDFORM_C(0.0));
-    const real_t t48 = A * C;
+    const real_t t46 = A * C;
     const real_t S = t30 + reach;
     const real_t B = cf_max(t41, CLOSEDFORM_C(0.0));
-    const real_t t49 = S * B;
-    const real_t at_base = t48 + t49;
-    const real_t c_base = cf_select(t47, CLOSEDFORM_C(1.0), -((t48 - t49) / at_base));
-    const real_t t50 = s_sight * c_base;
-    const real_t c_sight = cf_select(t45, CLOSEDFORM_C(1.0), outward / reach);
+    const real_t t47 = S * B;
+    const real_t at_base = t46 + t47;
+    const real_t c_base = cf_select(t45, CLOSEDFORM_C(1.0), -((t46 - t47) / at_base));
+    const real_t t48 = s_sight * c_base;
+    const real_t c_sight = cf_select(folded, CLOSEDFORM_C(1.0), outward / reach);
     const real_t rS = cf_sqrt(S);
     const real_t rA = cf_sqrt(A);
-    const real_t t51 = rS * rA;
+    const real_t t49 = rS * rA;
     const real_t rB = cf_sqrt(B);
     const real_t rC = cf_sqrt(C);
-    const real_t t52 = rB * rC;
-    const real_t area_front_elbow_down = CLOSEDFORM_C(2.0) * t51 * t52;
-    const real_t s_base_front_elbow_down = cf_select(t47, CLOSEDFORM_C(0.0), area_front_elbow_down / at_base);
-    const real_t t53 = c_sight * s_base_front_elbow_down;
-    const real_t stheta2A = t50 + t53;
-    const real_t t54 = L1 * stheta2A;
-    const real_t t55 = c_sight * c_base;
-    const real_t t56 = s_sight * s_base_front_elbow_down;
-    const real_t ctheta2A = t55 - t56;
+    const real_t t50 = rB * rC;
+    const real_t area_front_elbow_down = CLOSEDFORM_C(2.0) * t49 * t50;
+    const real_t s_base_front_elbow_down = cf_select(t45, CLOSEDFORM_C(0.0), area_front_elbow_down / at_base);
+    const real_t t51 = c_sight * s_base_front_elbow_down;
+    const real_t stheta2A = t48 + t51;
+    const real_t t52 = L1 * stheta2A;
+    const real_t t53 = c_sight * c_base;
+    const real_t t54 = s_sight * s_base_front_elbow_down;
+    const real_t ctheta2A = t53 - t54;
     const real_t u2 = L1 * ctheta2A;
-    const real_t size_u = cf_sqrt(t54 * t54 + u2 * u2);
-    const real_t c_lag = cf_select(t46, CLOSEDFORM_C(1.0), a_3W / fore);
-    const real_t t57 = A * S;
-    const real_t t58 = C * B;
-    const real_t at_elbow = t57 + t58;
-    const real_t c_elbow = cf_select(t46, CLOSEDFORM_C(1.0), -((t57 - t58) / at_elbow));
-    const real_t t59 = c_lag * c_elbow;
-    const real_t s_lag = cf_select(t46, CLOSEDFORM_C(0.0), L_2W / fore);
-    const real_t s_elbow_front_elbow_down = cf_select(t46, CLOSEDFORM_C(0.0), area_front_elbow_down / at_elbow);
-    const real_t t60 = s_lag * s_elbow_front_elbow_down;
-    const real_t c_bend = t59 + t60;
-    const real_t t61 = s_lag * c_elbow;
-    const real_t t62 = c_lag * s_elbow_front_elbow_down;
-    const real_t s_bend = t61 - t62;
+    const real_t size_u = cf_sqrt(t52 * t52 + u2 * u2);
+    const real_t c_lag = cf_select(short_2, CLOSEDFORM_C(1.0), a_3W / fore);
+    const real_t t55 = A * S;
+    const real_t t56 = C * B;
+    const real_t at_elbow = t55 + t56;
+    const real_t c_elbow = cf_select(short_2, CLOSEDFORM_C(1.0), -((t55 - t56) / at_elbow));
+    const real_t t57 = c_lag * c_elbow;
+    const real_t s_lag = cf_select(short_2, CLOSEDFORM_C(0.0), L_2W / fore);
+    const real_t s_elbow_front_elbow_down = cf_select(short_2, CLOSEDFORM_C(0.0), area_front_elbow_down / at_elbow);
+    const real_t t58 = s_lag * s_elbow_front_elbow_down;
+    const real_t c_bend = t57 + t58;
+    const real_t t59 = s_lag * c_elbow;
+    const real_t t60 = c_lag * s_elbow_front_elbow_down;
+    const real_t s_bend = t59 - t60;
     const real_t ctheta23A = ctheta2A * c_bend - stheta2A * s_bend;
     const real_t stheta23A = stheta2A * c_bend + ctheta2A * s_bend;
     const real_t v1 = L2 * ctheta23A - a3 * stheta23A;
     const real_t v2 = L2 * stheta23A + a3 * ctheta23A;
-    const real_t t63 = size_u * cf_sqrt(v1 * v1 + v2 * v2);
-    const real_t t64 = t54 * v2 + u2 * v1;
-    const real_t t65 = cf_abs(t64);
+    const real_t t61 = size_u * cf_sqrt(v1 * v1 + v2 * v2);
+    const real_t t62 = t52 * v2 + u2 * v1;
+    const real_t t63 = cf_abs(t62);
     const real_t ahead = d * s_psi / c_psi;
     const real_t higher = d * s_phi / c_phi;
-    const real_t t66 = ahead * u2 + higher * t54;
-    const real_t t67 = cf_abs(t66);
-    const real_t t68 = t65 - t67;
-    const int t69 = t43 & (-(CLOSEDFORM_FEASIBILITY * t63) <= t68);
-    const int t70 = t65 <= CLOSEDFORM_VANISHING * t63;
-    const real_t root_y = cf_sqrt(t67 + t65) * cf_sqrt(cf_max(t68, CLOSEDFORM_C(0.0)));
-    const real_t norm_y = cf_sqrt(root_y * root_y + t66 * t66);
-    const real_t sbeta = cf_select(t70, CLOSEDFORM_C(0.0), t66 * t64 / (t65 * norm_y));
-    const real_t t71 = t54 * (ahead - v1 * sbeta) - u2 * (higher - v2 * sbeta);
-    const real_t t72 = t71 / size_u;
-    const real_t t73 = cf_abs(t72);
-    const real_t t74 = size_u - t73;
-    const int t75 = t69 & (-(CLOSEDFORM_FEASIBILITY * size_u) <= t74);
-    const int unreachable = !t75;
-    const real_t t76 = cf_select(invalid | unreachable, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t77 = cf_select(t45, CLOSEDFORM_C(0.0), cf_atan2(t32, outward));
-    const real_t t78 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
-    const real_t t79 = cf_select(t47, CLOSEDFORM_C(0.0), t78);
-    const real_t t80 = t77 + t79;
-    const real_t root_x = cf_sqrt(size_u + t73) * cf_sqrt(cf_max(t74, CLOSEDFORM_C(0.0)));
-    const real_t norm_x = cf_sqrt(t72 * t72 + root_x * root_x);
-    const real_t t81 = cf_atan2(t72 / norm_x, root_x / norm_x);
-    const real_t t82 = cf_atan2(s_lag, c_lag);
-    const real_t t83 = CLOSEDFORM_C(2.0) * cf_atan2(t51, t52);
-    const real_t t84 = cf_select(t46, CLOSEDFORM_C(0.0), t82 - t83);
-    const real_t cbeta = cf_select(t70, CLOSEDFORM_C(1.0), root_y / norm_y);
-    const real_t t85 = t81 + cf_atan2(sbeta, cbeta);
-    const real_t t86 = cf_wrap(cf_atan2(s_pitch, c_pitch));
-    const real_t stheta2A_front_elbow_down = t50 - t53;
-    const real_t t87 = L1 * stheta2A_front_elbow_down;
-    const real_t ctheta2A_front_elbow_down = t55 + t56;
+    const real_t t64 = ahead * u2 + higher * t52;
+    const real_t t65 = cf_abs(t64);
+    const real_t t66 = t63 - t65;
+    const int t67 = t43 & (-(CLOSEDFORM_FEASIBILITY * t61) <= t66);
+    const int parallel = t63 <= CLOSEDFORM_VANISHING * t61;
+    const real_t root_y = cf_sqrt(t65 + t63) * cf_sqrt(cf_max(t66, CLOSEDFORM_C(0.0)));
+    const real_t norm_y = cf_sqrt(root_y * root_y + t64 * t64);
+    const real_t sbeta = cf_select(parallel, CLOSEDFORM_C(0.0), t64 * t62 / (t63 * norm_y));
+    const real_t t68 = t52 * (ahead - v1 * sbeta) - u2 * (higher - v2 * sbeta);
+    const real_t t69 = t68 / size_u;
+    const real_t t70 = cf_abs(t69);
+    const real_t t71 = size_u - t70;
+    const int t72 = t67 & (-(CLOSEDFORM_FEASIBILITY * size_u) <= t71);
+    const int unreachable = !t72;
+    const real_t t73 = cf_poison(invalid | unreachable);
+    const real_t t74 = cf_select(folded, CLOSEDFORM_C(0.0), cf_atan2(t32, outward));
+    const real_t t75 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
+    const real_t t76 = cf_select(t45, CLOSEDFORM_C(0.0), t75);
+    const real_t t77 = t74 + t76;
+    const real_t root_x = cf_sqrt(size_u + t70) * cf_sqrt(cf_max(t71, CLOSEDFORM_C(0.0)));
+    const real_t norm_x = cf_sqrt(t69 * t69 + root_x * root_x);
+    const real_t t78 = cf_atan2(t69 / norm_x, root_x / norm_x);
+    const real_t t79 = cf_atan2(s_lag, c_lag);
+    const real_t t80 = CLOSEDFORM_C(2.0) * cf_atan2(t49, t50);
+    const real_t t81 = cf_select(short_2, CLOSEDFORM_C(0.0), t79 - t80);
+    const real_t cbeta = cf_select(parallel, CLOSEDFORM_C(1.0), root_y / norm_y);
+    const real_t t82 = t78 + cf_atan2(sbeta, cbeta);
+    const real_t t83 = cf_wrap(cf_atan2(s_pitch, c_pitch));
+    const real_t stheta2A_front_elbow_down = t48 - t51;
+    const real_t t84 = L1 * stheta2A_front_elbow_down;
+    const real_t ctheta2A_front_elbow_down = t53 + t54;
     const real_t u2_front_elbow_down = L1 * ctheta2A_front_elbow_down;
-    const real_t t88 = t87 * t87 + u2_front_elbow_down * u2_front_elbow_down;
-    const real_t size_u_front_elbow_down = cf_sqrt(t88);
-    const real_t c_bend_front_elbow_down = t59 - t60;
-    const real_t t89 = ctheta2A_front_elbow_down * c_bend_front_elbow_down;
-    const real_t s_bend_front_elbow_down = t61 + t62;
-    const real_t t90 = stheta2A_front_elbow_down * s_bend_front_elbow_down;
-    const real_t ctheta23A_front_elbow_down = t89 - t90;
-    const real_t t91 = stheta2A_front_elbow_down * c_bend_front_elbow_down;
-    const real_t t92 = ctheta2A_front_elbow_down * s_bend_front_elbow_down;
-    const real_t stheta23A_front_elbow_down = t91 + t92;
+    const real_t t85 = t84 * t84 + u2_front_elbow_down * u2_front_elbow_down;
+    const real_t size_u_front_elbow_down = cf_sqrt(t85);
+    const real_t c_bend_front_elbow_down = t57 - t58;
+    const real_t t86 = ctheta2A_front_elbow_down * c_bend_front_elbow_down;
+    const real_t s_bend_front_elbow_down = t59 + t60;
+    const real_t t87 = stheta2A_front_elbow_down * s_bend_front_elbow_down;
+    const real_t ctheta23A_front_elbow_down = t86 - t87;
+    const real_t t88 = stheta2A_front_elbow_down * c_bend_front_elbow_down;
+    const real_t t89 = ctheta2A_front_elbow_down * s_bend_front_elbow_down;
+    const real_t stheta23A_front_elbow_down = t88 + t89;
     const real_t v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down;
     const real_t v2_front_elbow_down = L2 * stheta23A_front_elbow_down + a3 * ctheta23A_front_elbow_down;
-    const real_t t93 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down;
-    const real_t t94 = size_u_front_elbow_down * cf_sqrt(t93);
-    const real_t t95 = t87 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down;
-    const real_t t96 = cf_abs(t95);
-    const real_t t97 = ahead * u2_front_elbow_down + higher * t87;
-    const real_t t98 = cf_abs(t97);
-    const real_t t99 = t96 - t98;
-    const int t100 = t43 & (-(CLOSEDFORM_FEASIBILITY * t94) <= t99);
-    const real_t t101 = CLOSEDFORM_FEASIBILITY * size_u_front_elbow_down;
-    const int t102 = t96 <= CLOSEDFORM_VANISHING * t94;
-    const real_t root_y_front_elbow_down = cf_sqrt(t98 + t96) * cf_sqrt(cf_max(t99, CLOSEDFORM_C(0.0)));
-    const real_t t103 = root_y_front_elbow_down * root_y_front_elbow_down;
-    const real_t norm_y_front_elbow_down = cf_sqrt(t103 + t97 * t97);
-    const real_t sbeta_front_elbow_down = cf_select(t102, CLOSEDFORM_C(0.0), t97 * t95 / (t96 * norm_y_front_elbow_down));
-    const real_t t104 = ahead - v1_front_elbow_down * sbeta_front_elbow_down;
-    const real_t t105 = higher - v2_front_elbow_down * sbeta_front_elbow_down;
-    const real_t t106 = (t87 * t104 - u2_front_elbow_down * t105) / size_u_front_elbow_down;
-    const real_t t107 = cf_abs(t106);
-    const real_t t108 = size_u_front_elbow_down - t107;
-    const int unreachable_2 = !(t100 & (-t101 <= t108));
-    const real_t t109 = cf_select(invalid | unreachable_2, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t110 = t77 - t79;
-    const real_t root_x_front_elbow_down = cf_sqrt(size_u_front_elbow_down + t107) * cf_sqrt(cf_max(t108, CLOSEDFORM_C(0.0)));
-    const real_t t111 = root_x_front_elbow_down * root_x_front_elbow_down;
-    const real_t norm_x_front_elbow_down = cf_sqrt(t106 * t106 + t111);
+    const real_t t90 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down;
+    const real_t t91 = size_u_front_elbow_down * cf_sqrt(t90);
+    const real_t t92 = t84 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down;
+    const real_t t93 = cf_abs(t92);
+    const real_t t94 = ahead * u2_front_elbow_down + higher * t84;
+    const real_t t95 = cf_abs(t94);
+    const real_t t96 = t93 - t95;
+    const int t97 = t43 & (-(CLOSEDFORM_FEASIBILITY * t91) <= t96);
+    const real_t t98 = CLOSEDFORM_FEASIBILITY * size_u_front_elbow_down;
+    const int parallel_front_elbow_down = t93 <= CLOSEDFORM_VANISHING * t91;
+    const real_t root_y_front_elbow_down = cf_sqrt(t95 + t93) * cf_sqrt(cf_max(t96, CLOSEDFORM_C(0.0)));
+    const real_t t99 = root_y_front_elbow_down * root_y_front_elbow_down;
+    const real_t norm_y_front_elbow_down = cf_sqrt(t99 + t94 * t94);
+    const real_t sbeta_front_elbow_down = cf_select(parallel_front_elbow_down, CLOSEDFORM_C(0.0), t94 * t92 / (t93 * norm_y_front_elbow_down));
+    const real_t t100 = ahead - v1_front_elbow_down * sbeta_front_elbow_down;
+    const real_t t101 = higher - v2_front_elbow_down * sbeta_front_elbow_down;
+    const real_t t102 = (t84 * t100 - u2_front_elbow_down * t101) / size_u_front_elbow_down;
+    const real_t t103 = cf_abs(t102);
+    const real_t t104 = size_u_front_elbow_down - t103;
+    const int unreachable_2 = !(t97 & (-t98 <= t104));
+    const real_t t105 = cf_poison(invalid | unreachable_2);
+    const real_t t106 = t74 - t76;
+    const real_t root_x_front_elbow_down = cf_sqrt(size_u_front_elbow_down + t103) * cf_sqrt(cf_max(t104, CLOSEDFORM_C(0.0)));
+    const real_t t107 = root_x_front_elbow_down * root_x_front_elbow_down;
+    const real_t norm_x_front_elbow_down = cf_sqrt(t102 * t102 + t107);
     const real_t calpha_front_elbow_down = root_x_front_elbow_down / norm_x_front_elbow_down;
-    const real_t t112 = cf_atan2(t106 / norm_x_front_elbow_down, calpha_front_elbow_down);
-    const real_t t113 = cf_select(t46, CLOSEDFORM_C(0.0), t82 + t83);
-    const real_t t114 = root_y_front_elbow_down / norm_y_front_elbow_down;
-    const real_t t115 = cf_atan2(sbeta_front_elbow_down, cf_select(t102, CLOSEDFORM_C(1.0), t114));
-    const real_t t116 = t112 + t115;
-    const real_t t117 = cf_wrap(-cf_select(t1, CLOSEDFORM_C(0.0), t2 + t15));
-    const real_t c1_rear_elbow_up = cf_select(t1, CLOSEDFORM_C(1.0), -((t35 + t36) / h));
-    const real_t s1_rear_elbow_up = cf_select(t1, CLOSEDFORM_C(0.0), (t37 - t38) / h);
+    const real_t t108 = cf_atan2(t102 / norm_x_front_elbow_down, calpha_front_elbow_down);
+    const real_t t109 = cf_select(short_2, CLOSEDFORM_C(0.0), t79 + t80);
+    const real_t t110 = root_y_front_elbow_down / norm_y_front_elbow_down;
+    const real_t cbeta_front_elbow_down = cf_select(parallel_front_elbow_down, CLOSEDFORM_C(1.0), t110);
+    const real_t t111 = cf_atan2(sbeta_front_elbow_down, cbeta_front_elbow_down);
+    const real_t t112 = t108 + t111;
+    const real_t t113 = cf_select(nowhere, CLOSEDFORM_C(0.0), t1 + t14);
+    const real_t t114 = cf_wrap(-t113);
+    const real_t c1_rear_elbow_up = cf_select(nowhere, CLOSEDFORM_C(1.0), -((t35 + t36) / h));
+    const real_t s1_rear_elbow_up = cf_select(nowhere, CLOSEDFORM_C(0.0), (t37 - t38) / h);
     const real_t outward_rear_elbow_up = x_2 * c1_rear_elbow_up + y * s1_rear_elbow_up;
-    const real_t t118 = outward_rear_elbow_up * outward_rear_elbow_up;
-    const real_t reach_rear_elbow_up = cf_sqrt(t33 + t118);
-    const real_t t119 = t30 - reach_rear_elbow_up;
-    const real_t t120 = reach_rear_elbow_up + t40;
-    const real_t t121 = reach_rear_elbow_up - t40;
-    const int t122 = t29 & (t31 <= t119) & (t31 <= t120) & (t31 <= t121);
-    const int t123 = reach_rear_elbow_up <= t44;
-    const real_t s_sight_rear_elbow_up = cf_select(t123, CLOSEDFORM_C(0.0), t32 / reach_rear_elbow_up);
-    const int t124 = t123 | t46;
-    const real_t A_rear_elbow_up = cf_max(t119, CLOSEDFORM_C(0.0));
-    const real_t C_rear_elbow_up = cf_max(t121, CLOSEDFORM_C(0.0));
-    const real_t t125 = A_rear_elbow_up * C_rear_elbow_up;
+    const real_t t115 = outward_rear_elbow_up * outward_rear_elbow_up;
+    const real_t reach_rear_elbow_up = cf_sqrt(t33 + t115);
+    const real_t t116 = t30 - reach_rear_elbow_up;
+    const real_t t117 = reach_rear_elbow_up + t40;
+    const real_t t118 = reach_rear_elbow_up - t40;
+    const int t119 = t29 & (t31 <= t116) & (t31 <= t117) & (t31 <= t118);
+    const int folded_rear_elbow_up = reach_rear_elbow_up <= t44;
+    const real_t s_sight_rear_elbow_up = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(0.0), t32 / reach_rear_elbow_up);
+    const int t120 = folded_rear_elbow_up | short_2;
+    const real_t A_rear_elbow_up = cf_max(t116, CLOSEDFORM_C(0.0));
+    const real_t C_rear_elbow_up = cf_max(t118, CLOSEDFORM_C(0.0));
+    const real_t t121 = A_rear_elbow_up * C_rear_elbow_up;
     const real_t S_rear_elbow_up = t30 + reach_rear_elbow_up;
-    const real_t B_rear_elbow_up = cf_max(t120, CLOSEDFORM_C(0.0));
-    const real_t t126 = S_rear_elbow_up * B_rear_elbow_up;
-    const real_t at_base_rear_elbow_up = t125 + t126;
-    const real_t c_base_rear_elbow_up = cf_select(t124, CLOSEDFORM_C(1.0), -((t125 - t126) / at_base_rear_elbow_up));
-    const real_t t127 = s_sight_rear_elbow_up * c_base_rear_elbow_up;
-    const real_t c_sight_rear_elbow_up = cf_select(t123, CLOSEDFORM_C(1.0), outward_rear_elbow_up / reach_rear_elbow_up);
+    const real_t B_rear_elbow_up = cf_max(t117, CLOSEDFORM_C(0.0));
+    const real_t t122 = S_rear_elbow_up * B_rear_elbow_up;
+    const real_t at_base_rear_elbow_up = t121 + t122;
+    const real_t c_base_rear_elbow_up = cf_select(t120, CLOSEDFORM_C(1.0), -((t121 - t122) / at_base_rear_elbow_up));
+    const real_t t123 = s_sight_rear_elbow_up * c_base_rear_elbow_up;
+    const real_t c_sight_rear_elbow_up = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(1.0), outward_rear_elbow_up / reach_rear_elbow_up);
     const real_t rS_rear_elbow_up = cf_sqrt(S_rear_elbow_up);
     const real_t rA_rear_elbow_up = cf_sqrt(A_rear_elbow_up);
-    const real_t t128 = rS_rear_elbow_up * rA_rear_elbow_up;
+    const real_t t124 = rS_rear_elbow_up * rA_rear_elbow_up;
     const real_t rB_rear_elbow_up = cf_sqrt(B_rear_elbow_up);
     const real_t rC_rear_elbow_up = cf_sqrt(C_rear_elbow_up);
-    const real_t t129 = rB_rear_elbow_up * rC_rear_elbow_up;
-    const real_t area_rear_elbow_up = CLOSEDFORM_C(2.0) * t128 * t129;
-    const real_t s_base_rear_elbow_up = cf_select(t124, CLOSEDFORM_C(0.0), area_rear_elbow_up / at_base_rear_elbow_up);
-    const real_t t130 = c_sight_rear_elbow_up * s_base_rear_elbow_up;
-    const real_t stheta2A_rear_elbow_up = t127 - t130;
-    const real_t t131 = L1 * stheta2A_rear_elbow_up;
-    const real_t t132 = c_sight_rear_elbow_up * c_base_rear_elbow_up;
-    const real_t t133 = s_sight_rear_elbow_up * s_base_rear_elbow_up;
-    const real_t ctheta2A_rear_elbow_up = t132 + t133;
+    const real_t t125 = rB_rear_elbow_up * rC_rear_elbow_up;
+    const real_t area_rear_elbow_up = CLOSEDFORM_C(2.0) * t124 * t125;
+    const real_t s_base_rear_elbow_up = cf_select(t120, CLOSEDFORM_C(0.0), area_rear_elbow_up / at_base_rear_elbow_up);
+    const real_t t126 = c_sight_rear_elbow_up * s_base_rear_elbow_up;
+    const real_t stheta2A_rear_elbow_up = t123 - t126;
+    const real_t t127 = L1 * stheta2A_rear_elbow_up;
+    const real_t t128 = c_sight_rear_elbow_up * c_base_rear_elbow_up;
+    const real_t t129 = s_sight_rear_elbow_up * s_base_rear_elbow_up;
+    const real_t ctheta2A_rear_elbow_up = t128 + t129;
     const real_t u2_rear_elbow_up = L1 * ctheta2A_rear_elbow_up;
-    const real_t t134 = t131 * t131 + u2_rear_elbow_up * u2_rear_elbow_up;
-    const real_t size_u_rear_elbow_up = cf_sqrt(t134);
-    const real_t t135 = A_rear_elbow_up * S_rear_elbow_up;
-    const real_t t136 = C_rear_elbow_up * B_rear_elbow_up;
-    const real_t at_elbow_rear_elbow_up = t135 + t136;
-    const real_t c_elbow_rear_elbow_up = cf_select(t46, CLOSEDFORM_C(1.0), -((t135 - t136) / at_elbow_rear_elbow_up));
-    const real_t t137 = c_lag * c_elbow_rear_elbow_up;
-    const real_t s_elbow_rear_elbow_up = cf_select(t46, CLOSEDFORM_C(0.0), area_rear_elbow_up / at_elbow_rear_elbow_up);
-    const real_t t138 = s_lag * s_elbow_rear_elbow_up;
-    const real_t c_bend_rear_elbow_up = t137 - t138;
-    const real_t t139 = ctheta2A_rear_elbow_up * c_bend_rear_elbow_up;
-    const real_t t140 = s_lag * c_elbow_rear_elbow_up;
-    const real_t t141 = c_lag * s_elbow_rear_elbow_up;
-    const real_t s_bend_rear_elbow_up = t140 + t141;
-    const real_t t142 = stheta2A_rear_elbow_up * s_bend_rear_elbow_up;
-    const real_t ctheta23A_rear_elbow_up = t139 - t142;
-    const real_t t143 = stheta2A_rear_elbow_up * c_bend_rear_elbow_up;
-    const real_t t144 = ctheta2A_rear_elbow_up * s_bend_rear_elbow_up;
-    const real_t stheta23A_rear_elbow_up = t143 + t144;
+    const real_t t130 = t127 * t127 + u2_rear_elbow_up * u2_rear_elbow_up;
+    const real_t size_u_rear_elbow_up = cf_sqrt(t130);
+    const real_t t131 = A_rear_elbow_up * S_rear_elbow_up;
+    const real_t t132 = C_rear_elbow_up * B_rear_elbow_up;
+    const real_t at_elbow_rear_elbow_up = t131 + t132;
+    const real_t c_elbow_rear_elbow_up = cf_select(short_2, CLOSEDFORM_C(1.0), -((t131 - t132) / at_elbow_rear_elbow_up));
+    const real_t t133 = c_lag * c_elbow_rear_elbow_up;
+    const real_t s_elbow_rear_elbow_up = cf_select(short_2, CLOSEDFORM_C(0.0), area_rear_elbow_up / at_elbow_rear_elbow_up);
+    const real_t t134 = s_lag * s_elbow_rear_elbow_up;
+    const real_t c_bend_rear_elbow_up = t133 - t134;
+    const real_t t135 = ctheta2A_rear_elbow_up * c_bend_rear_elbow_up;
+    const real_t t136 = s_lag * c_elbow_rear_elbow_up;
+    const real_t t137 = c_lag * s_elbow_rear_elbow_up;
+    const real_t s_bend_rear_elbow_up = t136 + t137;
+    const real_t t138 = stheta2A_rear_elbow_up * s_bend_rear_elbow_up;
+    const real_t ctheta23A_rear_elbow_up = t135 - t138;
+    const real_t t139 = stheta2A_rear_elbow_up * c_bend_rear_elbow_up;
+    const real_t t140 = ctheta2A_rear_elbow_up * s_bend_rear_elbow_up;
+    const real_t stheta23A_rear_elbow_up = t139 + t140;
     const real_t v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up;
     const real_t v2_rear_elbow_up = L2 * stheta23A_rear_elbow_up + a3 * ctheta23A_rear_elbow_up;
-    const real_t t145 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up;
-    const real_t t146 = size_u_rear_elbow_up * cf_sqrt(t145);
-    const real_t t147 = t131 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up;
-    const real_t t148 = cf_abs(t147);
-    const real_t t149 = ahead * u2_rear_elbow_up + higher * t131;
-    const real_t t150 = cf_abs(t149);
-    const real_t t151 = t148 - t150;
-    const int t152 = t122 & (-(CLOSEDFORM_FEASIBILITY * t146) <= t151);
-    const real_t t153 = CLOSEDFORM_FEASIBILITY * size_u_rear_elbow_up;
-    const int t154 = t148 <= CLOSEDFORM_VANISHING * t146;
-    const real_t root_y_rear_elbow_up = cf_sqrt(t150 + t148) * cf_sqrt(cf_max(t151, CLOSEDFORM_C(0.0)));
-    const real_t t155 = root_y_rear_elbow_up * root_y_rear_elbow_up + t149 * t149;
-    const real_t norm_y_rear_elbow_up = cf_sqrt(t155);
-    const real_t sbeta_rear_elbow_up = cf_select(t154, CLOSEDFORM_C(0.0), t149 * t147 / (t148 * norm_y_rear_elbow_up));
-    const real_t t156 = ahead - v1_rear_elbow_up * sbeta_rear_elbow_up;
-    const real_t t157 = higher - v2_rear_elbow_up * sbeta_rear_elbow_up;
-    const real_t t158 = (t131 * t156 - u2_rear_elbow_up * t157) / size_u_rear_elbow_up;
-    const real_t t159 = cf_abs(t158);
-    const real_t t160 = size_u_rear_elbow_up - t159;
-    const int unreachable_3 = !(t152 & (-t153 <= t160));
-    const real_t t161 = cf_select(invalid | unreachable_3, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t162 = cf_select(t123, CLOSEDFORM_C(0.0), cf_atan2(t32, outward_rear_elbow_up));
-    const real_t t163 = cf_atan2(rA_rear_elbow_up * rC_rear_elbow_up, rS_rear_elbow_up * rB_rear_elbow_up);
-    const real_t t164 = cf_select(t124, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * t163);
-    const real_t t165 = t162 - t164;
-    const real_t root_x_rear_elbow_up = cf_sqrt(size_u_rear_elbow_up + t159) * cf_sqrt(cf_max(t160, CLOSEDFORM_C(0.0)));
-    const real_t t166 = t158 * t158 + root_x_rear_elbow_up * root_x_rear_elbow_up;
-    const real_t norm_x_rear_elbow_up = cf_sqrt(t166);
-    const real_t t167 = cf_atan2(t158 / norm_x_rear_elbow_up, root_x_rear_elbow_up / norm_x_rear_elbow_up);
-    const real_t t168 = CLOSEDFORM_C(2.0) * cf_atan2(t128, t129);
-    const real_t t169 = cf_select(t46, CLOSEDFORM_C(0.0), t82 + t168);
-    const real_t cbeta_rear_elbow_up = cf_select(t154, CLOSEDFORM_C(1.0), root_y_rear_elbow_up / norm_y_rear_elbow_up);
-    const real_t t170 = cf_atan2(sbeta_rear_elbow_up, cbeta_rear_elbow_up);
-    const real_t t171 = t167 + t170;
-    const real_t stheta2A_rear_elbow_down = t127 + t130;
-    const real_t t172 = L1 * stheta2A_rear_elbow_down;
-    const real_t ctheta2A_rear_elbow_down = t132 - t133;
+    const real_t t141 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up;
+    const real_t t142 = size_u_rear_elbow_up * cf_sqrt(t141);
+    const real_t t143 = t127 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up;
+    const real_t t144 = cf_abs(t143);
+    const real_t t145 = ahead * u2_rear_elbow_up + higher * t127;
+    const real_t t146 = cf_abs(t145);
+    const real_t t147 = t144 - t146;
+    const int t148 = t119 & (-(CLOSEDFORM_FEASIBILITY * t142) <= t147);
+    const real_t t149 = CLOSEDFORM_FEASIBILITY * size_u_rear_elbow_up;
+    const int parallel_rear_elbow_up = t144 <= CLOSEDFORM_VANISHING * t142;
+    const real_t root_y_rear_elbow_up = cf_sqrt(t146 + t144) * cf_sqrt(cf_max(t147, CLOSEDFORM_C(0.0)));
+    const real_t t150 = root_y_rear_elbow_up * root_y_rear_elbow_up + t145 * t145;
+    const real_t norm_y_rear_elbow_up = cf_sqrt(t150);
+    const real_t sbeta_rear_elbow_up = cf_select(parallel_rear_elbow_up, CLOSEDFORM_C(0.0), t145 * t143 / (t144 * norm_y_rear_elbow_up));
+    const real_t t151 = ahead - v1_rear_elbow_up * sbeta_rear_elbow_up;
+    const real_t t152 = higher - v2_rear_elbow_up * sbeta_rear_elbow_up;
+    const real_t t153 = (t127 * t151 - u2_rear_elbow_up * t152) / size_u_rear_elbow_up;
+    const real_t t154 = cf_abs(t153);
+    const real_t t155 = size_u_rear_elbow_up - t154;
+    const int unreachable_3 = !(t148 & (-t149 <= t155));
+    const real_t t156 = cf_poison(invalid | unreachable_3);
+    const real_t t157 = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(0.0), cf_atan2(t32, outward_rear_elbow_up));
+    const real_t t158 = cf_atan2(rA_rear_elbow_up * rC_rear_elbow_up, rS_rear_elbow_up * rB_rear_elbow_up);
+    const real_t t159 = cf_select(t120, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * t158);
+    const real_t t160 = t157 - t159;
+    const real_t root_x_rear_elbow_up = cf_sqrt(size_u_rear_elbow_up + t154) * cf_sqrt(cf_max(t155, CLOSEDFORM_C(0.0)));
+    const real_t t161 = t153 * t153 + root_x_rear_elbow_up * root_x_rear_elbow_up;
+    const real_t norm_x_rear_elbow_up = cf_sqrt(t161);
+    const real_t t162 = cf_atan2(t153 / norm_x_rear_elbow_up, root_x_rear_elbow_up / norm_x_rear_elbow_up);
+    const real_t t163 = CLOSEDFORM_C(2.0) * cf_atan2(t124, t125);
+    const real_t t164 = cf_select(short_2, CLOSEDFORM_C(0.0), t79 + t163);
+    const real_t cbeta_rear_elbow_up = cf_select(parallel_rear_elbow_up, CLOSEDFORM_C(1.0), root_y_rear_elbow_up / norm_y_rear_elbow_up);
+    const real_t t165 = cf_atan2(sbeta_rear_elbow_up, cbeta_rear_elbow_up);
+    const real_t t166 = t162 + t165;
+    const real_t stheta2A_rear_elbow_down = t123 + t126;
+    const real_t t167 = L1 * stheta2A_rear_elbow_down;
+    const real_t ctheta2A_rear_elbow_down = t128 - t129;
     const real_t u2_rear_elbow_down = L1 * ctheta2A_rear_elbow_down;
-    const real_t t173 = t172 * t172 + u2_rear_elbow_down * u2_rear_elbow_down;
-    const real_t size_u_rear_elbow_down = cf_sqrt(t173);
-    const real_t c_bend_rear_elbow_down = t137 + t138;
-    const real_t t174 = ctheta2A_rear_elbow_down * c_bend_rear_elbow_down;
-    const real_t s_bend_rear_elbow_down = t140 - t141;
-    const real_t t175 = stheta2A_rear_elbow_down * s_bend_rear_elbow_down;
-    const real_t ctheta23A_rear_elbow_down = t174 - t175;
-    const real_t t176 = stheta2A_rear_elbow_down * c_bend_rear_elbow_down;
-    const real_t t177 = ctheta2A_rear_elbow_down * s_bend_rear_elbow_down;
-    const real_t stheta23A_rear_elbow_down = t176 + t177;
+    const real_t t168 = t167 * t167 + u2_rear_elbow_down * u2_rear_elbow_down;
+    const real_t size_u_rear_elbow_down = cf_sqrt(t168);
+    const real_t c_bend_rear_elbow_down = t133 + t134;
+    const real_t t169 = ctheta2A_rear_elbow_down * c_bend_rear_elbow_down;
+    const real_t s_bend_rear_elbow_down = t136 - t137;
+    const real_t t170 = stheta2A_rear_elbow_down * s_bend_rear_elbow_down;
+    const real_t ctheta23A_rear_elbow_down = t169 - t170;
+    const real_t t171 = stheta2A_rear_elbow_down * c_bend_rear_elbow_down;
+    const real_t t172 = ctheta2A_rear_elbow_down * s_bend_rear_elbow_down;
+    const real_t stheta23A_rear_elbow_down = t171 + t172;
     const real_t v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down;
     const real_t v2_rear_elbow_down = L2 * stheta23A_rear_elbow_down + a3 * ctheta23A_rear_elbow_down;
-    const real_t t178 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down;
-    const real_t t179 = size_u_rear_elbow_down * cf_sqrt(t178);
-    const real_t t180 = t172 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down;
-    const real_t t181 = cf_abs(t180);
-    const real_t t182 = ahead * u2_rear_elbow_down + higher * t172;
-    const real_t t183 = cf_abs(t182);
-    const real_t t184 = t181 - t183;
-    const int t185 = t122 & (-(CLOSEDFORM_FEASIBILITY * t179) <= t184);
-    const real_t t186 = CLOSEDFORM_FEASIBILITY * size_u_rear_elbow_down;
-    const int t187 = t181 <= CLOSEDFORM_VANISHING * t179;
-    const real_t root_y_rear_elbow_down = cf_sqrt(t183 + t181) * cf_sqrt(cf_max(t184, CLOSEDFORM_C(0.0)));
-    const real_t t188 = root_y_rear_elbow_down * root_y_rear_elbow_down;
-    const real_t norm_y_rear_elbow_down = cf_sqrt(t188 + t182 * t182);
-    const real_t t189 = t182 * t180 / (t181 * norm_y_rear_elbow_down);
-    const real_t sbeta_rear_elbow_down = cf_select(t187, CLOSEDFORM_C(0.0), t189);
-    const real_t t190 = ahead - v1_rear_elbow_down * sbeta_rear_elbow_down;
-    const real_t t191 = higher - v2_rear_elbow_down * sbeta_rear_elbow_down;
-    const real_t t192 = (t172 * t190 - u2_rear_elbow_down * t191) / size_u_rear_elbow_down;
-    const real_t t193 = cf_abs(t192);
-    const real_t t194 = size_u_rear_elbow_down - t193;
-    const int unreachable_4 = !(t185 & (-t186 <= t194));
-    const real_t t195 = cf_select(invalid | unreachable_4, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t196 = t162 + t164;
-    const real_t root_x_rear_elbow_down = cf_sqrt(size_u_rear_elbow_down + t193) * cf_sqrt(cf_max(t194, CLOSEDFORM_C(0.0)));
-    const real_t t197 = root_x_rear_elbow_down * root_x_rear_elbow_down;
-    const real_t norm_x_rear_elbow_down = cf_sqrt(t192 * t192 + t197);
+    const real_t t173 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down;
+    const real_t t174 = size_u_rear_elbow_down * cf_sqrt(t173);
+    const real_t t175 = t167 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down;
+    const real_t t176 = cf_abs(t175);
+    const real_t t177 = ahead * u2_rear_elbow_down + higher * t167;
+    const real_t t178 = cf_abs(t177);
+    const real_t t179 = t176 - t178;
+    const int t180 = t119 & (-(CLOSEDFORM_FEASIBILITY * t174) <= t179);
+    const real_t t181 = CLOSEDFORM_FEASIBILITY * size_u_rear_elbow_down;
+    const int parallel_rear_elbow_down = t176 <= CLOSEDFORM_VANISHING * t174;
+    const real_t root_y_rear_elbow_down = cf_sqrt(t178 + t176) * cf_sqrt(cf_max(t179, CLOSEDFORM_C(0.0)));
+    const real_t t182 = root_y_rear_elbow_down * root_y_rear_elbow_down;
+    const real_t norm_y_rear_elbow_down = cf_sqrt(t182 + t177 * t177);
+    const real_t t183 = t177 * t175 / (t176 * norm_y_rear_elbow_down);
+    const real_t sbeta_rear_elbow_down = cf_select(parallel_rear_elbow_down, CLOSEDFORM_C(0.0), t183);
+    const real_t t184 = ahead - v1_rear_elbow_down * sbeta_rear_elbow_down;
+    const real_t t185 = higher - v2_rear_elbow_down * sbeta_rear_elbow_down;
+    const real_t t186 = (t167 * t184 - u2_rear_elbow_down * t185) / size_u_rear_elbow_down;
+    const real_t t187 = cf_abs(t186);
+    const real_t t188 = size_u_rear_elbow_down - t187;
+    const int unreachable_4 = !(t180 & (-t181 <= t188));
+    const real_t t189 = cf_poison(invalid | unreachable_4);
+    const real_t t190 = t157 + t159;
+    const real_t root_x_rear_elbow_down = cf_sqrt(size_u_rear_elbow_down + t187) * cf_sqrt(cf_max(t188, CLOSEDFORM_C(0.0)));
+    const real_t t191 = root_x_rear_elbow_down * root_x_rear_elbow_down;
+    const real_t norm_x_rear_elbow_down = cf_sqrt(t186 * t186 + t191);
     const real_t calpha_rear_elbow_down = root_x_rear_elbow_down / norm_x_rear_elbow_down;
-    const real_t t198 = cf_atan2(t192 / norm_x_rear_elbow_down, calpha_rear_elbow_down);
-    const real_t t199 = cf_select(t46, CLOSEDFORM_C(0.0), t82 - t168);
-    const real_t t200 = root_y_rear_elbow_down / norm_y_rear_elbow_down;
-    const real_t t201 = cf_atan2(sbeta_rear_elbow_down, cf_select(t187, CLOSEDFORM_C(1.0), t200));
-    const real_t t202 = t198 + t201;
-    const int t203 = t1 | t45 | t46;
-    const real_t t204 = cf_select(t203 | t70, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t205 = cf_select(unreachable, CLOSEDFORM_C(1.0), t204);
-    const real_t t206 = cf_select(t203 | t102, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t207 = cf_select(unreachable_2, CLOSEDFORM_C(1.0), t206);
-    const int t208 = t1 | t123 | t46;
-    const real_t t209 = cf_select(t208 | t154, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t210 = cf_select(unreachable_3, CLOSEDFORM_C(1.0), t209);
-    const real_t t211 = cf_select(t208 | t187, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t212 = cf_select(unreachable_4, CLOSEDFORM_C(1.0), t211);
-    q[0] = t16 + t76;
-    q[1] = cf_wrap(t80 - t81) + t76;
-    q[2] = cf_wrap(t84 + t85) + t76;
-    q[3] = cf_wrap(t81 + t80) + t76;
-    q[4] = cf_wrap(t84 - t85) + t76;
-    q[5] = t86 + t76;
-    q[6] = t16 + t109;
-    q[7] = cf_wrap(t110 - t112) + t109;
-    q[8] = cf_wrap(t113 + t116) + t109;
-    q[9] = cf_wrap(t112 + t110) + t109;
-    q[10] = cf_wrap(t113 - t116) + t109;
-    q[11] = t86 + t109;
-    q[12] = t117 + t161;
-    q[13] = cf_wrap(t165 - t167) + t161;
-    q[14] = cf_wrap(t169 + t171) + t161;
-    q[15] = cf_wrap(t167 + t165) + t161;
-    q[16] = cf_wrap(t169 - t171) + t161;
-    q[17] = t86 + t161;
-    q[18] = t117 + t195;
-    q[19] = cf_wrap(t196 - t198) + t195;
-    q[20] = cf_wrap(t199 + t202) + t195;
-    q[21] = cf_wrap(t198 + t196) + t195;
-    q[22] = cf_wrap(t199 - t202) + t195;
-    q[23] = t86 + t195;
-    status[0] = cf_select(invalid, CLOSEDFORM_C(3.0), t205);
-    status[1] = cf_select(invalid, CLOSEDFORM_C(3.0), t207);
-    status[2] = cf_select(invalid, CLOSEDFORM_C(3.0), t210);
-    status[3] = cf_select(invalid, CLOSEDFORM_C(3.0), t212);
+    const real_t t192 = cf_atan2(t186 / norm_x_rear_elbow_down, calpha_rear_elbow_down);
+    const real_t t193 = cf_select(short_2, CLOSEDFORM_C(0.0), t79 - t163);
+    const real_t t194 = root_y_rear_elbow_down / norm_y_rear_elbow_down;
+    const real_t cbeta_rear_elbow_down = cf_select(parallel_rear_elbow_down, CLOSEDFORM_C(1.0), t194);
+    const real_t t195 = cf_atan2(sbeta_rear_elbow_down, cbeta_rear_elbow_down);
+    const real_t t196 = t192 + t195;
+    const int t197 = nowhere | folded | short_2;
+    const real_t t198 = cf_status(invalid, unreachable, t197 | parallel);
+    const real_t t199 = cf_status(invalid, unreachable_2, t197 | parallel_front_elbow_down);
+    const int t200 = nowhere | folded_rear_elbow_up | short_2;
+    const real_t t201 = cf_status(invalid, unreachable_3, t200 | parallel_rear_elbow_up);
+    const real_t t202 = cf_status(invalid, unreachable_4, t200 | parallel_rear_elbow_down);
+    q[0] = t16 + t73;
+    q[1] = cf_wrap(t77 - t78) + t73;
+    q[2] = cf_wrap(t81 + t82) + t73;
+    q[3] = cf_wrap(t78 + t77) + t73;
+    q[4] = cf_wrap(t81 - t82) + t73;
+    q[5] = t83 + t73;
+    q[6] = t16 + t105;
+    q[7] = cf_wrap(t106 - t108) + t105;
+    q[8] = cf_wrap(t109 + t112) + t105;
+    q[9] = cf_wrap(t108 + t106) + t105;
+    q[10] = cf_wrap(t109 - t112) + t105;
+    q[11] = t83 + t105;
+    q[12] = t114 + t156;
+    q[13] = cf_wrap(t160 - t162) + t156;
+    q[14] = cf_wrap(t164 + t166) + t156;
+    q[15] = cf_wrap(t162 + t160) + t156;
+    q[16] = cf_wrap(t164 - t166) + t156;
+    q[17] = t83 + t156;
+    q[18] = t114 + t189;
+    q[19] = cf_wrap(t190 - t192) + t189;
+    q[20] = cf_wrap(t193 + t196) + t189;
+    q[21] = cf_wrap(t192 + t190) + t189;
+    q[22] = cf_wrap(t193 - t196) + t189;
+    q[23] = t83 + t189;
+    status[0] = t198;
+    status[1] = t199;
+    status[2] = t201;
+    status[3] = t202;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1532,14 +1532,14 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params, const real_t
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, x + 4 * x_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, x + 5 * x_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(m, x + 3 * x_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, x + 4 * x_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, x + 5 * x_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, x + 3 * x_stride + start, sines[2], cosines[2]);
         real_t status_real[4][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t x_i[6] = { x[start + i], x[x_stride + start + i], x[2 * x_stride + start + i], x[3 * x_stride + start + i], x[4 * x_stride + start + i], x[5 * x_stride + start + i] };
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
@@ -1576,16 +1576,16 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params, const real_t
             status_real[3][i] = status_i[3];
         }
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[2 * status_stride + start + i] = (uint8_t)status_real[2][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[3 * status_stride + start + i] = (uint8_t)status_real[3][i];
     }
 }
@@ -1610,8 +1610,8 @@ CF_INLINE void h6ar_wrist_length_kernel(const h6ar_params *params, const real_t 
     const int t7 = t6 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const real_t t8 = -(CLOSEDFORM_FEASIBILITY * (d + t2));
     const int t9 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (t8 <= t3);
-    const real_t t10 = cf_select(!t7 | !(t9 & (t8 <= t1)), CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    l_W[0] = t4 / c_psi + t10;
+    const real_t t10 = t4 / c_psi + cf_poison(!t7 | !(t9 & (t8 <= t1)));
+    l_W[0] = t10;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1634,12 +1634,12 @@ void h6ar_wrist_length_batch(size_t n, const h6ar_params *params, const real_t
     (void)l_W_stride;
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, psi + start, sines[0], cosines[0]);
-        cf_sincos_block(m, phi + start, sines[1], cosines[1]);
+        cf_sincos_block(length, psi + start, sines[0], cosines[0]);
+        cf_sincos_block(length, phi + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t psi_i[1] = { psi[start + i] };
             const real_t phi_i[1] = { phi[start + i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
@@ -1686,12 +1686,12 @@ void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params, const r
     (void)al_stride;
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, psi_max + start, sines[0], cosines[0]);
-        cf_sincos_block(m, beta_min + start, sines[1], cosines[1]);
+        cf_sincos_block(length, psi_max + start, sines[0], cosines[0]);
+        cf_sincos_block(length, beta_min + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t al_i[1];
             h6ar_minimum_link_length_kernel(&local, cosines_i, al_i);
@@ -1718,8 +1718,8 @@ CF_INLINE void h6ar_largest_yaw_kernel(const h6ar_params *params, const real_t p
     const int t5 = t4 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
     const int failed = !(t5 & (CLOSEDFORM_C(0.0) <= al)) | unreachable;
-    const real_t t6 = cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    psi[0] = cf_wrap(CLOSEDFORM_C(2.0) * t2) + t6;
+    const real_t t6 = cf_wrap(CLOSEDFORM_C(2.0) * t2) + cf_poison(failed);
+    psi[0] = t6;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1743,11 +1743,11 @@ void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params, const real_t
     (void)psi_stride;
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, beta_min + start, sines[0], cosines[0]);
+        cf_sincos_block(length, beta_min + start, sines[0], cosines[0]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t phi_i[1] = { phi[start + i] };
             const real_t beta_min_i[1] = { beta_min[start + i] };
             const real_t cosines_i[1] = { cosines[0][i] };
@@ -1773,8 +1773,8 @@ CF_INLINE void h6ar_largest_angle_kernel(const h6ar_params *params, const real_t
     const int t4 = t3 & cf_is_finite(al) & (CLOSEDFORM_C(0.0) <= d);
     const int t5 = t4 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
-    const real_t t6 = cf_select(!t5 | unreachable, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    angle[0] = cf_wrap(CLOSEDFORM_C(2.0) * t2) + t6;
+    const real_t t6 = cf_wrap(CLOSEDFORM_C(2.0) * t2) + cf_poison(!t5 | unreachable);
+    angle[0] = t6;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1796,11 +1796,11 @@ void h6ar_largest_angle_batch(size_t n, const h6ar_params *params, const real_t
     (void)angle_stride;
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, beta_min + start, sines[0], cosines[0]);
+        cf_sincos_block(length, beta_min + start, sines[0], cosines[0]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t beta_min_i[1] = { beta_min[start + i] };
             const real_t cosines_i[1] = { cosines[0][i] };
             real_t angle_i[1];

@@ -11,7 +11,7 @@
  *   jacobian: 178 add, 74 compare and select, 44 divide, 260 multiply, 6 sincos, 10 sqrt
  *   determinant: 61 add, 74 compare and select, 25 divide, 99 multiply, 5 sincos, 10 sqrt
  *   singularities: 66 add, 74 compare and select, 24 divide, 89 multiply, 5 sincos, 10 sqrt
- *   ik: 222 add, 299 compare and select, 28 atan2, 39 divide, 233 multiply, 3 sincos, 57 sqrt
+ *   ik: 222 add, 291 compare and select, 28 atan2, 39 divide, 233 multiply, 3 sincos, 57 sqrt
  *   wrist_length: 6 add, 26 compare and select, 1 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt

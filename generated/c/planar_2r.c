@@ -6,13 +6,13 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 4 add, 8 multiply, 2 sincos
  *   pose: 4 add, 8 multiply, 2 sincos
- *   orientation: 1 add
+ *   orientation: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
  *   singularities: 1 sincos
- *   ik: 13 add, 35 compare and select, 3 atan2, 13 multiply, 5 sqrt
- *   ik_pose: 95 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+ *   ik: 13 add, 33 compare and select, 3 atan2, 13 multiply, 5 sqrt
+ *   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
  *   workspace_radii: 1 compare and select, 2 add
  */
 #include "planar_2r.h"
@@ -47,12 +47,12 @@ void planar_2r_fk_batch(size_t n, const planar_2r_params *params, const
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t x_i[2];
@@ -109,12 +109,12 @@ void planar_2r_pose_batch(size_t n, const planar_2r_params *params, const
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t T_i[16];
@@ -139,11 +139,15 @@ void planar_2r_pose_batch(size_t n, const planar_2r_params *params, const
     }
 }
 
-CF_INLINE void planar_2r_orientation_kernel(const real_t q[2], real_t phi[1])
+CF_INLINE void planar_2r_orientation_kernel(const real_t *sines, const real_t *cosines, real_t
+    phi[1])
 {
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    phi[0] = theta1 + theta2;
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t t1 = cf_atan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2);
+    phi[0] = cf_wrap(t1);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -151,7 +155,10 @@ void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
     real_t phi[1])
 {
     (void)params;
-    planar_2r_orientation_kernel(q, phi);
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_block(2, lanes, sines, cosines);
+    planar_2r_orientation_kernel(sines, cosines, phi);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -162,12 +169,16 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params, const
     (void)params;
     (void)phi_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
-            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t phi_i[1];
-            planar_2r_orientation_kernel(q_i, phi_i);
+            planar_2r_orientation_kernel(sines_i, cosines_i, phi_i);
             phi[start + i] = phi_i[0];
         }
     }
@@ -209,12 +220,12 @@ void planar_2r_jacobian_batch(size_t n, const planar_2r_params *params, const
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t J_i[6];
@@ -256,11 +267,11 @@ void planar_2r_determinant_batch(size_t n, const planar_2r_params *params, const
     (void)det_stride;
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t det_i[1];
             planar_2r_determinant_kernel(&local, sines_i, det_i);
@@ -296,11 +307,11 @@ void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params, co
     (void)w_stride;
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t w_i[1];
             planar_2r_manipulability_kernel(&local, sines_i, w_i);
@@ -334,11 +345,11 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params, con
     (void)params;
     (void)factors_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t factors_i[1];
             planar_2r_singularities_kernel(sines_i, factors_i);
@@ -356,36 +367,34 @@ CF_INLINE void planar_2r_ik_kernel(const planar_2r_params *params, const real_t 
     const real_t py = x[1];
     const real_t r = cf_sqrt(px * px + py * py);
     const real_t t1 = l1 + l2;
-    const int t2 = r <= t1 * CLOSEDFORM_VANISHING;
-    const real_t t3 = cf_atan2(py, px);
-    const real_t t4 = t1 - r;
-    const real_t rA = cf_sqrt(cf_max(t4, CLOSEDFORM_C(0.0)));
-    const real_t t5 = l1 - l2;
-    const real_t t6 = r - t5;
-    const real_t rC = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0)));
+    const int at_base = r <= t1 * CLOSEDFORM_VANISHING;
+    const real_t t2 = cf_atan2(py, px);
+    const real_t t3 = t1 - r;
+    const real_t rA = cf_sqrt(cf_max(t3, CLOSEDFORM_C(0.0)));
+    const real_t t4 = l1 - l2;
+    const real_t t5 = r - t4;
+    const real_t rC = cf_sqrt(cf_max(t5, CLOSEDFORM_C(0.0)));
     const real_t rS = cf_sqrt(r + t1);
-    const real_t t7 = r + t5;
-    const real_t rB = cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
-    const real_t t8 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
-    const real_t t9 = cf_wrap(cf_select(t2, CLOSEDFORM_C(0.0), t3 - t8));
-    const int t10 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(l1);
-    const int t11 = t10 & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
-    const int invalid = !(t11 & (CLOSEDFORM_C(0.0) <= l2));
-    const real_t t12 = -(CLOSEDFORM_FEASIBILITY * t1);
-    const int unreachable = !((t12 <= t4) & (t12 <= t7) & (t12 <= t6));
-    const real_t t13 = cf_select(invalid | unreachable, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t14 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rS, rC * rB);
-    const real_t t15 = cf_wrap(cf_select(t2, CLOSEDFORM_C(0.0), t3 + t8));
-    const int t16 = t2 | (l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1));
-    const real_t t17 = cf_select(t16, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t18 = cf_select(unreachable, CLOSEDFORM_C(1.0), t17);
-    const real_t t19 = cf_select(invalid, CLOSEDFORM_C(3.0), t18);
-    q[0] = t9 + t13;
-    q[1] = cf_wrap(t14) + t13;
-    q[2] = t15 + t13;
-    q[3] = cf_wrap(-t14) + t13;
-    status[0] = t19;
-    status[1] = t19;
+    const real_t t6 = r + t4;
+    const real_t rB = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0)));
+    const real_t t7 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rC, rS * rB);
+    const real_t t8 = cf_select(at_base, CLOSEDFORM_C(0.0), t2 - t7);
+    const int t9 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(l1);
+    const int t10 = t9 & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
+    const int invalid = !(t10 & (CLOSEDFORM_C(0.0) <= l2));
+    const real_t t11 = -(CLOSEDFORM_FEASIBILITY * t1);
+    const int unreachable = !((t11 <= t3) & (t11 <= t6) & (t11 <= t5));
+    const real_t t12 = cf_poison(invalid | unreachable);
+    const real_t t13 = CLOSEDFORM_C(2.0) * cf_atan2(rA * rS, rC * rB);
+    const real_t t14 = cf_select(at_base, CLOSEDFORM_C(0.0), t2 + t7);
+    const int t15 = at_base | (l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1));
+    const real_t t16 = cf_status(invalid, unreachable, t15);
+    q[0] = cf_wrap(t8) + t12;
+    q[1] = cf_wrap(t13) + t12;
+    q[2] = cf_wrap(t14) + t12;
+    q[3] = cf_wrap(-t13) + t12;
+    status[0] = t16;
+    status[1] = t16;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -405,10 +414,10 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params, const
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[2][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t x_i[2] = { x[start + i], x[x_stride + start + i] };
             real_t q_i[4];
             real_t status_i[2];
@@ -421,10 +430,10 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params, const
             status_real[1][i] = status_i[1];
         }
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
     }
 }
@@ -451,47 +460,41 @@ CF_INLINE void planar_2r_ik_pose_kernel(const planar_2r_params *params, const re
     const real_t T43 = T[14];
     const real_t T44 = T[15];
     const real_t t1 = l1 + l2;
-    const int t2 = l1 <= t1 * CLOSEDFORM_VANISHING;
+    const int no_first_link = l1 <= t1 * CLOSEDFORM_VANISHING;
     const real_t elbow_y = T24 - T21 * l2;
-    const real_t s1 = cf_select(t2, CLOSEDFORM_C(0.0), elbow_y / l1);
+    const real_t s1 = cf_select(no_first_link, CLOSEDFORM_C(0.0), elbow_y / l1);
     const real_t elbow_x = T14 - T11 * l2;
-    const real_t c1 = cf_select(t2, CLOSEDFORM_C(1.0), elbow_x / l1);
-    const int t3 = cf_is_finite(T11) & cf_is_finite(T12) & cf_is_finite(T13);
-    const int t4 = t3 & cf_is_finite(T14) & cf_is_finite(T21) & cf_is_finite(T22);
-    const int t5 = t4 & cf_is_finite(T23) & cf_is_finite(T24) & cf_is_finite(T31);
-    const int t6 = t5 & cf_is_finite(T32) & cf_is_finite(T33) & cf_is_finite(T34);
-    const int t7 = t6 & cf_is_finite(T41) & cf_is_finite(T42) & cf_is_finite(T43);
-    const int t8 = t7 & cf_is_finite(T44) & cf_is_finite(l1) & cf_is_finite(l2);
-    const int t9 = t8 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t10 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
-    const int t11 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
-    const int t12 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
-    const real_t t13 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
-    const int t14 = cf_abs(t13) <= CLOSEDFORM_ROTATION;
-    const real_t t15 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
-    const int t16 = cf_abs(t15) <= CLOSEDFORM_ROTATION;
-    const int t17 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
-    const int t18 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
-    const int t19 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
-    const int t20 = t9 & t10 & t11 & t12 & t14 & t16 & t17 & t18 & t19;
-    const int t21 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
-    const int t22 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t20 & t21 & t22);
-    const real_t t23 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
-    const real_t t24 = CLOSEDFORM_FEASIBILITY * t1;
-    const int t25 = cf_abs(l1 - t23) <= t24;
-    const int t26 = cf_abs(T34) <= t24;
-    const int t27 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
-    const int t28 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
-    const int t29 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
-    const int unreachable = !(t25 & t26 & t27 & t28 & t29);
-    const real_t t30 = cf_select(invalid | unreachable, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t31 = cf_atan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1);
-    const real_t t32 = cf_select(t2, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t33 = cf_select(unreachable, CLOSEDFORM_C(1.0), t32);
-    q[0] = cf_wrap(cf_atan2(s1, c1)) + t30;
-    q[1] = cf_wrap(-t31) + t30;
-    status[0] = cf_select(invalid, CLOSEDFORM_C(3.0), t33);
+    const real_t c1 = cf_select(no_first_link, CLOSEDFORM_C(1.0), elbow_x / l1);
+    const int t2 = cf_is_finite(T14) & cf_is_finite(T24) & cf_is_finite(T34);
+    const int t3 = t2 & cf_is_finite(l1) & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
+    const int t4 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
+    const int t5 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
+    const int t6 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
+    const int t7 = t3 & (CLOSEDFORM_C(0.0) <= l2) & t4 & t5 & t6;
+    const real_t t8 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
+    const int t9 = cf_abs(t8) <= CLOSEDFORM_ROTATION;
+    const real_t t10 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
+    const int t11 = cf_abs(t10) <= CLOSEDFORM_ROTATION;
+    const int t12 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
+    const int t13 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t14 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t15 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t16 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t7 & t9 & t11 & t12 & t13 & t14 & t15 & t16);
+    const real_t t17 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
+    const real_t t18 = CLOSEDFORM_FEASIBILITY * t1;
+    const int t19 = cf_abs(l1 - t17) <= t18;
+    const int t20 = cf_abs(T34) <= t18;
+    const int t21 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
+    const int t22 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
+    const int t23 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
+    const int unreachable = !(t19 & t20 & t21 & t22 & t23);
+    const real_t t24 = cf_poison(invalid | unreachable);
+    const real_t t25 = cf_atan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1);
+    const real_t t26 = cf_status(invalid, unreachable, no_first_link);
+    q[0] = cf_wrap(cf_atan2(s1, c1)) + t24;
+    q[1] = cf_wrap(-t25) + t24;
+    status[0] = t26;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -512,10 +515,10 @@ void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params, const
     (void)status_stride;
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t T_i[16] = { T[start + i], T[T_stride + start + i], T[2 * T_stride + start + i], T[3 * T_stride + start + i], T[4 * T_stride + start + i], T[5 * T_stride + start + i], T[6 * T_stride + start + i], T[7 * T_stride + start + i], T[8 * T_stride + start + i], T[9 * T_stride + start + i], T[10 * T_stride + start + i], T[11 * T_stride + start + i], T[12 * T_stride + start + i], T[13 * T_stride + start + i], T[14 * T_stride + start + i], T[15 * T_stride + start + i] };
             real_t q_i[2];
             real_t status_i[1];
@@ -525,7 +528,7 @@ void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params, const
             status_real[0][i] = status_i[0];
         }
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
     }
 }
@@ -550,9 +553,9 @@ void planar_2r_workspace_radii_batch(size_t n, const planar_2r_params *params, r
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             real_t radii_i[2];
             planar_2r_workspace_radii_kernel(&local, radii_i);
             radii[start + i] = radii_i[0];

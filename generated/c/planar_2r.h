@@ -6,13 +6,13 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 4 add, 8 multiply, 2 sincos
  *   pose: 4 add, 8 multiply, 2 sincos
- *   orientation: 1 add
+ *   orientation: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
  *   singularities: 1 sincos
- *   ik: 13 add, 35 compare and select, 3 atan2, 13 multiply, 5 sqrt
- *   ik_pose: 95 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+ *   ik: 13 add, 33 compare and select, 3 atan2, 13 multiply, 5 sqrt
+ *   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
  *   workspace_radii: 1 compare and select, 2 add
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
@@ -63,7 +63,7 @@ void planar_2r_pose_batch(size_t n, const planar_2r_params *params, const
     T_stride);
 
 /*
- * Angle phi of the last link against the x axis, the plain sum of the joint angles.
+ * Angle phi of the last link against the x axis: the sum of the joint angles, in (-pi, pi].
  * Source: eq. (5).
  * q: shape (..., 2): theta1, theta2.
  * Returns phi: shape (...).

@@ -10,7 +10,7 @@
  *   jacobian_body: 2 multiply, 2 sincos
  *   determinant: 1 sincos
  *   singularities: 1 sincos
- *   ik: 49 compare and select, 27 add, 6 atan2, 2 divide, 26 multiply, 1 sqrt
+ *   ik: 30 compare and select, 27 add, 6 atan2, 2 divide, 26 multiply, 1 sqrt
  */
 #include "spherical_wrist.h"
 
@@ -56,13 +56,13 @@ void spherical_wrist_fk_batch(size_t n, const spherical_wrist_params *params,
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t R_i[9];
@@ -130,13 +130,13 @@ void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
 {
     const spherical_wrist_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + start, sines[1], cosines[1]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t T_i[16];
@@ -197,12 +197,12 @@ void spherical_wrist_jacobian_space_batch(size_t n, const spherical_wrist_params
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t J_i[9];
@@ -256,12 +256,12 @@ void spherical_wrist_jacobian_body_batch(size_t n, const spherical_wrist_params 
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(m, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t J_i[9];
@@ -304,11 +304,11 @@ void spherical_wrist_determinant_batch(size_t n, const spherical_wrist_params *p
     (void)params;
     (void)det_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t det_i[1];
             spherical_wrist_determinant_kernel(sines_i, det_i);
@@ -342,11 +342,11 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
     (void)params;
     (void)factors_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
-        cf_sincos_block(m, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t sines_i[1] = { sines[0][i] };
             real_t factors_i[1];
             spherical_wrist_singularities_kernel(sines_i, factors_i);
@@ -367,41 +367,37 @@ CF_INLINE void spherical_wrist_ik_kernel(const real_t R[9], real_t q[6], real_t 
     const real_t R32 = R[7];
     const real_t R33 = R[8];
     const real_t h = cf_sqrt(R13 * R13 + R23 * R23);
-    const int t1 = h <= CLOSEDFORM_VANISHING;
-    const real_t s4 = cf_select(t1, CLOSEDFORM_C(0.0), R23 / h);
-    const real_t t2 = R13 / h;
-    const real_t c4 = cf_select(t1, CLOSEDFORM_C(1.0), t2);
-    const int t3 = cf_is_finite(R11) & cf_is_finite(R12) & cf_is_finite(R13);
-    const int t4 = t3 & cf_is_finite(R21) & cf_is_finite(R22) & cf_is_finite(R23);
-    const int t5 = t4 & cf_is_finite(R31) & cf_is_finite(R32) & cf_is_finite(R33);
-    const int t6 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
-    const int t7 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
-    const int t8 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
-    const real_t t9 = CLOSEDFORM_C(1.0) - R11 * R11 - R21 * R21 - R31 * R31;
-    const int t10 = cf_abs(t9) <= CLOSEDFORM_ROTATION;
-    const real_t t11 = CLOSEDFORM_C(1.0) - R12 * R12 - R22 * R22 - R32 * R32;
-    const int t12 = cf_abs(t11) <= CLOSEDFORM_ROTATION;
-    const int t13 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t5 & t6 & t7 & t8 & t10 & t12 & t13);
-    const real_t t14 = cf_select(invalid, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
-    const real_t t15 = R23 * s4;
-    const real_t t16 = R11 * s4;
-    const real_t t17 = R12 * s4;
-    const real_t t18 = cf_wrap(-cf_atan2(t16 - R21 * c4, R22 * c4 - t17));
-    const real_t c4_theta5_negative = cf_select(t1, CLOSEDFORM_C(1.0), -t2);
-    const real_t t19 = cf_wrap(-cf_atan2(s4, c4_theta5_negative)) + t14;
-    const real_t t20 = cf_atan2(t15 - R13 * c4_theta5_negative, R33);
-    const real_t t21 = cf_atan2(t16 + R21 * c4_theta5_negative, t17 + R22 * c4_theta5_negative);
-    const real_t t22 = cf_select(t1, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
-    const real_t t23 = cf_select(invalid, CLOSEDFORM_C(3.0), t22);
-    q[0] = cf_wrap(cf_atan2(s4, c4)) + t14;
-    q[1] = cf_wrap(cf_atan2(R13 * c4 + t15, R33)) + t14;
-    q[2] = t18 + t14;
-    q[3] = t19;
-    q[4] = cf_wrap(-t20) + t14;
-    q[5] = cf_wrap(t21) + t14;
-    status[0] = t23;
-    status[1] = t23;
+    const int aligned = h <= CLOSEDFORM_VANISHING;
+    const real_t s4 = cf_select(aligned, CLOSEDFORM_C(0.0), R23 / h);
+    const real_t t1 = R13 / h;
+    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), t1);
+    const int t2 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
+    const int t3 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
+    const int t4 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
+    const real_t t5 = CLOSEDFORM_C(1.0) - R11 * R11 - R21 * R21 - R31 * R31;
+    const int t6 = cf_abs(t5) <= CLOSEDFORM_ROTATION;
+    const real_t t7 = CLOSEDFORM_C(1.0) - R12 * R12 - R22 * R22 - R32 * R32;
+    const int t8 = cf_abs(t7) <= CLOSEDFORM_ROTATION;
+    const int t9 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t2 & t3 & t4 & t6 & t8 & t9);
+    const real_t t10 = cf_poison(invalid);
+    const real_t t11 = R23 * s4;
+    const real_t t12 = R11 * s4;
+    const real_t t13 = R12 * s4;
+    const real_t t14 = cf_wrap(-cf_atan2(t12 - R21 * c4, R22 * c4 - t13));
+    const real_t c4_theta5_negative = cf_select(aligned, CLOSEDFORM_C(1.0), -t1);
+    const real_t t15 = cf_wrap(-cf_atan2(s4, c4_theta5_negative)) + t10;
+    const real_t t16 = cf_atan2(t11 - R13 * c4_theta5_negative, R33);
+    const real_t t17 = cf_atan2(t12 + R21 * c4_theta5_negative, t13 + R22 * c4_theta5_negative);
+    const real_t t18 = cf_status(invalid, 0, aligned);
+    q[0] = cf_wrap(cf_atan2(s4, c4)) + t10;
+    q[1] = cf_wrap(cf_atan2(R13 * c4 + t11, R33)) + t10;
+    q[2] = t14 + t10;
+    q[3] = t15;
+    q[4] = cf_wrap(-t16) + t10;
+    q[5] = cf_wrap(t17) + t10;
+    status[0] = t18;
+    status[1] = t18;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -422,10 +418,10 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t m = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[2][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < length; ++i) {
             const real_t R_i[9] = { R[start + i], R[R_stride + start + i], R[2 * R_stride + start + i], R[3 * R_stride + start + i], R[4 * R_stride + start + i], R[5 * R_stride + start + i], R[6 * R_stride + start + i], R[7 * R_stride + start + i], R[8 * R_stride + start + i] };
             real_t q_i[6];
             real_t status_i[2];
@@ -440,10 +436,10 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
             status_real[1][i] = status_i[1];
         }
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
         CF_INDEPENDENT
-        for (size_t i = 0; i < m; ++i)
+        for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
     }
 }

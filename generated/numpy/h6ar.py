@@ -10,7 +10,7 @@
 #   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
 #   determinant: 58 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
 #   singularities: 58 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
-#   ik: 212 compare and select, 183 add, 18 atan2, 43 divide, 215 multiply, 3 sincos, 48 sqrt
+#   ik: 204 compare and select, 183 add, 18 atan2, 43 divide, 215 multiply, 3 sincos, 48 sqrt
 #   wrist_length: 6 add, 26 compare and select, 1 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -93,18 +93,12 @@ _DEFAULT = Parameters()
 
 
 def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2L_half = np.sin(theta2L / 2.0)
-    c2L_half = np.cos(theta2L / 2.0)
-    s2R_half = np.sin(theta2R / 2.0)
-    c2R_half = np.cos(theta2R / 2.0)
-    s3L_half = np.sin(theta3L / 2.0)
-    c3L_half = np.cos(theta3L / 2.0)
-    s3R_half = np.sin(theta3R / 2.0)
-    c3R_half = np.cos(theta3R / 2.0)
-    s = np.sin(theta)
-    c = np.cos(theta)
+    s1, c1 = _runtime.sincos(theta1)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s, c = _runtime.sincos(theta)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
     side2A = np.where(0.0 <= t1 + t2, 1.0, -1.0)
@@ -161,7 +155,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t45 = t44 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
     t46 = -(_runtime.FEASIBILITY * t26)
     failed = np.logical_not(t45) | np.logical_not((t46 <= t27) & (t46 <= t25))
-    t47 = np.where(failed, np.nan, 0.0)
+    t47 = _runtime.poison(failed)
     t48 = d1 + L1 * (side2A * t22) - c23A * t29 + s23A * t35
     return (
         c1 * t36 - s1 * t37 + t47,
@@ -198,18 +192,12 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
 def _pose(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp
 ):
-    s2L_half = np.sin(theta2L / 2.0)
-    c2L_half = np.cos(theta2L / 2.0)
-    s2R_half = np.sin(theta2R / 2.0)
-    c2R_half = np.cos(theta2R / 2.0)
-    s3L_half = np.sin(theta3L / 2.0)
-    c3L_half = np.cos(theta3L / 2.0)
-    s3R_half = np.sin(theta3R / 2.0)
-    c3R_half = np.cos(theta3R / 2.0)
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s = np.sin(theta)
-    c = np.cos(theta)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s1, c1 = _runtime.sincos(theta1)
+    s, c = _runtime.sincos(theta)
     t1 = c3L_half * c3R_half
     t2 = s3L_half * s3R_half
     t3 = t1 + t2
@@ -264,7 +252,7 @@ def _pose(
     t44 = t42 - base
     t45 = base - (gs - al)
     failed = np.logical_not(t41) | np.logical_not((t43 <= t44) & (t43 <= t45))
-    t46 = np.where(failed, np.nan, 0.0)
+    t46 = _runtime.poison(failed)
     hand_22 = cpsi * cphi
     hand_12 = cpsi * t25
     t47 = s1 * hand_22 + t14 * hand_12 - t30 * t28 + t46
@@ -329,16 +317,11 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
 
 
 def _arm_tips(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2, a3, d1, d):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2R = np.sin(theta2R)
-    c2R = np.cos(theta2R)
-    s3R = np.sin(theta3R)
-    c3R = np.cos(theta3R)
-    s2L = np.sin(theta2L)
-    c2L = np.cos(theta2L)
-    s3L = np.sin(theta3L)
-    c3L = np.cos(theta3L)
+    s1, c1 = _runtime.sincos(theta1)
+    s2R, c2R = _runtime.sincos(theta2R)
+    s3R, c3R = _runtime.sincos(theta3R)
+    s2L, c2L = _runtime.sincos(theta2L)
+    s3L, c3L = _runtime.sincos(theta3L)
     t1 = d * s1
     s2R3R = s2R * c3R + c2R * s3R
     c2R3R = c2R * c3R - s2R * s3R
@@ -381,16 +364,11 @@ def arm_tips(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 def _invariant_point(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al
 ):
-    s2L_half = np.sin(theta2L / 2.0)
-    c2L_half = np.cos(theta2L / 2.0)
-    s2R_half = np.sin(theta2R / 2.0)
-    c2R_half = np.cos(theta2R / 2.0)
-    s3L_half = np.sin(theta3L / 2.0)
-    c3L_half = np.cos(theta3L / 2.0)
-    s3R_half = np.sin(theta3R / 2.0)
-    c3R_half = np.cos(theta3R / 2.0)
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s1, c1 = _runtime.sincos(theta1)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
     side2A = np.where(0.0 <= t1 + t2, 1.0, -1.0)
@@ -428,7 +406,7 @@ def _invariant_point(
     ahead = L1 * (t26 - t27) * t28 - t29
     base = np.sqrt(ahead * ahead + d * d)
     t30 = (t25 <= t24 - base) & (t25 <= base - (gs - al))
-    t31 = np.where(invalid | np.logical_not(t30), np.nan, 0.0)
+    t31 = _runtime.poison(invalid | np.logical_not(t30))
     t32 = d1 + L1 * (side2A * t28) - L2 * c23A + a3 * s23A
     return (
         t17 * c1 + t31,
@@ -461,18 +439,12 @@ def invariant_point(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = N
 def _jacobian(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s = np.sin(theta)
-    c = np.cos(theta)
-    s2L_half = np.sin(theta2L / 2.0)
-    c2L_half = np.cos(theta2L / 2.0)
-    s2R_half = np.sin(theta2R / 2.0)
-    c2R_half = np.cos(theta2R / 2.0)
-    s3L_half = np.sin(theta3L / 2.0)
-    c3L_half = np.cos(theta3L / 2.0)
-    s3R_half = np.sin(theta3R / 2.0)
-    c3R_half = np.cos(theta3R / 2.0)
+    s1, c1 = _runtime.sincos(theta1)
+    s, c = _runtime.sincos(theta)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     t1 = lp * s
     t2 = c3L_half * c3R_half
     t3 = s3L_half * s3R_half
@@ -544,7 +516,7 @@ def _jacobian(
     t58 = t57 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     t59 = -(_runtime.FEASIBILITY * t40)
     failed = np.logical_not(t58 & (0.0 <= lp)) | np.logical_not((t59 <= t41) & (t59 <= t39))
-    t60 = np.where(failed, np.nan, 0.0)
+    t60 = _runtime.poison(failed)
     t61 = s23A * cpsi
     t62 = t61 + c23A * t48
     t63 = (gs - d / cpsi) * (d * t36)
@@ -672,16 +644,11 @@ def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 def _determinant(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2L_half = np.sin(theta2L / 2.0)
-    c2L_half = np.cos(theta2L / 2.0)
-    s2R_half = np.sin(theta2R / 2.0)
-    c2R_half = np.cos(theta2R / 2.0)
-    s3L_half = np.sin(theta3L / 2.0)
-    c3L_half = np.cos(theta3L / 2.0)
-    s3R_half = np.sin(theta3R / 2.0)
-    c3R_half = np.cos(theta3R / 2.0)
-    s = np.sin(theta)
-    c = np.cos(theta)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s, c = _runtime.sincos(theta)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
     t3 = t1 + t2
@@ -741,7 +708,7 @@ def _determinant(
     t46 = -(_runtime.FEASIBILITY * t32)
     failed = np.logical_not(t45 & (0.0 <= lp)) | np.logical_not((t46 <= t33) & (t46 <= t31))
     return (
-        -t38 + np.where(failed, np.nan, 0.0),
+        -t38 + _runtime.poison(failed),
     )
 
 
@@ -769,16 +736,11 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 def _singularities(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2L_half = np.sin(theta2L / 2.0)
-    c2L_half = np.cos(theta2L / 2.0)
-    s2R_half = np.sin(theta2R / 2.0)
-    c2R_half = np.cos(theta2R / 2.0)
-    s3L_half = np.sin(theta3L / 2.0)
-    c3L_half = np.cos(theta3L / 2.0)
-    s3R_half = np.sin(theta3R / 2.0)
-    c3R_half = np.cos(theta3R / 2.0)
-    s = np.sin(theta)
-    c = np.cos(theta)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s, c = _runtime.sincos(theta)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
     t3 = t1 + t2
@@ -829,7 +791,7 @@ def _singularities(
     t40 = t39 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     t41 = -(_runtime.FEASIBILITY * t29)
     failed = np.logical_not(t40 & (0.0 <= lp)) | np.logical_not((t41 <= t30) & (t41 <= t28))
-    t42 = np.where(failed, np.nan, 0.0)
+    t42 = _runtime.poison(failed)
     s2A = side2A * t26
     t43 = c2A * c23A + s2A * s23A
     t44 = s2A * c23A - c2A * s23A
@@ -865,364 +827,365 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 
 
 def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
-    s_phi = np.sin(phi)
-    c_phi = np.cos(phi)
-    s_pitch = np.sin(pitch)
-    c_pitch = np.cos(pitch)
-    s_psi = np.sin(psi)
-    c_psi = np.cos(psi)
+    s_phi, c_phi = _runtime.sincos(phi)
+    s_pitch, c_pitch = _runtime.sincos(pitch)
+    s_psi, c_psi = _runtime.sincos(psi)
     h = np.sqrt(x * x + y * y)
-    t1 = h <= _runtime.VANISHING * (L1 + L2)
-    t2 = np.arctan2(x, y)
-    t3 = lp * s_pitch
-    t4 = d - c_psi * (gs - al)
-    t5 = gs + al
-    t6 = t5 * c_psi - d
-    t7 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t6, 0.0))
-    t8 = loff + t7 / c_psi + lp * c_pitch
-    t9 = s_psi * t8
-    t10 = s_phi * t3 - c_phi * t9
-    t11 = h + t10
-    below = np.maximum(t11, 0.0)
-    t12 = np.sqrt(below)
-    t13 = h - t10
-    above = np.maximum(t13, 0.0)
-    t14 = np.sqrt(above)
-    t15 = 2.0 * np.arctan2(t12, t14)
-    t16 = _runtime.wrap(-np.where(t1, 0.0, t2 - t15))
-    t17 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t18 = t17 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t19 = t18 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
-    t20 = t19 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
-    t21 = t20 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t22 = t21 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t23 = t22 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    invalid = np.logical_not(t23 & (0.0 <= loff) & (0.0 <= lp))
-    t24 = -(_runtime.FEASIBILITY * (d + t5))
-    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t6)
-    t26 = -(_runtime.FEASIBILITY * h)
-    t27 = t25 & (t24 <= t4) & (t26 <= t11) & (t26 <= t13)
-    L_2W = L2 + c_psi * t8
-    a_3W = a3 + c_phi * t3 + s_phi * t9
+    nowhere = h <= _runtime.VANISHING * (L1 + L2)
+    t1 = np.arctan2(x, y)
+    t2 = lp * s_pitch
+    t3 = d - c_psi * (gs - al)
+    t4 = gs + al
+    t5 = t4 * c_psi - d
+    t6 = np.sqrt(np.maximum(t3, 0.0)) * np.sqrt(np.maximum(t5, 0.0))
+    t7 = loff + t6 / c_psi + lp * c_pitch
+    t8 = s_psi * t7
+    t9 = s_phi * t2 - c_phi * t8
+    t10 = h + t9
+    below = np.maximum(t10, 0.0)
+    t11 = np.sqrt(below)
+    t12 = h - t9
+    above = np.maximum(t12, 0.0)
+    t13 = np.sqrt(above)
+    t14 = 2.0 * np.arctan2(t11, t13)
+    t15 = _runtime.wrap(-np.where(nowhere, 0.0, t1 - t14))
+    t16 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t17 = t16 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t18 = t17 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
+    t19 = t18 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
+    t20 = t19 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t21 = t20 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t22 = t21 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    invalid = np.logical_not(t22 & (0.0 <= loff) & (0.0 <= lp))
+    t23 = -(_runtime.FEASIBILITY * (d + t4))
+    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t5)
+    t25 = -(_runtime.FEASIBILITY * h)
+    t26 = t24 & (t23 <= t3) & (t25 <= t10) & (t25 <= t12)
+    L_2W = L2 + c_psi * t7
+    a_3W = a3 + c_phi * t2 + s_phi * t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t28 = L1 + fore
-    t29 = -(_runtime.FEASIBILITY * t28)
-    t30 = z - d1
-    t31 = t30 * t30
+    t27 = L1 + fore
+    t28 = -(_runtime.FEASIBILITY * t27)
+    t29 = z - d1
+    t30 = t29 * t29
     total = below + above
-    t32 = (below - above) / total
-    t33 = y * t32
-    s_turn = 2.0 * t12 * t14 / total
-    t34 = x * s_turn
-    t35 = x * t32
+    t31 = (below - above) / total
+    t32 = y * t31
+    s_turn = 2.0 * t11 * t13 / total
+    t33 = x * s_turn
+    t34 = x * np.where(nowhere, 1.0, -((t32 - t33) / h))
+    t35 = x * t31
     t36 = y * s_turn
-    outward = x * np.where(t1, 1.0, -((t33 - t34) / h)) + y * np.where(t1, 0.0, (t35 + t36) / h)
-    reach = np.sqrt(t31 + outward * outward)
-    t37 = t28 - reach
+    outward = t34 + y * np.where(nowhere, 0.0, (t35 + t36) / h)
+    reach = np.sqrt(t30 + outward * outward)
+    t37 = t27 - reach
     t38 = L1 - fore
     t39 = reach + t38
     t40 = reach - t38
-    t41 = t27 & (t29 <= t37) & (t29 <= t39) & (t29 <= t40)
-    t42 = _runtime.VANISHING * t28
-    t43 = reach <= t42
-    s_sight = np.where(t43, 0.0, t30 / reach)
-    t44 = L1 * fore <= _runtime.VANISHING * (t28 * t28)
-    t45 = t43 | t44
+    t41 = t26 & (t28 <= t37) & (t28 <= t39) & (t28 <= t40)
+    t42 = _runtime.VANISHING * t27
+    folded = reach <= t42
+    s_sight = np.where(folded, 0.0, t29 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t27 * t27)
+    t43 = folded | short
     A = np.maximum(t37, 0.0)
     C = np.maximum(t40, 0.0)
-    t46 = A * C
-    S = t28 + reach
+    t44 = A * C
+    S = t27 + reach
     B = np.maximum(t39, 0.0)
-    t47 = S * B
-    at_base = t46 + t47
-    c_base = np.where(t45, 1.0, -((t46 - t47) / at_base))
-    t48 = s_sight * c_base
-    c_sight = np.where(t43, 1.0, outward / reach)
+    t45 = S * B
+    at_base = t44 + t45
+    c_base = np.where(t43, 1.0, -((t44 - t45) / at_base))
+    t46 = s_sight * c_base
+    c_sight = np.where(folded, 1.0, outward / reach)
     rS = np.sqrt(S)
     rA = np.sqrt(A)
-    t49 = rS * rA
+    t47 = rS * rA
     rB = np.sqrt(B)
     rC = np.sqrt(C)
-    t50 = rB * rC
-    area_front_elbow_down = 2.0 * t49 * t50
-    s_base_front_elbow_down = np.where(t45, 0.0, area_front_elbow_down / at_base)
-    t51 = c_sight * s_base_front_elbow_down
-    stheta2A = t48 + t51
-    t52 = L1 * stheta2A
-    t53 = c_sight * c_base
-    t54 = s_sight * s_base_front_elbow_down
-    ctheta2A = t53 - t54
+    t48 = rB * rC
+    area_front_elbow_down = 2.0 * t47 * t48
+    s_base_front_elbow_down = np.where(t43, 0.0, area_front_elbow_down / at_base)
+    t49 = c_sight * s_base_front_elbow_down
+    stheta2A = t46 + t49
+    t50 = L1 * stheta2A
+    t51 = c_sight * c_base
+    t52 = s_sight * s_base_front_elbow_down
+    ctheta2A = t51 - t52
     u2 = L1 * ctheta2A
-    size_u = np.sqrt(t52 * t52 + u2 * u2)
-    c_lag = np.where(t44, 1.0, a_3W / fore)
-    t55 = A * S
-    t56 = C * B
-    at_elbow = t55 + t56
-    c_elbow = np.where(t44, 1.0, -((t55 - t56) / at_elbow))
-    t57 = c_lag * c_elbow
-    s_lag = np.where(t44, 0.0, L_2W / fore)
-    s_elbow_front_elbow_down = np.where(t44, 0.0, area_front_elbow_down / at_elbow)
-    t58 = s_lag * s_elbow_front_elbow_down
-    c_bend = t57 + t58
-    t59 = s_lag * c_elbow
-    t60 = c_lag * s_elbow_front_elbow_down
-    s_bend = t59 - t60
+    size_u = np.sqrt(t50 * t50 + u2 * u2)
+    c_lag = np.where(short, 1.0, a_3W / fore)
+    t53 = A * S
+    t54 = C * B
+    at_elbow = t53 + t54
+    c_elbow = np.where(short, 1.0, -((t53 - t54) / at_elbow))
+    t55 = c_lag * c_elbow
+    s_lag = np.where(short, 0.0, L_2W / fore)
+    s_elbow_front_elbow_down = np.where(short, 0.0, area_front_elbow_down / at_elbow)
+    t56 = s_lag * s_elbow_front_elbow_down
+    c_bend = t55 + t56
+    t57 = s_lag * c_elbow
+    t58 = c_lag * s_elbow_front_elbow_down
+    s_bend = t57 - t58
     ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
     stheta23A = stheta2A * c_bend + ctheta2A * s_bend
     v1 = L2 * ctheta23A - a3 * stheta23A
     v2 = L2 * stheta23A + a3 * ctheta23A
-    t61 = size_u * np.sqrt(v1 * v1 + v2 * v2)
-    t62 = t52 * v2 + u2 * v1
-    t63 = np.abs(t62)
+    t59 = size_u * np.sqrt(v1 * v1 + v2 * v2)
+    t60 = t50 * v2 + u2 * v1
+    t61 = np.abs(t60)
     ahead = d * s_psi / c_psi
     higher = d * s_phi / c_phi
-    t64 = ahead * u2 + higher * t52
-    t65 = np.abs(t64)
-    t66 = t63 - t65
-    t67 = t63 <= _runtime.VANISHING * t61
-    root_y = np.sqrt(t65 + t63) * np.sqrt(np.maximum(t66, 0.0))
-    norm_y = np.sqrt(root_y * root_y + t64 * t64)
-    sbeta = np.where(t67, 0.0, t64 * t62 / (t63 * norm_y))
-    t68 = t52 * (ahead - v1 * sbeta) - u2 * (higher - v2 * sbeta)
-    t69 = t68 / size_u
-    t70 = np.abs(t69)
-    t71 = size_u - t70
-    t72 = t41 & (-(_runtime.FEASIBILITY * t61) <= t66) & (-(_runtime.FEASIBILITY * size_u) <= t71)
-    unreachable = np.logical_not(t72)
-    t73 = np.where(invalid | unreachable, np.nan, 0.0)
-    t74 = np.where(t43, 0.0, np.arctan2(t30, outward))
-    t75 = np.where(t45, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
-    t76 = t74 + t75
-    root_x = np.sqrt(size_u + t70) * np.sqrt(np.maximum(t71, 0.0))
-    norm_x = np.sqrt(t69 * t69 + root_x * root_x)
-    t77 = np.arctan2(t69 / norm_x, root_x / norm_x)
-    t78 = np.arctan2(s_lag, c_lag)
-    t79 = 2.0 * np.arctan2(t49, t50)
-    t80 = np.where(t44, 0.0, t78 - t79)
-    t81 = np.arctan2(sbeta, np.where(t67, 1.0, root_y / norm_y))
-    t82 = t77 + t81
-    t83 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    stheta2A_front_elbow_down = t48 - t51
-    t84 = L1 * stheta2A_front_elbow_down
-    ctheta2A_front_elbow_down = t53 + t54
+    t62 = ahead * u2 + higher * t50
+    t63 = np.abs(t62)
+    t64 = t61 - t63
+    parallel = t61 <= _runtime.VANISHING * t59
+    root_y = np.sqrt(t63 + t61) * np.sqrt(np.maximum(t64, 0.0))
+    norm_y = np.sqrt(root_y * root_y + t62 * t62)
+    sbeta = np.where(parallel, 0.0, t62 * t60 / (t61 * norm_y))
+    t65 = t50 * (ahead - v1 * sbeta) - u2 * (higher - v2 * sbeta)
+    t66 = t65 / size_u
+    t67 = np.abs(t66)
+    t68 = size_u - t67
+    t69 = t41 & (-(_runtime.FEASIBILITY * t59) <= t64) & (-(_runtime.FEASIBILITY * size_u) <= t68)
+    unreachable = np.logical_not(t69)
+    t70 = _runtime.poison(invalid | unreachable)
+    t71 = np.where(folded, 0.0, np.arctan2(t29, outward))
+    t72 = np.where(t43, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
+    t73 = t71 + t72
+    root_x = np.sqrt(size_u + t67) * np.sqrt(np.maximum(t68, 0.0))
+    norm_x = np.sqrt(t66 * t66 + root_x * root_x)
+    t74 = np.arctan2(t66 / norm_x, root_x / norm_x)
+    t75 = np.arctan2(s_lag, c_lag)
+    t76 = 2.0 * np.arctan2(t47, t48)
+    t77 = np.where(short, 0.0, t75 - t76)
+    t78 = np.arctan2(sbeta, np.where(parallel, 1.0, root_y / norm_y))
+    t79 = t74 + t78
+    t80 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
+    stheta2A_front_elbow_down = t46 - t49
+    t81 = L1 * stheta2A_front_elbow_down
+    ctheta2A_front_elbow_down = t51 + t52
     u2_front_elbow_down = L1 * ctheta2A_front_elbow_down
-    t85 = t84 * t84 + u2_front_elbow_down * u2_front_elbow_down
-    size_u_front_elbow_down = np.sqrt(t85)
-    c_bend_front_elbow_down = t57 - t58
-    t86 = ctheta2A_front_elbow_down * c_bend_front_elbow_down
-    s_bend_front_elbow_down = t59 + t60
-    t87 = stheta2A_front_elbow_down * s_bend_front_elbow_down
-    ctheta23A_front_elbow_down = t86 - t87
-    t88 = stheta2A_front_elbow_down * c_bend_front_elbow_down
-    t89 = ctheta2A_front_elbow_down * s_bend_front_elbow_down
-    stheta23A_front_elbow_down = t88 + t89
+    t82 = t81 * t81 + u2_front_elbow_down * u2_front_elbow_down
+    size_u_front_elbow_down = np.sqrt(t82)
+    c_bend_front_elbow_down = t55 - t56
+    t83 = ctheta2A_front_elbow_down * c_bend_front_elbow_down
+    s_bend_front_elbow_down = t57 + t58
+    t84 = stheta2A_front_elbow_down * s_bend_front_elbow_down
+    ctheta23A_front_elbow_down = t83 - t84
+    t85 = stheta2A_front_elbow_down * c_bend_front_elbow_down
+    t86 = ctheta2A_front_elbow_down * s_bend_front_elbow_down
+    stheta23A_front_elbow_down = t85 + t86
     v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down
     v2_front_elbow_down = L2 * stheta23A_front_elbow_down + a3 * ctheta23A_front_elbow_down
-    t90 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
-    t91 = size_u_front_elbow_down * np.sqrt(t90)
-    t92 = t84 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
-    t93 = np.abs(t92)
-    t94 = ahead * u2_front_elbow_down + higher * t84
-    t95 = np.abs(t94)
-    t96 = t93 - t95
-    t97 = _runtime.FEASIBILITY * size_u_front_elbow_down
-    t98 = t93 <= _runtime.VANISHING * t91
-    root_y_front_elbow_down = np.sqrt(t95 + t93) * np.sqrt(np.maximum(t96, 0.0))
-    t99 = root_y_front_elbow_down * root_y_front_elbow_down
-    norm_y_front_elbow_down = np.sqrt(t99 + t94 * t94)
-    sbeta_front_elbow_down = np.where(t98, 0.0, t94 * t92 / (t93 * norm_y_front_elbow_down))
-    t100 = ahead - v1_front_elbow_down * sbeta_front_elbow_down
-    t101 = higher - v2_front_elbow_down * sbeta_front_elbow_down
-    t102 = (t84 * t100 - u2_front_elbow_down * t101) / size_u_front_elbow_down
-    t103 = np.abs(t102)
-    t104 = size_u_front_elbow_down - t103
-    t105 = t41 & (-(_runtime.FEASIBILITY * t91) <= t96) & (-t97 <= t104)
-    unreachable_2 = np.logical_not(t105)
-    t106 = np.where(invalid | unreachable_2, np.nan, 0.0)
-    t107 = t74 - t75
-    root_x_front_elbow_down = np.sqrt(size_u_front_elbow_down + t103) * np.sqrt(np.maximum(t104, 0.0))
-    t108 = root_x_front_elbow_down * root_x_front_elbow_down
-    norm_x_front_elbow_down = np.sqrt(t102 * t102 + t108)
+    t87 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
+    t88 = size_u_front_elbow_down * np.sqrt(t87)
+    t89 = t81 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
+    t90 = np.abs(t89)
+    t91 = ahead * u2_front_elbow_down + higher * t81
+    t92 = np.abs(t91)
+    t93 = t90 - t92
+    t94 = _runtime.FEASIBILITY * size_u_front_elbow_down
+    parallel_front_elbow_down = t90 <= _runtime.VANISHING * t88
+    root_y_front_elbow_down = np.sqrt(t92 + t90) * np.sqrt(np.maximum(t93, 0.0))
+    t95 = root_y_front_elbow_down * root_y_front_elbow_down
+    norm_y_front_elbow_down = np.sqrt(t95 + t91 * t91)
+    sbeta_front_elbow_down = np.where(parallel_front_elbow_down, 0.0, t91 * t89 / (t90 * norm_y_front_elbow_down))
+    t96 = ahead - v1_front_elbow_down * sbeta_front_elbow_down
+    t97 = higher - v2_front_elbow_down * sbeta_front_elbow_down
+    t98 = (t81 * t96 - u2_front_elbow_down * t97) / size_u_front_elbow_down
+    t99 = np.abs(t98)
+    t100 = size_u_front_elbow_down - t99
+    t101 = t41 & (-(_runtime.FEASIBILITY * t88) <= t93) & (-t94 <= t100)
+    unreachable_2 = np.logical_not(t101)
+    t102 = _runtime.poison(invalid | unreachable_2)
+    t103 = t71 - t72
+    root_x_front_elbow_down = np.sqrt(size_u_front_elbow_down + t99) * np.sqrt(np.maximum(t100, 0.0))
+    t104 = root_x_front_elbow_down * root_x_front_elbow_down
+    norm_x_front_elbow_down = np.sqrt(t98 * t98 + t104)
     calpha_front_elbow_down = root_x_front_elbow_down / norm_x_front_elbow_down
-    t109 = np.arctan2(t102 / norm_x_front_elbow_down, calpha_front_elbow_down)
-    t110 = np.where(t44, 0.0, t78 + t79)
-    t111 = root_y_front_elbow_down / norm_y_front_elbow_down
-    t112 = np.arctan2(sbeta_front_elbow_down, np.where(t98, 1.0, t111))
-    t113 = t109 + t112
-    t114 = _runtime.wrap(-np.where(t1, 0.0, t2 + t15))
-    outward_rear_elbow_up = x * np.where(t1, 1.0, -((t33 + t34) / h)) + y * np.where(t1, 0.0, (t35 - t36) / h)
-    t115 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t31 + t115)
-    t116 = t28 - reach_rear_elbow_up
-    t117 = reach_rear_elbow_up + t38
-    t118 = reach_rear_elbow_up - t38
-    t119 = t27 & (t29 <= t116) & (t29 <= t117) & (t29 <= t118)
-    t120 = reach_rear_elbow_up <= t42
-    s_sight_rear_elbow_up = np.where(t120, 0.0, t30 / reach_rear_elbow_up)
-    t121 = t120 | t44
-    A_rear_elbow_up = np.maximum(t116, 0.0)
-    C_rear_elbow_up = np.maximum(t118, 0.0)
-    t122 = A_rear_elbow_up * C_rear_elbow_up
-    S_rear_elbow_up = t28 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t117, 0.0)
-    t123 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t122 + t123
-    c_base_rear_elbow_up = np.where(t121, 1.0, -((t122 - t123) / at_base_rear_elbow_up))
-    t124 = s_sight_rear_elbow_up * c_base_rear_elbow_up
-    c_sight_rear_elbow_up = np.where(t120, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
+    t105 = np.arctan2(t98 / norm_x_front_elbow_down, calpha_front_elbow_down)
+    t106 = np.where(short, 0.0, t75 + t76)
+    t107 = root_y_front_elbow_down / norm_y_front_elbow_down
+    cbeta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t107)
+    t108 = np.arctan2(sbeta_front_elbow_down, cbeta_front_elbow_down)
+    t109 = t105 + t108
+    t110 = _runtime.wrap(-np.where(nowhere, 0.0, t1 + t14))
+    t111 = x * np.where(nowhere, 1.0, -((t32 + t33) / h))
+    outward_rear_elbow_up = t111 + y * np.where(nowhere, 0.0, (t35 - t36) / h)
+    t112 = outward_rear_elbow_up * outward_rear_elbow_up
+    reach_rear_elbow_up = np.sqrt(t30 + t112)
+    t113 = t27 - reach_rear_elbow_up
+    t114 = reach_rear_elbow_up + t38
+    t115 = reach_rear_elbow_up - t38
+    t116 = t26 & (t28 <= t113) & (t28 <= t114) & (t28 <= t115)
+    folded_rear_elbow_up = reach_rear_elbow_up <= t42
+    s_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 0.0, t29 / reach_rear_elbow_up)
+    t117 = folded_rear_elbow_up | short
+    A_rear_elbow_up = np.maximum(t113, 0.0)
+    C_rear_elbow_up = np.maximum(t115, 0.0)
+    t118 = A_rear_elbow_up * C_rear_elbow_up
+    S_rear_elbow_up = t27 + reach_rear_elbow_up
+    B_rear_elbow_up = np.maximum(t114, 0.0)
+    t119 = S_rear_elbow_up * B_rear_elbow_up
+    at_base_rear_elbow_up = t118 + t119
+    c_base_rear_elbow_up = np.where(t117, 1.0, -((t118 - t119) / at_base_rear_elbow_up))
+    t120 = s_sight_rear_elbow_up * c_base_rear_elbow_up
+    c_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
     rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
     rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t125 = rS_rear_elbow_up * rA_rear_elbow_up
+    t121 = rS_rear_elbow_up * rA_rear_elbow_up
     rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
     rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t126 = rB_rear_elbow_up * rC_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t125 * t126
-    s_base_rear_elbow_up = np.where(t121, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t127 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t124 - t127
-    t128 = L1 * stheta2A_rear_elbow_up
-    t129 = c_sight_rear_elbow_up * c_base_rear_elbow_up
-    t130 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t129 + t130
+    t122 = rB_rear_elbow_up * rC_rear_elbow_up
+    area_rear_elbow_up = 2.0 * t121 * t122
+    s_base_rear_elbow_up = np.where(t117, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
+    t123 = c_sight_rear_elbow_up * s_base_rear_elbow_up
+    stheta2A_rear_elbow_up = t120 - t123
+    t124 = L1 * stheta2A_rear_elbow_up
+    t125 = c_sight_rear_elbow_up * c_base_rear_elbow_up
+    t126 = s_sight_rear_elbow_up * s_base_rear_elbow_up
+    ctheta2A_rear_elbow_up = t125 + t126
     u2_rear_elbow_up = L1 * ctheta2A_rear_elbow_up
-    t131 = t128 * t128 + u2_rear_elbow_up * u2_rear_elbow_up
-    size_u_rear_elbow_up = np.sqrt(t131)
-    t132 = A_rear_elbow_up * S_rear_elbow_up
-    t133 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t132 + t133
-    c_elbow_rear_elbow_up = np.where(t44, 1.0, -((t132 - t133) / at_elbow_rear_elbow_up))
-    t134 = c_lag * c_elbow_rear_elbow_up
-    s_elbow_rear_elbow_up = np.where(t44, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t135 = s_lag * s_elbow_rear_elbow_up
-    c_bend_rear_elbow_up = t134 - t135
-    t136 = ctheta2A_rear_elbow_up * c_bend_rear_elbow_up
-    t137 = s_lag * c_elbow_rear_elbow_up
-    t138 = c_lag * s_elbow_rear_elbow_up
-    s_bend_rear_elbow_up = t137 + t138
-    t139 = stheta2A_rear_elbow_up * s_bend_rear_elbow_up
-    ctheta23A_rear_elbow_up = t136 - t139
-    t140 = stheta2A_rear_elbow_up * c_bend_rear_elbow_up
-    t141 = ctheta2A_rear_elbow_up * s_bend_rear_elbow_up
-    stheta23A_rear_elbow_up = t140 + t141
+    t127 = t124 * t124 + u2_rear_elbow_up * u2_rear_elbow_up
+    size_u_rear_elbow_up = np.sqrt(t127)
+    t128 = A_rear_elbow_up * S_rear_elbow_up
+    t129 = C_rear_elbow_up * B_rear_elbow_up
+    at_elbow_rear_elbow_up = t128 + t129
+    c_elbow_rear_elbow_up = np.where(short, 1.0, -((t128 - t129) / at_elbow_rear_elbow_up))
+    t130 = c_lag * c_elbow_rear_elbow_up
+    s_elbow_rear_elbow_up = np.where(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
+    t131 = s_lag * s_elbow_rear_elbow_up
+    c_bend_rear_elbow_up = t130 - t131
+    t132 = ctheta2A_rear_elbow_up * c_bend_rear_elbow_up
+    t133 = s_lag * c_elbow_rear_elbow_up
+    t134 = c_lag * s_elbow_rear_elbow_up
+    s_bend_rear_elbow_up = t133 + t134
+    t135 = stheta2A_rear_elbow_up * s_bend_rear_elbow_up
+    ctheta23A_rear_elbow_up = t132 - t135
+    t136 = stheta2A_rear_elbow_up * c_bend_rear_elbow_up
+    t137 = ctheta2A_rear_elbow_up * s_bend_rear_elbow_up
+    stheta23A_rear_elbow_up = t136 + t137
     v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up
     v2_rear_elbow_up = L2 * stheta23A_rear_elbow_up + a3 * ctheta23A_rear_elbow_up
-    t142 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
-    t143 = size_u_rear_elbow_up * np.sqrt(t142)
-    t144 = t128 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
-    t145 = np.abs(t144)
-    t146 = ahead * u2_rear_elbow_up + higher * t128
-    t147 = np.abs(t146)
-    t148 = t145 - t147
-    t149 = t119 & (-(_runtime.FEASIBILITY * t143) <= t148)
-    t150 = -(_runtime.FEASIBILITY * size_u_rear_elbow_up)
-    t151 = t145 <= _runtime.VANISHING * t143
-    root_y_rear_elbow_up = np.sqrt(t147 + t145) * np.sqrt(np.maximum(t148, 0.0))
-    t152 = root_y_rear_elbow_up * root_y_rear_elbow_up + t146 * t146
-    norm_y_rear_elbow_up = np.sqrt(t152)
-    sbeta_rear_elbow_up = np.where(t151, 0.0, t146 * t144 / (t145 * norm_y_rear_elbow_up))
-    t153 = ahead - v1_rear_elbow_up * sbeta_rear_elbow_up
-    t154 = higher - v2_rear_elbow_up * sbeta_rear_elbow_up
-    t155 = (t128 * t153 - u2_rear_elbow_up * t154) / size_u_rear_elbow_up
-    t156 = np.abs(t155)
-    t157 = size_u_rear_elbow_up - t156
-    unreachable_3 = np.logical_not(t149 & (t150 <= t157))
-    t158 = np.where(invalid | unreachable_3, np.nan, 0.0)
-    t159 = np.where(t120, 0.0, np.arctan2(t30, outward_rear_elbow_up))
-    t160 = np.arctan2(rA_rear_elbow_up * rC_rear_elbow_up, rS_rear_elbow_up * rB_rear_elbow_up)
-    t161 = np.where(t121, 0.0, 2.0 * t160)
-    t162 = t159 - t161
-    root_x_rear_elbow_up = np.sqrt(size_u_rear_elbow_up + t156) * np.sqrt(np.maximum(t157, 0.0))
-    t163 = t155 * t155 + root_x_rear_elbow_up * root_x_rear_elbow_up
-    norm_x_rear_elbow_up = np.sqrt(t163)
-    t164 = np.arctan2(t155 / norm_x_rear_elbow_up, root_x_rear_elbow_up / norm_x_rear_elbow_up)
-    t165 = 2.0 * np.arctan2(t125, t126)
-    t166 = np.where(t44, 0.0, t78 + t165)
-    cbeta_rear_elbow_up = np.where(t151, 1.0, root_y_rear_elbow_up / norm_y_rear_elbow_up)
-    t167 = np.arctan2(sbeta_rear_elbow_up, cbeta_rear_elbow_up)
-    t168 = t164 + t167
-    stheta2A_rear_elbow_down = t124 + t127
-    t169 = L1 * stheta2A_rear_elbow_down
-    ctheta2A_rear_elbow_down = t129 - t130
+    t138 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
+    t139 = size_u_rear_elbow_up * np.sqrt(t138)
+    t140 = t124 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
+    t141 = np.abs(t140)
+    t142 = ahead * u2_rear_elbow_up + higher * t124
+    t143 = np.abs(t142)
+    t144 = t141 - t143
+    t145 = t116 & (-(_runtime.FEASIBILITY * t139) <= t144)
+    t146 = -(_runtime.FEASIBILITY * size_u_rear_elbow_up)
+    parallel_rear_elbow_up = t141 <= _runtime.VANISHING * t139
+    root_y_rear_elbow_up = np.sqrt(t143 + t141) * np.sqrt(np.maximum(t144, 0.0))
+    t147 = root_y_rear_elbow_up * root_y_rear_elbow_up + t142 * t142
+    norm_y_rear_elbow_up = np.sqrt(t147)
+    sbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 0.0, t142 * t140 / (t141 * norm_y_rear_elbow_up))
+    t148 = ahead - v1_rear_elbow_up * sbeta_rear_elbow_up
+    t149 = higher - v2_rear_elbow_up * sbeta_rear_elbow_up
+    t150 = (t124 * t148 - u2_rear_elbow_up * t149) / size_u_rear_elbow_up
+    t151 = np.abs(t150)
+    t152 = size_u_rear_elbow_up - t151
+    unreachable_3 = np.logical_not(t145 & (t146 <= t152))
+    t153 = _runtime.poison(invalid | unreachable_3)
+    t154 = np.where(folded_rear_elbow_up, 0.0, np.arctan2(t29, outward_rear_elbow_up))
+    t155 = np.arctan2(rA_rear_elbow_up * rC_rear_elbow_up, rS_rear_elbow_up * rB_rear_elbow_up)
+    t156 = np.where(t117, 0.0, 2.0 * t155)
+    t157 = t154 - t156
+    root_x_rear_elbow_up = np.sqrt(size_u_rear_elbow_up + t151) * np.sqrt(np.maximum(t152, 0.0))
+    t158 = t150 * t150 + root_x_rear_elbow_up * root_x_rear_elbow_up
+    norm_x_rear_elbow_up = np.sqrt(t158)
+    t159 = np.arctan2(t150 / norm_x_rear_elbow_up, root_x_rear_elbow_up / norm_x_rear_elbow_up)
+    t160 = 2.0 * np.arctan2(t121, t122)
+    t161 = np.where(short, 0.0, t75 + t160)
+    cbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, root_y_rear_elbow_up / norm_y_rear_elbow_up)
+    t162 = np.arctan2(sbeta_rear_elbow_up, cbeta_rear_elbow_up)
+    t163 = t159 + t162
+    stheta2A_rear_elbow_down = t120 + t123
+    t164 = L1 * stheta2A_rear_elbow_down
+    ctheta2A_rear_elbow_down = t125 - t126
     u2_rear_elbow_down = L1 * ctheta2A_rear_elbow_down
-    t170 = t169 * t169 + u2_rear_elbow_down * u2_rear_elbow_down
-    size_u_rear_elbow_down = np.sqrt(t170)
-    c_bend_rear_elbow_down = t134 + t135
-    t171 = ctheta2A_rear_elbow_down * c_bend_rear_elbow_down
-    s_bend_rear_elbow_down = t137 - t138
-    t172 = stheta2A_rear_elbow_down * s_bend_rear_elbow_down
-    ctheta23A_rear_elbow_down = t171 - t172
-    t173 = stheta2A_rear_elbow_down * c_bend_rear_elbow_down
-    t174 = ctheta2A_rear_elbow_down * s_bend_rear_elbow_down
-    stheta23A_rear_elbow_down = t173 + t174
+    t165 = t164 * t164 + u2_rear_elbow_down * u2_rear_elbow_down
+    size_u_rear_elbow_down = np.sqrt(t165)
+    c_bend_rear_elbow_down = t130 + t131
+    t166 = ctheta2A_rear_elbow_down * c_bend_rear_elbow_down
+    s_bend_rear_elbow_down = t133 - t134
+    t167 = stheta2A_rear_elbow_down * s_bend_rear_elbow_down
+    ctheta23A_rear_elbow_down = t166 - t167
+    t168 = stheta2A_rear_elbow_down * c_bend_rear_elbow_down
+    t169 = ctheta2A_rear_elbow_down * s_bend_rear_elbow_down
+    stheta23A_rear_elbow_down = t168 + t169
     v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down
     v2_rear_elbow_down = L2 * stheta23A_rear_elbow_down + a3 * ctheta23A_rear_elbow_down
-    t175 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
-    t176 = size_u_rear_elbow_down * np.sqrt(t175)
-    t177 = t169 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
-    t178 = np.abs(t177)
-    t179 = ahead * u2_rear_elbow_down + higher * t169
-    t180 = np.abs(t179)
-    t181 = t178 - t180
-    t182 = t119 & (-(_runtime.FEASIBILITY * t176) <= t181)
-    t183 = _runtime.FEASIBILITY * size_u_rear_elbow_down
-    t184 = t178 <= _runtime.VANISHING * t176
-    root_y_rear_elbow_down = np.sqrt(t180 + t178) * np.sqrt(np.maximum(t181, 0.0))
-    t185 = root_y_rear_elbow_down * root_y_rear_elbow_down
-    norm_y_rear_elbow_down = np.sqrt(t185 + t179 * t179)
-    t186 = t179 * t177 / (t178 * norm_y_rear_elbow_down)
-    sbeta_rear_elbow_down = np.where(t184, 0.0, t186)
-    t187 = ahead - v1_rear_elbow_down * sbeta_rear_elbow_down
-    t188 = higher - v2_rear_elbow_down * sbeta_rear_elbow_down
-    t189 = (t169 * t187 - u2_rear_elbow_down * t188) / size_u_rear_elbow_down
-    t190 = np.abs(t189)
-    t191 = size_u_rear_elbow_down - t190
-    unreachable_4 = np.logical_not(t182 & (-t183 <= t191))
-    t192 = np.where(invalid | unreachable_4, np.nan, 0.0)
-    t193 = t159 + t161
-    root_x_rear_elbow_down = np.sqrt(size_u_rear_elbow_down + t190) * np.sqrt(np.maximum(t191, 0.0))
-    t194 = root_x_rear_elbow_down * root_x_rear_elbow_down
-    norm_x_rear_elbow_down = np.sqrt(t189 * t189 + t194)
+    t170 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
+    t171 = size_u_rear_elbow_down * np.sqrt(t170)
+    t172 = t164 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
+    t173 = np.abs(t172)
+    t174 = ahead * u2_rear_elbow_down + higher * t164
+    t175 = np.abs(t174)
+    t176 = t173 - t175
+    t177 = t116 & (-(_runtime.FEASIBILITY * t171) <= t176)
+    t178 = _runtime.FEASIBILITY * size_u_rear_elbow_down
+    parallel_rear_elbow_down = t173 <= _runtime.VANISHING * t171
+    root_y_rear_elbow_down = np.sqrt(t175 + t173) * np.sqrt(np.maximum(t176, 0.0))
+    t179 = root_y_rear_elbow_down * root_y_rear_elbow_down
+    norm_y_rear_elbow_down = np.sqrt(t179 + t174 * t174)
+    t180 = t174 * t172 / (t173 * norm_y_rear_elbow_down)
+    sbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 0.0, t180)
+    t181 = ahead - v1_rear_elbow_down * sbeta_rear_elbow_down
+    t182 = higher - v2_rear_elbow_down * sbeta_rear_elbow_down
+    t183 = (t164 * t181 - u2_rear_elbow_down * t182) / size_u_rear_elbow_down
+    t184 = np.abs(t183)
+    t185 = size_u_rear_elbow_down - t184
+    unreachable_4 = np.logical_not(t177 & (-t178 <= t185))
+    t186 = _runtime.poison(invalid | unreachable_4)
+    t187 = t154 + t156
+    root_x_rear_elbow_down = np.sqrt(size_u_rear_elbow_down + t184) * np.sqrt(np.maximum(t185, 0.0))
+    t188 = root_x_rear_elbow_down * root_x_rear_elbow_down
+    norm_x_rear_elbow_down = np.sqrt(t183 * t183 + t188)
     calpha_rear_elbow_down = root_x_rear_elbow_down / norm_x_rear_elbow_down
-    t195 = np.arctan2(t189 / norm_x_rear_elbow_down, calpha_rear_elbow_down)
-    t196 = np.where(t44, 0.0, t78 - t165)
-    t197 = root_y_rear_elbow_down / norm_y_rear_elbow_down
-    t198 = np.arctan2(sbeta_rear_elbow_down, np.where(t184, 1.0, t197))
-    t199 = t195 + t198
-    t200 = t1 | t43 | t44
-    t201 = np.where(unreachable, 1.0, np.where(t200 | t67, 2.0, 0.0))
-    t202 = np.where(unreachable_2, 1.0, np.where(t200 | t98, 2.0, 0.0))
-    t203 = t1 | t120 | t44
-    t204 = np.where(unreachable_3, 1.0, np.where(t203 | t151, 2.0, 0.0))
-    t205 = np.where(unreachable_4, 1.0, np.where(t203 | t184, 2.0, 0.0))
+    t189 = np.arctan2(t183 / norm_x_rear_elbow_down, calpha_rear_elbow_down)
+    t190 = np.where(short, 0.0, t75 - t160)
+    t191 = root_y_rear_elbow_down / norm_y_rear_elbow_down
+    cbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t191)
+    t192 = np.arctan2(sbeta_rear_elbow_down, cbeta_rear_elbow_down)
+    t193 = t189 + t192
+    t194 = nowhere | folded | short
+    t195 = _runtime.status(invalid, unreachable, t194 | parallel)
+    t196 = _runtime.status(invalid, unreachable_2, t194 | parallel_front_elbow_down)
+    t197 = nowhere | folded_rear_elbow_up | short
+    t198 = _runtime.status(invalid, unreachable_3, t197 | parallel_rear_elbow_up)
+    t199 = _runtime.status(invalid, unreachable_4, t197 | parallel_rear_elbow_down)
     return (
-        t16 + t73,
-        _runtime.wrap(t76 - t77) + t73,
-        _runtime.wrap(t80 + t82) + t73,
-        _runtime.wrap(t77 + t76) + t73,
-        _runtime.wrap(t80 - t82) + t73,
-        t83 + t73,
-        t16 + t106,
-        _runtime.wrap(t107 - t109) + t106,
-        _runtime.wrap(t110 + t113) + t106,
-        _runtime.wrap(t109 + t107) + t106,
-        _runtime.wrap(t110 - t113) + t106,
-        t83 + t106,
-        t114 + t158,
-        _runtime.wrap(t162 - t164) + t158,
-        _runtime.wrap(t166 + t168) + t158,
-        _runtime.wrap(t164 + t162) + t158,
-        _runtime.wrap(t166 - t168) + t158,
-        t83 + t158,
-        t114 + t192,
-        _runtime.wrap(t193 - t195) + t192,
-        _runtime.wrap(t196 + t199) + t192,
-        _runtime.wrap(t195 + t193) + t192,
-        _runtime.wrap(t196 - t199) + t192,
-        t83 + t192,
-        np.where(invalid, 3.0, t201),
-        np.where(invalid, 3.0, t202),
-        np.where(invalid, 3.0, t204),
-        np.where(invalid, 3.0, t205),
+        t15 + t70,
+        _runtime.wrap(t73 - t74) + t70,
+        _runtime.wrap(t77 + t79) + t70,
+        _runtime.wrap(t74 + t73) + t70,
+        _runtime.wrap(t77 - t79) + t70,
+        t80 + t70,
+        t15 + t102,
+        _runtime.wrap(t103 - t105) + t102,
+        _runtime.wrap(t106 + t109) + t102,
+        _runtime.wrap(t105 + t103) + t102,
+        _runtime.wrap(t106 - t109) + t102,
+        t80 + t102,
+        t110 + t153,
+        _runtime.wrap(t157 - t159) + t153,
+        _runtime.wrap(t161 + t163) + t153,
+        _runtime.wrap(t159 + t157) + t153,
+        _runtime.wrap(t161 - t163) + t153,
+        t80 + t153,
+        t110 + t186,
+        _runtime.wrap(t187 - t189) + t186,
+        _runtime.wrap(t190 + t193) + t186,
+        _runtime.wrap(t189 + t187) + t186,
+        _runtime.wrap(t190 - t193) + t186,
+        t80 + t186,
+        t195,
+        t196,
+        t198,
+        t199,
     )
 
 
@@ -1260,7 +1223,7 @@ def _wrist_length(psi, phi, d, gs, al):
     invalid = np.logical_not(t6 & (0.0 <= gs) & (0.0 <= al))
     t7 = -(_runtime.FEASIBILITY * (d + t2))
     t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t3)
-    t9 = np.where(invalid | np.logical_not(t8 & (t7 <= t1)), np.nan, 0.0)
+    t9 = _runtime.poison(invalid | np.logical_not(t8 & (t7 <= t1)))
     return (
         t4 / c_psi + t9,
     )
@@ -1328,7 +1291,7 @@ def _largest_yaw(phi, beta_min, d, gs, al):
     t4 = t3 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
     invalid = np.logical_not(t4 & (0.0 <= gs) & (0.0 <= al))
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    t5 = _runtime.wrap(2.0 * t2) + np.where(invalid | unreachable, np.nan, 0.0)
+    t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(invalid | unreachable)
     return (
         t5,
     )
@@ -1364,7 +1327,7 @@ def _largest_angle(beta_min, d, gs, al):
     t4 = t3 & np.isfinite(al) & (0.0 <= d) & (0.0 <= gs)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
     failed = np.logical_not(t4 & (0.0 <= al)) | unreachable
-    t5 = _runtime.wrap(2.0 * t2) + np.where(failed, np.nan, 0.0)
+    t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(failed)
     return (
         t5,
     )

@@ -10,7 +10,7 @@
 #   jacobian: 178 add, 74 compare and select, 44 divide, 260 multiply, 6 sincos, 10 sqrt
 #   determinant: 61 add, 74 compare and select, 25 divide, 99 multiply, 5 sincos, 10 sqrt
 #   singularities: 66 add, 74 compare and select, 24 divide, 89 multiply, 5 sincos, 10 sqrt
-#   ik: 222 add, 299 compare and select, 28 atan2, 39 divide, 233 multiply, 3 sincos, 57 sqrt
+#   ik: 222 add, 291 compare and select, 28 atan2, 39 divide, 233 multiply, 3 sincos, 57 sqrt
 #   wrist_length: 6 add, 26 compare and select, 1 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -94,18 +94,12 @@ _DEFAULT = Parameters()
 
 
 def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s = np.sin(theta)
-    c = np.cos(theta)
-    s2L = np.sin(theta2L)
-    c2L = np.cos(theta2L)
-    s3L = np.sin(theta3L)
-    c3L = np.cos(theta3L)
-    s2R = np.sin(theta2R)
-    c2R = np.cos(theta2R)
-    s3R = np.sin(theta3R)
-    c3R = np.cos(theta3R)
+    s1, c1 = _runtime.sincos(theta1)
+    s, c = _runtime.sincos(theta)
+    s2L, c2L = _runtime.sincos(theta2L)
+    s3L, c3L = _runtime.sincos(theta3L)
+    s2R, c2R = _runtime.sincos(theta2R)
+    s3R, c3R = _runtime.sincos(theta3R)
     t1 = lp * s
     c2L3L = c2L * c3L - s2L * s3L
     s2L3L = s2L * c3L + c2L * s3L
@@ -121,80 +115,80 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     reach = np.sqrt(r_I * r_I + h_I * h_I)
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t7 = L1 + fore
-    t8 = reach <= t7 * _runtime.VANISHING
-    c_sight = np.where(t8, 1.0, r_I / reach)
-    t9 = L1 * fore <= _runtime.VANISHING * (t7 * t7)
-    t10 = t8 | t9
-    t11 = t7 - reach
-    A = np.maximum(t11, 0.0)
-    t12 = L1 - fore
-    t13 = reach - t12
-    C = np.maximum(t13, 0.0)
-    t14 = A * C
+    folded = reach <= t7 * _runtime.VANISHING
+    c_sight = np.where(folded, 1.0, r_I / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t7 * t7)
+    t8 = folded | short
+    t9 = t7 - reach
+    A = np.maximum(t9, 0.0)
+    t10 = L1 - fore
+    t11 = reach - t10
+    C = np.maximum(t11, 0.0)
+    t12 = A * C
     S = t7 + reach
-    t15 = t12 + reach
-    B = np.maximum(t15, 0.0)
-    t16 = S * B
-    at_base = t14 + t16
-    c_base = np.where(t10, 1.0, -((t14 - t16) / at_base))
-    s_sight = np.where(t8, 0.0, h_I / reach)
+    t13 = t10 + reach
+    B = np.maximum(t13, 0.0)
+    t14 = S * B
+    at_base = t12 + t14
+    c_base = np.where(t8, 1.0, -((t12 - t14) / at_base))
+    s_sight = np.where(folded, 0.0, h_I / reach)
     bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
-    t17 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t17 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t10, 0.0, area / at_base)
+    t15 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
+    area = t15 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
+    s_base = np.where(t8, 0.0, area / at_base)
     ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(t9, 1.0, a3 / fore)
-    t18 = A * S
-    t19 = C * B
-    at_elbow = t18 + t19
-    c_elbow = np.where(t9, 1.0, -((t18 - t19) / at_elbow))
-    s_lag = np.where(t9, 0.0, L2 / fore)
-    s_elbow = np.where(t9, 0.0, area / at_elbow)
+    c_lag = np.where(short, 1.0, a3 / fore)
+    t16 = A * S
+    t17 = C * B
+    at_elbow = t16 + t17
+    c_elbow = np.where(short, 1.0, -((t16 - t17) / at_elbow))
+    s_lag = np.where(short, 0.0, L2 / fore)
+    s_elbow = np.where(short, 0.0, area / at_elbow)
     c_bend = c_lag * c_elbow - s_lag * s_elbow
     stheta2A = c_base * s_sight - c_sight * s_base
     s_bend = s_lag * c_elbow + c_lag * s_elbow
     ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    t20 = t5 - t6
+    t18 = t5 - t6
     stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t21 = t4 * ctheta23A + t20 * stheta23A
-    t22 = d * d
-    tilted = np.sqrt(t22 + t21 * t21)
-    sphi = t21 / tilted
+    t19 = t4 * ctheta23A + t18 * stheta23A
+    t20 = d * d
+    tilted = np.sqrt(t20 + t19 * t19)
+    sphi = t19 / tilted
     cphi = d / tilted
-    base = np.sqrt(t22 + t4 * t4 + t20 * t20)
-    t23 = (t4 * stheta23A - ctheta23A * t20) / base
-    t24 = base - (gs - al)
-    t25 = gs + al
-    t26 = t25 - base
-    wrist = np.sqrt(np.maximum(t24, 0.0)) * np.sqrt(np.maximum(t26, 0.0))
-    t27 = loff + lp * c + wrist
-    t28 = t23 * t27
-    t29 = t1 * sphi + cphi * t28
+    base = np.sqrt(t20 + t4 * t4 + t18 * t18)
+    t21 = (t4 * stheta23A - ctheta23A * t18) / base
+    t22 = base - (gs - al)
+    t23 = gs + al
+    t24 = t23 - base
+    wrist = np.sqrt(np.maximum(t22, 0.0)) * np.sqrt(np.maximum(t24, 0.0))
+    t25 = loff + lp * c + wrist
+    t26 = t21 * t25
+    t27 = t1 * sphi + cphi * t26
     cpsi = tilted / base
-    t30 = L2 + t27 * cpsi
-    t31 = a3 + t1 * cphi - sphi * t28
-    t32 = L1 * ctheta2A + stheta23A * t30 + ctheta23A * t31
-    t33 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t34 = t33 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t35 = t34 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t36 = t35 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t37 = t36 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t38 = t37 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t39 = t38 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t40 = t39 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t41 = -(_runtime.FEASIBILITY * t7)
-    t42 = -(_runtime.FEASIBILITY * t25)
-    t43 = (t41 <= t11) & (t41 <= t15) & (t41 <= t13) & (t42 <= t26)
-    failed = np.logical_not(t40) | np.logical_not(t43 & (t42 <= t24))
-    t44 = np.where(failed, np.nan, 0.0)
-    t45 = d1 + L1 * stheta2A - ctheta23A * t30 + stheta23A * t31
+    t28 = L2 + t25 * cpsi
+    t29 = a3 + t1 * cphi - sphi * t26
+    t30 = L1 * ctheta2A + stheta23A * t28 + ctheta23A * t29
+    t31 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t32 = t31 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t33 = t32 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t34 = t33 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t35 = t34 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t36 = t35 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t37 = t36 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t38 = t37 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t39 = -(_runtime.FEASIBILITY * t7)
+    t40 = -(_runtime.FEASIBILITY * t23)
+    t41 = (t39 <= t9) & (t39 <= t13) & (t39 <= t11) & (t40 <= t24)
+    failed = np.logical_not(t38) | np.logical_not(t41 & (t40 <= t22))
+    t42 = _runtime.poison(failed)
+    t43 = d1 + L1 * stheta2A - ctheta23A * t28 + stheta23A * t29
     return (
-        s1 * t29 + c1 * t32 + t44,
-        s1 * t32 - c1 * t29 + t44,
-        t45 + t44,
-        _runtime.wrap(-np.arctan2(t23, cpsi)) + t44,
-        _runtime.wrap(np.arctan2(sphi, cphi)) + t44,
-        _runtime.wrap(np.arctan2(s, c)) + t44,
+        s1 * t27 + c1 * t30 + t42,
+        s1 * t30 - c1 * t27 + t42,
+        t43 + t42,
+        _runtime.wrap(-np.arctan2(t21, cpsi)) + t42,
+        _runtime.wrap(np.arctan2(sphi, cphi)) + t42,
+        _runtime.wrap(np.arctan2(s, c)) + t42,
     )
 
 
@@ -226,18 +220,12 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
 def _pose(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp
 ):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2L = np.sin(theta2L)
-    c2L = np.cos(theta2L)
-    s3L = np.sin(theta3L)
-    c3L = np.cos(theta3L)
-    s2R = np.sin(theta2R)
-    c2R = np.cos(theta2R)
-    s3R = np.sin(theta3R)
-    c3R = np.cos(theta3R)
-    s = np.sin(theta)
-    c = np.cos(theta)
+    s1, c1 = _runtime.sincos(theta1)
+    s2L, c2L = _runtime.sincos(theta2L)
+    s3L, c3L = _runtime.sincos(theta3L)
+    s2R, c2R = _runtime.sincos(theta2R)
+    s3R, c3R = _runtime.sincos(theta3R)
+    s, c = _runtime.sincos(theta)
     c2L3L = c2L * c3L - s2L * s3L
     s2L3L = s2L * c3L + c2L * s3L
     t1 = a3 * c2L3L / 2.0 + (L1 * c2L / 2.0 + L2 * s2L3L / 2.0)
@@ -251,110 +239,110 @@ def _pose(
     reach = np.sqrt(r_I * r_I + h_I * h_I)
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t5 = L1 + fore
-    t6 = reach <= t5 * _runtime.VANISHING
-    c_sight = np.where(t6, 1.0, r_I / reach)
-    t7 = L1 * fore <= _runtime.VANISHING * (t5 * t5)
-    t8 = t6 | t7
-    t9 = t5 - reach
-    A = np.maximum(t9, 0.0)
-    t10 = L1 - fore
-    t11 = reach - t10
-    C = np.maximum(t11, 0.0)
-    t12 = A * C
+    folded = reach <= t5 * _runtime.VANISHING
+    c_sight = np.where(folded, 1.0, r_I / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t5 * t5)
+    t6 = folded | short
+    t7 = t5 - reach
+    A = np.maximum(t7, 0.0)
+    t8 = L1 - fore
+    t9 = reach - t8
+    C = np.maximum(t9, 0.0)
+    t10 = A * C
     S = t5 + reach
-    t13 = t10 + reach
-    B = np.maximum(t13, 0.0)
-    t14 = S * B
-    at_base = t12 + t14
-    c_base = np.where(t8, 1.0, -((t12 - t14) / at_base))
-    s_sight = np.where(t6, 0.0, h_I / reach)
+    t11 = t8 + reach
+    B = np.maximum(t11, 0.0)
+    t12 = S * B
+    at_base = t10 + t12
+    c_base = np.where(t6, 1.0, -((t10 - t12) / at_base))
+    s_sight = np.where(folded, 0.0, h_I / reach)
     bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
-    t15 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t15 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t8, 0.0, area / at_base)
+    t13 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
+    area = t13 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
+    s_base = np.where(t6, 0.0, area / at_base)
     ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(t7, 1.0, a3 / fore)
-    t16 = A * S
-    t17 = C * B
-    at_elbow = t16 + t17
-    c_elbow = np.where(t7, 1.0, -((t16 - t17) / at_elbow))
-    s_lag = np.where(t7, 0.0, L2 / fore)
-    s_elbow = np.where(t7, 0.0, area / at_elbow)
+    c_lag = np.where(short, 1.0, a3 / fore)
+    t14 = A * S
+    t15 = C * B
+    at_elbow = t14 + t15
+    c_elbow = np.where(short, 1.0, -((t14 - t15) / at_elbow))
+    s_lag = np.where(short, 0.0, L2 / fore)
+    s_elbow = np.where(short, 0.0, area / at_elbow)
     c_bend = c_lag * c_elbow - s_lag * s_elbow
     stheta2A = c_base * s_sight - c_sight * s_base
     s_bend = s_lag * c_elbow + c_lag * s_elbow
     ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    t18 = c1 * ctheta23A
-    t19 = d * d
-    t20 = t1 - t2
-    t21 = t3 - t4
+    t16 = c1 * ctheta23A
+    t17 = d * d
+    t18 = t1 - t2
+    t19 = t3 - t4
     stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t22 = t20 * ctheta23A + t21 * stheta23A
-    tilted = np.sqrt(t19 + t22 * t22)
+    t20 = t18 * ctheta23A + t19 * stheta23A
+    tilted = np.sqrt(t17 + t20 * t20)
     cphi = d / tilted
-    sphi = t22 / tilted
-    base = np.sqrt(t19 + t20 * t20 + t21 * t21)
-    t23 = (t20 * stheta23A - ctheta23A * t21) / base
-    t24 = sphi * t23
-    hand_11 = c * cphi + s * t24
+    sphi = t20 / tilted
+    base = np.sqrt(t17 + t18 * t18 + t19 * t19)
+    t21 = (t18 * stheta23A - ctheta23A * t19) / base
+    t22 = sphi * t21
+    hand_11 = c * cphi + s * t22
     cpsi = tilted / base
-    t25 = s * cpsi
-    t26 = c1 * stheta23A
-    t27 = t23 * cphi
-    t28 = c * sphi - s * t27
-    t29 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t30 = t29 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t31 = t30 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t32 = t31 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t33 = t32 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t34 = t33 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t35 = t34 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t36 = t35 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t37 = -(_runtime.FEASIBILITY * t5)
-    t38 = gs + al
-    t39 = -(_runtime.FEASIBILITY * t38)
-    t40 = t38 - base
-    t41 = (t37 <= t9) & (t37 <= t13) & (t37 <= t11) & (t39 <= t40)
-    t42 = base - (gs - al)
-    failed = np.logical_not(t36) | np.logical_not(t41 & (t39 <= t42))
-    t43 = np.where(failed, np.nan, 0.0)
+    t23 = s * cpsi
+    t24 = c1 * stheta23A
+    t25 = t21 * cphi
+    t26 = c * sphi - s * t25
+    t27 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t28 = t27 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t29 = t28 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t30 = t29 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t31 = t30 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t32 = t31 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t33 = t32 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t34 = t33 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t35 = -(_runtime.FEASIBILITY * t5)
+    t36 = gs + al
+    t37 = -(_runtime.FEASIBILITY * t36)
+    t38 = t36 - base
+    t39 = (t35 <= t7) & (t35 <= t11) & (t35 <= t9) & (t37 <= t38)
+    t40 = base - (gs - al)
+    failed = np.logical_not(t34) | np.logical_not(t39 & (t37 <= t40))
+    t41 = _runtime.poison(failed)
     hand_22 = cpsi * cphi
-    t44 = cpsi * sphi
+    t42 = cpsi * sphi
     hand_33 = c * cpsi
-    hand_23 = s * sphi + c * t27
-    hand_13 = s * cphi - c * t24
-    t45 = t26 * hand_33 + s1 * hand_23 + t18 * hand_13 + t43
-    t46 = lp * s
-    wrist = np.sqrt(np.maximum(t42, 0.0)) * np.sqrt(np.maximum(t40, 0.0))
-    t47 = loff + lp * c + wrist
-    t48 = t46 * sphi + t27 * t47
-    t49 = L2 + cpsi * t47
-    t50 = a3 + t46 * cphi - t24 * t47
-    t51 = L1 * ctheta2A + stheta23A * t49 + ctheta23A * t50
-    t52 = s1 * ctheta23A
-    t53 = s1 * stheta23A
-    t54 = -(c1 * hand_22 + t44 * t52 + t23 * t53) + t43
-    t55 = hand_33 * t53 - c1 * hand_23 + hand_13 * t52 + t43
-    t56 = stheta23A * hand_13 - ctheta23A * hand_33 + t43
-    t57 = d1 + L1 * stheta2A - ctheta23A * t49 + stheta23A * t50
-    t58 = 0.0 + t43
+    hand_23 = s * sphi + c * t25
+    hand_13 = s * cphi - c * t22
+    t43 = t24 * hand_33 + s1 * hand_23 + t16 * hand_13 + t41
+    t44 = lp * s
+    wrist = np.sqrt(np.maximum(t40, 0.0)) * np.sqrt(np.maximum(t38, 0.0))
+    t45 = loff + lp * c + wrist
+    t46 = t44 * sphi + t25 * t45
+    t47 = L2 + cpsi * t45
+    t48 = a3 + t44 * cphi - t22 * t45
+    t49 = L1 * ctheta2A + stheta23A * t47 + ctheta23A * t48
+    t50 = s1 * ctheta23A
+    t51 = s1 * stheta23A
+    t52 = -(c1 * hand_22 + t42 * t50 + t21 * t51) + t41
+    t53 = hand_33 * t51 - c1 * hand_23 + hand_13 * t50 + t41
+    t54 = stheta23A * hand_13 - ctheta23A * hand_33 + t41
+    t55 = d1 + L1 * stheta2A - ctheta23A * t47 + stheta23A * t48
+    t56 = 0.0 + t41
     return (
-        t18 * hand_11 - (t25 * t26 - s1 * t28) + t43,
-        s1 * hand_22 - t18 * t44 - t26 * t23 + t43,
-        t45,
-        s1 * t48 + c1 * t51 + t43,
-        hand_11 * t52 - (t25 * t53 + c1 * t28) + t43,
+        t16 * hand_11 - (t23 * t24 - s1 * t26) + t41,
+        s1 * hand_22 - t16 * t42 - t24 * t21 + t41,
+        t43,
+        s1 * t46 + c1 * t49 + t41,
+        hand_11 * t50 - (t23 * t51 + c1 * t26) + t41,
+        t52,
+        t53,
+        s1 * t49 - c1 * t46 + t41,
+        ctheta23A * t23 + stheta23A * hand_11 + t41,
+        ctheta23A * t21 - stheta23A * t42 + t41,
         t54,
-        t55,
-        s1 * t51 - c1 * t48 + t43,
-        ctheta23A * t25 + stheta23A * hand_11 + t43,
-        ctheta23A * t23 - stheta23A * t44 + t43,
+        t55 + t41,
         t56,
-        t57 + t43,
-        t58,
-        t58,
-        t58,
-        1.0 + t43,
+        t56,
+        t56,
+        1.0 + t41,
     )
 
 
@@ -384,16 +372,11 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
 
 
 def _arm_tips(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2, a3, d1, d):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2R = np.sin(theta2R)
-    c2R = np.cos(theta2R)
-    s3R = np.sin(theta3R)
-    c3R = np.cos(theta3R)
-    s2L = np.sin(theta2L)
-    c2L = np.cos(theta2L)
-    s3L = np.sin(theta3L)
-    c3L = np.cos(theta3L)
+    s1, c1 = _runtime.sincos(theta1)
+    s2R, c2R = _runtime.sincos(theta2R)
+    s3R, c3R = _runtime.sincos(theta3R)
+    s2L, c2L = _runtime.sincos(theta2L)
+    s3L, c3L = _runtime.sincos(theta3L)
     t1 = d * s1
     s2R3R = s2R * c3R + c2R * s3R
     c2R3R = c2R * c3R - s2R * s3R
@@ -434,16 +417,11 @@ def arm_tips(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 
 
 def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2, a3, d1):
-    s2L = np.sin(theta2L)
-    c2L = np.cos(theta2L)
-    s2R = np.sin(theta2R)
-    c2R = np.cos(theta2R)
-    s3L = np.sin(theta3L)
-    c3L = np.cos(theta3L)
-    s3R = np.sin(theta3R)
-    c3R = np.cos(theta3R)
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
+    s2L, c2L = _runtime.sincos(theta2L)
+    s2R, c2R = _runtime.sincos(theta2R)
+    s3L, c3L = _runtime.sincos(theta3L)
+    s3R, c3R = _runtime.sincos(theta3R)
+    s1, c1 = _runtime.sincos(theta1)
     s2L3L = s2L * c3L + c2L * s3L
     t1 = L1 * c2L / 2.0 + L1 * c2R / 2.0 + L2 * s2L3L / 2.0
     s2R3R = s2R * c3R + c2R * s3R
@@ -483,18 +461,12 @@ def invariant_point(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = N
 def _jacobian(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s = np.sin(theta)
-    c = np.cos(theta)
-    s2L = np.sin(theta2L)
-    c2L = np.cos(theta2L)
-    s3L = np.sin(theta3L)
-    c3L = np.cos(theta3L)
-    s2R = np.sin(theta2R)
-    c2R = np.cos(theta2R)
-    s3R = np.sin(theta3R)
-    c3R = np.cos(theta3R)
+    s1, c1 = _runtime.sincos(theta1)
+    s, c = _runtime.sincos(theta)
+    s2L, c2L = _runtime.sincos(theta2L)
+    s3L, c3L = _runtime.sincos(theta3L)
+    s2R, c2R = _runtime.sincos(theta2R)
+    s3R, c3R = _runtime.sincos(theta3R)
     t1 = lp * s
     s2L3L = s2L * c3L + c2L * s3L
     c2L3L = c2L * c3L - s2L * s3L
@@ -514,194 +486,194 @@ def _jacobian(
     reach = np.sqrt(r_I * r_I + h_I * h_I)
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t4 = L1 + fore
-    t5 = reach <= t4 * _runtime.VANISHING
-    c_sight = np.where(t5, 1.0, r_I / reach)
-    t6 = L1 * fore <= _runtime.VANISHING * (t4 * t4)
-    t7 = t5 | t6
-    t8 = t4 - reach
-    A = np.maximum(t8, 0.0)
-    t9 = L1 - fore
-    t10 = reach - t9
-    C = np.maximum(t10, 0.0)
-    t11 = A * C
+    folded = reach <= t4 * _runtime.VANISHING
+    c_sight = np.where(folded, 1.0, r_I / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t4 * t4)
+    t5 = folded | short
+    t6 = t4 - reach
+    A = np.maximum(t6, 0.0)
+    t7 = L1 - fore
+    t8 = reach - t7
+    C = np.maximum(t8, 0.0)
+    t9 = A * C
     S = t4 + reach
-    t12 = reach + t9
-    B = np.maximum(t12, 0.0)
-    t13 = S * B
-    at_base = t11 + t13
-    c_base = np.where(t7, 1.0, -((t11 - t13) / at_base))
-    s_sight = np.where(t5, 0.0, h_I / reach)
+    t10 = reach + t7
+    B = np.maximum(t10, 0.0)
+    t11 = S * B
+    at_base = t9 + t11
+    c_base = np.where(t5, 1.0, -((t9 - t11) / at_base))
+    s_sight = np.where(folded, 0.0, h_I / reach)
     bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
-    t14 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t14 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t7, 0.0, area / at_base)
+    t12 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
+    area = t12 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
+    s_base = np.where(t5, 0.0, area / at_base)
     ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(t6, 1.0, a3 / fore)
-    t15 = A * S
-    t16 = C * B
-    at_elbow = t15 + t16
-    c_elbow = np.where(t6, 1.0, -((t15 - t16) / at_elbow))
-    s_lag = np.where(t6, 0.0, L2 / fore)
-    s_elbow = np.where(t6, 0.0, area / at_elbow)
+    c_lag = np.where(short, 1.0, a3 / fore)
+    t13 = A * S
+    t14 = C * B
+    at_elbow = t13 + t14
+    c_elbow = np.where(short, 1.0, -((t13 - t14) / at_elbow))
+    s_lag = np.where(short, 0.0, L2 / fore)
+    s_elbow = np.where(short, 0.0, area / at_elbow)
     c_bend = c_lag * c_elbow - s_lag * s_elbow
     stheta2A = s_sight * c_base - c_sight * s_base
     s_bend = s_lag * c_elbow + c_lag * s_elbow
     ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    t17 = gap_14 - t3
+    t15 = gap_14 - t3
     stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t18 = t2 * ctheta23A + t17 * stheta23A
-    t19 = d * d
-    t20 = t18 * t18
-    tilted = np.sqrt(t19 + t20)
-    sphi = t18 / tilted
-    t21 = t2 * stheta23A - t17 * ctheta23A
-    base = np.sqrt(t19 + t2 * t2 + t17 * t17)
-    t22 = t21 / base
+    t16 = t2 * ctheta23A + t15 * stheta23A
+    t17 = d * d
+    t18 = t16 * t16
+    tilted = np.sqrt(t17 + t18)
+    sphi = t16 / tilted
+    t19 = t2 * stheta23A - t15 * ctheta23A
+    base = np.sqrt(t17 + t2 * t2 + t15 * t15)
+    t20 = t19 / base
     cphi = d / tilted
-    t23 = t22 * cphi
-    t24 = lp * c
-    t25 = base - (gs - al)
-    t26 = gs + al
-    t27 = t26 - base
-    wrist = np.sqrt(np.maximum(t25, 0.0)) * np.sqrt(np.maximum(t27, 0.0))
-    t28 = loff + t24 + wrist
-    t29 = t1 * sphi + t23 * t28
+    t21 = t20 * cphi
+    t22 = lp * c
+    t23 = base - (gs - al)
+    t24 = gs + al
+    t25 = t24 - base
+    wrist = np.sqrt(np.maximum(t23, 0.0)) * np.sqrt(np.maximum(t25, 0.0))
+    t26 = loff + t22 + wrist
+    t27 = t1 * sphi + t21 * t26
     outer_32 = L1 * ctheta2A
     cpsi = tilted / base
-    t30 = cpsi * t28
-    t31 = L2 + t30
-    t32 = sphi * t22
-    t33 = t1 * cphi - t32 * t28
-    t34 = a3 + t33
-    outer_33 = stheta23A * t31 + ctheta23A * t34
-    t35 = outer_32 + outer_33
-    t36 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t37 = t36 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t38 = t37 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t39 = t38 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t40 = t39 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t41 = t40 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t42 = t41 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t43 = -(_runtime.FEASIBILITY * t4)
-    t44 = -(_runtime.FEASIBILITY * t26)
-    t45 = (t43 <= t8) & (t43 <= t12) & (t43 <= t10) & (t44 <= t27)
-    failed = np.logical_not(t42 & (0.0 <= lp)) | np.logical_not(t45 & (t44 <= t25))
-    t46 = np.where(failed, np.nan, 0.0)
+    t28 = cpsi * t26
+    t29 = L2 + t28
+    t30 = sphi * t20
+    t31 = t1 * cphi - t30 * t26
+    t32 = a3 + t31
+    outer_33 = stheta23A * t29 + ctheta23A * t32
+    t33 = outer_32 + outer_33
+    t34 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t35 = t34 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t36 = t35 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t37 = t36 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t38 = t37 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t39 = t38 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t40 = t39 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t41 = -(_runtime.FEASIBILITY * t4)
+    t42 = -(_runtime.FEASIBILITY * t24)
+    t43 = (t41 <= t6) & (t41 <= t10) & (t41 <= t8) & (t42 <= t25)
+    failed = np.logical_not(t40 & (0.0 <= lp)) | np.logical_not(t43 & (t42 <= t23))
+    t44 = _runtime.poison(failed)
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t47 = L2 * ctheta23A - a3 * stheta23A
-    t48 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t49 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t50 = L1 * (t48 + t49)
-    rate_12 = (t3 * virtual_11 + mid_22 * t47) / t50
-    t51 = L1 * stheta2A
-    t52 = c1 * t51
-    t53 = (t3 * outer_32 - mid_22 * t51) / t50
-    t54 = t3 * ctheta23A - mid_22 * stheta23A + t21 * t53
-    t55 = 1.0 / (d * (1.0 + t20 / t19))
-    inner_52 = t54 * t55
-    t56 = stheta23A * cpsi
-    t57 = t56 - ctheta23A * t32
-    t58 = s1 * t23 + c1 * t57
-    t59 = d * (gs - d / (cphi * cpsi))
-    t60 = sphi * t59
-    t61 = cpsi * (cphi * cphi) * wrist
-    t62 = ctheta23A * t29
-    t63 = s1 * t33 + t58 * t60 / t61 - c1 * t62
-    t64 = mid_22 * ctheta23A + t3 * stheta23A - t18 * t53
-    t65 = tilted * tilted
-    t66 = 1.0 + t21 * t21 / t65
-    turn_12 = 1.0 / (tilted * t66)
-    t67 = t18 * t21 / (t66 * (tilted * t65))
-    t68 = t64 * turn_12 - t54 * t67
-    t69 = t22 * t59
-    t70 = cphi * (cpsi * cpsi) * wrist
-    t71 = cphi * t30
-    t72 = t22 * t28
-    t73 = sphi * t30
-    t74 = stheta23A * t72 + ctheta23A * t73
-    t75 = t58 * t69 / t70 + s1 * t71 - c1 * t74
-    t76 = ctheta23A * t31 - stheta23A * t34
-    outer_13 = c1 * t76
-    t77 = rate_12 * t52 - inner_52 * t63 - t68 * t75 + t53 * outer_13
-    t78 = (mid_13 * virtual_11 - mid_23 * t47) / t50
-    rate_23 = (mid_13 * outer_32 + mid_23 * t51) / t50
-    line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t21 * rate_23
-    t79 = t55 * line_13
-    t80 = mid_23 * ctheta23A - mid_13 * stheta23A + t18 * rate_23
-    t81 = turn_12 * t80 + t67 * line_13
-    t82 = t52 * t78 - t79 * t63 + t81 * t75 + rate_23 * outer_13
-    rate_14 = (gap_14 * virtual_11 + mid_24 * t47) / t50
-    t83 = (gap_14 * outer_32 - mid_24 * t51) / t50
-    line_14 = gap_14 * ctheta23A - mid_24 * stheta23A - t21 * t83
-    t84 = t55 * line_14
-    line_24 = mid_24 * ctheta23A + gap_14 * stheta23A + t18 * t83
-    inner_44 = turn_12 * line_24 - t67 * line_14
-    t85 = t52 * rate_14 + t84 * t63 + inner_44 * t75 + t83 * outer_13
-    t86 = (mid_15 * virtual_11 - mid_25 * t47) / t50
-    rate_25 = (mid_15 * outer_32 + mid_25 * t51) / t50
-    t87 = mid_15 * ctheta23A + mid_25 * stheta23A - t21 * rate_25
-    inner_55 = t55 * t87
-    line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t18 * rate_25
-    inner_45 = turn_12 * line_25 + t67 * t87
-    t88 = t52 * t86 + inner_55 * t63 - inner_45 * t75 + rate_25 * outer_13
-    t89 = t1 * t32 + t24 * cphi
-    t90 = ctheta23A * t89 - t1 * t56
-    t91 = t1 * t23 - t24 * sphi
-    t92 = s1 * t51
-    t93 = c1 * t23 - s1 * t57
-    t94 = c1 * t33 + t60 * t93 / t61 + s1 * t62
-    outer_24 = t69 * t93 / t70 + c1 * t71 + s1 * t74
-    t95 = rate_12 * t92 + inner_52 * t94 + t68 * outer_24
-    outer_23 = s1 * t76
-    t96 = t78 * t92 + t79 * t94 - t81 * outer_24 + rate_23 * outer_23
-    t97 = rate_14 * t92 - t84 * t94 - inner_44 * outer_24
-    t98 = t86 * t92 - inner_55 * t94 + inner_45 * outer_24
-    t99 = 0.0 + t46
-    t100 = ctheta23A * cpsi
-    t101 = t100 + stheta23A * t32
-    t102 = stheta23A * t29 + t60 * t101 / t61
-    outer_34 = t69 * t101 / t70 - ctheta23A * t72 + stheta23A * t73
-    t103 = outer_32 * rate_12 - inner_52 * t102 - t68 * outer_34
-    t104 = rate_23 * outer_33 - (outer_32 * t78 - t79 * t102 + t81 * outer_34)
-    t105 = outer_32 * rate_14 + t84 * t102 + inner_44 * outer_34
-    t106 = outer_32 * t86 + inner_55 * t102 - inner_45 * outer_34
+    t45 = L2 * ctheta23A - a3 * stheta23A
+    t46 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t47 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t48 = L1 * (t46 + t47)
+    rate_12 = (t3 * virtual_11 + mid_22 * t45) / t48
+    t49 = L1 * stheta2A
+    t50 = c1 * t49
+    t51 = (t3 * outer_32 - mid_22 * t49) / t48
+    t52 = t3 * ctheta23A - mid_22 * stheta23A + t19 * t51
+    t53 = 1.0 / (d * (1.0 + t18 / t17))
+    inner_52 = t52 * t53
+    t54 = stheta23A * cpsi
+    t55 = t54 - ctheta23A * t30
+    t56 = s1 * t21 + c1 * t55
+    t57 = d * (gs - d / (cphi * cpsi))
+    t58 = sphi * t57
+    t59 = cpsi * (cphi * cphi) * wrist
+    t60 = ctheta23A * t27
+    t61 = s1 * t31 + t56 * t58 / t59 - c1 * t60
+    t62 = mid_22 * ctheta23A + t3 * stheta23A - t16 * t51
+    t63 = tilted * tilted
+    t64 = 1.0 + t19 * t19 / t63
+    turn_12 = 1.0 / (tilted * t64)
+    t65 = t16 * t19 / (t64 * (tilted * t63))
+    t66 = t62 * turn_12 - t52 * t65
+    t67 = t20 * t57
+    t68 = cphi * (cpsi * cpsi) * wrist
+    t69 = cphi * t28
+    t70 = t20 * t26
+    t71 = sphi * t28
+    t72 = stheta23A * t70 + ctheta23A * t71
+    t73 = t56 * t67 / t68 + s1 * t69 - c1 * t72
+    t74 = ctheta23A * t29 - stheta23A * t32
+    outer_13 = c1 * t74
+    t75 = rate_12 * t50 - inner_52 * t61 - t66 * t73 + t51 * outer_13
+    t76 = (mid_13 * virtual_11 - mid_23 * t45) / t48
+    rate_23 = (mid_13 * outer_32 + mid_23 * t49) / t48
+    line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t19 * rate_23
+    t77 = t53 * line_13
+    t78 = mid_23 * ctheta23A - mid_13 * stheta23A + t16 * rate_23
+    t79 = turn_12 * t78 + t65 * line_13
+    t80 = t50 * t76 - t77 * t61 + t79 * t73 + rate_23 * outer_13
+    rate_14 = (gap_14 * virtual_11 + mid_24 * t45) / t48
+    t81 = (gap_14 * outer_32 - mid_24 * t49) / t48
+    line_14 = gap_14 * ctheta23A - mid_24 * stheta23A - t19 * t81
+    t82 = t53 * line_14
+    line_24 = mid_24 * ctheta23A + gap_14 * stheta23A + t16 * t81
+    inner_44 = turn_12 * line_24 - t65 * line_14
+    t83 = t50 * rate_14 + t82 * t61 + inner_44 * t73 + t81 * outer_13
+    t84 = (mid_15 * virtual_11 - mid_25 * t45) / t48
+    rate_25 = (mid_15 * outer_32 + mid_25 * t49) / t48
+    t85 = mid_15 * ctheta23A + mid_25 * stheta23A - t19 * rate_25
+    inner_55 = t53 * t85
+    line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t16 * rate_25
+    inner_45 = turn_12 * line_25 + t65 * t85
+    t86 = t50 * t84 + inner_55 * t61 - inner_45 * t73 + rate_25 * outer_13
+    t87 = t1 * t30 + t22 * cphi
+    t88 = ctheta23A * t87 - t1 * t54
+    t89 = t1 * t21 - t22 * sphi
+    t90 = s1 * t49
+    t91 = c1 * t21 - s1 * t55
+    t92 = c1 * t31 + t58 * t91 / t59 + s1 * t60
+    outer_24 = t67 * t91 / t68 + c1 * t69 + s1 * t72
+    t93 = rate_12 * t90 + inner_52 * t92 + t66 * outer_24
+    outer_23 = s1 * t74
+    t94 = t76 * t90 + t77 * t92 - t79 * outer_24 + rate_23 * outer_23
+    t95 = rate_14 * t90 - t82 * t92 - inner_44 * outer_24
+    t96 = t84 * t90 - inner_55 * t92 + inner_45 * outer_24
+    t97 = 0.0 + t44
+    t98 = ctheta23A * cpsi
+    t99 = t98 + stheta23A * t30
+    t100 = stheta23A * t27 + t58 * t99 / t59
+    outer_34 = t67 * t99 / t68 - ctheta23A * t70 + stheta23A * t71
+    t101 = outer_32 * rate_12 - inner_52 * t100 - t66 * outer_34
+    t102 = rate_23 * outer_33 - (outer_32 * t76 - t77 * t100 + t79 * outer_34)
+    t103 = outer_32 * rate_14 + t82 * t100 + inner_44 * outer_34
+    t104 = outer_32 * t84 + inner_55 * t100 - inner_45 * outer_34
     return (
-        c1 * t29 - s1 * t35 + t46,
-        -t77 + t46,
-        t82 + t46,
-        -t85 + t46,
-        t88 + t46,
-        c1 * t90 - s1 * t91 + t46,
-        s1 * t29 + c1 * t35 + t46,
-        -(t95 + t53 * outer_23) + t46,
-        t96 + t46,
-        -(t97 + t83 * outer_23) + t46,
-        t98 + rate_25 * outer_23 + t46,
-        c1 * t91 + s1 * t90 + t46,
-        t99,
-        t103 - t53 * outer_33 + t46,
-        t104 + t46,
-        t105 - t83 * outer_33 + t46,
-        rate_25 * outer_33 - t106 + t46,
-        stheta23A * t89 + t1 * t100 + t46,
-        t99,
-        -t68 + t46,
-        -t81 + t46,
-        inner_44 + t46,
-        inner_45 + t46,
-        t99,
-        t99,
-        inner_52 + t46,
-        -t79 + t46,
-        -t84 + t46,
-        inner_55 + t46,
-        t99,
-        t99,
-        t99,
-        t99,
-        t99,
-        t99,
-        1.0 + t46,
+        c1 * t27 - s1 * t33 + t44,
+        -t75 + t44,
+        t80 + t44,
+        -t83 + t44,
+        t86 + t44,
+        c1 * t88 - s1 * t89 + t44,
+        s1 * t27 + c1 * t33 + t44,
+        -(t93 + t51 * outer_23) + t44,
+        t94 + t44,
+        -(t95 + t81 * outer_23) + t44,
+        t96 + rate_25 * outer_23 + t44,
+        c1 * t89 + s1 * t88 + t44,
+        t97,
+        t101 - t51 * outer_33 + t44,
+        t102 + t44,
+        t103 - t81 * outer_33 + t44,
+        rate_25 * outer_33 - t104 + t44,
+        stheta23A * t87 + t1 * t98 + t44,
+        t97,
+        -t66 + t44,
+        -t79 + t44,
+        inner_44 + t44,
+        inner_45 + t44,
+        t97,
+        t97,
+        inner_52 + t44,
+        -t77 + t44,
+        -t82 + t44,
+        inner_55 + t44,
+        t97,
+        t97,
+        t97,
+        t97,
+        t97,
+        t97,
+        1.0 + t44,
     )
 
 
@@ -734,16 +706,11 @@ def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 def _determinant(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2R = np.sin(theta2R)
-    c2R = np.cos(theta2R)
-    s3R = np.sin(theta3R)
-    c3R = np.cos(theta3R)
-    s2L = np.sin(theta2L)
-    c2L = np.cos(theta2L)
-    s3L = np.sin(theta3L)
-    c3L = np.cos(theta3L)
-    s = np.sin(theta)
-    c = np.cos(theta)
+    s2R, c2R = _runtime.sincos(theta2R)
+    s3R, c3R = _runtime.sincos(theta3R)
+    s2L, c2L = _runtime.sincos(theta2L)
+    s3L, c3L = _runtime.sincos(theta3L)
+    s, c = _runtime.sincos(theta)
     s2R3R = s2R * c3R + c2R * s3R
     c2R3R = c2R * c3R - s2R * s3R
     bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
@@ -759,72 +726,71 @@ def _determinant(
     reach = np.sqrt(r_I * r_I + h_I * h_I)
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t6 = L1 + fore
-    t7 = reach <= t6 * _runtime.VANISHING
-    c_sight = np.where(t7, 1.0, r_I / reach)
-    t8 = L1 * fore <= _runtime.VANISHING * (t6 * t6)
-    t9 = t7 | t8
-    t10 = t6 - reach
-    A = np.maximum(t10, 0.0)
-    t11 = L1 - fore
-    t12 = reach - t11
-    C = np.maximum(t12, 0.0)
-    t13 = A * C
+    folded = reach <= t6 * _runtime.VANISHING
+    c_sight = np.where(folded, 1.0, r_I / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t6 * t6)
+    t7 = folded | short
+    t8 = t6 - reach
+    A = np.maximum(t8, 0.0)
+    t9 = L1 - fore
+    t10 = reach - t9
+    C = np.maximum(t10, 0.0)
+    t11 = A * C
     S = t6 + reach
-    t14 = t11 + reach
-    B = np.maximum(t14, 0.0)
-    t15 = S * B
-    at_base = t13 + t15
-    c_base = np.where(t9, 1.0, -((t13 - t15) / at_base))
-    s_sight = np.where(t7, 0.0, h_I / reach)
-    t16 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t16 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t9, 0.0, area / at_base)
+    t12 = t9 + reach
+    B = np.maximum(t12, 0.0)
+    t13 = S * B
+    at_base = t11 + t13
+    c_base = np.where(t7, 1.0, -((t11 - t13) / at_base))
+    s_sight = np.where(folded, 0.0, h_I / reach)
+    t14 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
+    area = t14 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
+    s_base = np.where(t7, 0.0, area / at_base)
     ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(t8, 1.0, a3 / fore)
-    t17 = A * S
-    t18 = C * B
-    at_elbow = t17 + t18
-    c_elbow = np.where(t8, 1.0, -((t17 - t18) / at_elbow))
-    s_lag = np.where(t8, 0.0, L2 / fore)
-    s_elbow = np.where(t8, 0.0, area / at_elbow)
+    c_lag = np.where(short, 1.0, a3 / fore)
+    t15 = A * S
+    t16 = C * B
+    at_elbow = t15 + t16
+    c_elbow = np.where(short, 1.0, -((t15 - t16) / at_elbow))
+    s_lag = np.where(short, 0.0, L2 / fore)
+    s_elbow = np.where(short, 0.0, area / at_elbow)
     c_bend = c_lag * c_elbow - s_lag * s_elbow
     stheta2A = c_base * s_sight - c_sight * s_base
     s_bend = s_lag * c_elbow + c_lag * s_elbow
     ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
     stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t19 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t20 = d * d
-    t21 = t2 - t3
-    t22 = t4 - t5
-    t23 = t21 * ctheta23A + stheta23A * t22
-    tilted = np.sqrt(t20 + t23 * t23)
-    base = np.sqrt(t20 + t21 * t21 + t22 * t22)
-    t24 = base - (gs - al)
-    t25 = gs + al
-    t26 = t25 - base
-    wrist = np.sqrt(np.maximum(t24, 0.0)) * np.sqrt(np.maximum(t26, 0.0))
-    t27 = loff + lp * c + wrist
-    t28 = L2 + tilted / base * t27
-    t29 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    t30 = t27 * ((t21 * stheta23A - ctheta23A * t22) / base)
-    t31 = a3 + lp * s * (d / tilted) - t30 * (t23 / tilted)
-    t32 = d * bend * (L1 * L1) * t1 * (t19 * t28 + t29 * t31)
-    t33 = L1 * ctheta2A + ctheta23A * t31 + stheta23A * t28
-    t34 = 4.0 * tilted * (base * base) * (L2 * t19 + a3 * t29)
-    t35 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t36 = t35 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t37 = t36 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t38 = t37 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t39 = t38 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t40 = t39 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t41 = t40 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t42 = -(_runtime.FEASIBILITY * t6)
-    t43 = -(_runtime.FEASIBILITY * t25)
-    t44 = (t42 <= t10) & (t42 <= t14) & (t42 <= t12) & (t43 <= t26)
-    failed = np.logical_not(t41 & (0.0 <= lp)) | np.logical_not(t44 & (t43 <= t24))
-    t45 = t32 * t33 / t34 + np.where(failed, np.nan, 0.0)
+    t17 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t18 = d * d
+    t19 = t2 - t3
+    t20 = t4 - t5
+    t21 = t19 * ctheta23A + stheta23A * t20
+    tilted = np.sqrt(t18 + t21 * t21)
+    base = np.sqrt(t18 + t19 * t19 + t20 * t20)
+    t22 = base - (gs - al)
+    t23 = gs + al
+    t24 = t23 - base
+    wrist = np.sqrt(np.maximum(t22, 0.0)) * np.sqrt(np.maximum(t24, 0.0))
+    t25 = loff + lp * c + wrist
+    t26 = L2 + tilted / base * t25
+    t27 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t28 = t25 * ((t19 * stheta23A - ctheta23A * t20) / base)
+    t29 = a3 + lp * s * (d / tilted) - t28 * (t21 / tilted)
+    t30 = d * bend * (L1 * L1) * t1 * (t17 * t26 + t27 * t29)
+    t31 = L1 * ctheta2A + ctheta23A * t29 + stheta23A * t26
+    t32 = 4.0 * tilted * (base * base) * (L2 * t17 + a3 * t27)
+    t33 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t34 = t33 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t35 = t34 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t36 = t35 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t37 = t36 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t38 = t37 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t39 = t38 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t40 = -(_runtime.FEASIBILITY * t6)
+    t41 = -(_runtime.FEASIBILITY * t23)
+    t42 = (t40 <= t8) & (t40 <= t12) & (t40 <= t10) & (t41 <= t24)
+    failed = np.logical_not(t39 & (0.0 <= lp)) | np.logical_not(t42 & (t41 <= t22))
     return (
-        t45,
+        t30 * t31 / t32 + _runtime.poison(failed),
     )
 
 
@@ -855,16 +821,11 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 def _singularities(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2L = np.sin(theta2L)
-    c2L = np.cos(theta2L)
-    s3L = np.sin(theta3L)
-    c3L = np.cos(theta3L)
-    s2R = np.sin(theta2R)
-    c2R = np.cos(theta2R)
-    s3R = np.sin(theta3R)
-    c3R = np.cos(theta3R)
-    s = np.sin(theta)
-    c = np.cos(theta)
+    s2L, c2L = _runtime.sincos(theta2L)
+    s3L, c3L = _runtime.sincos(theta3L)
+    s2R, c2R = _runtime.sincos(theta2R)
+    s3R, c3R = _runtime.sincos(theta3R)
+    s, c = _runtime.sincos(theta)
     c2L3L = c2L * c3L - s2L * s3L
     s2L3L = s2L * c3L + c2L * s3L
     t1 = a3 * c2L3L / 2.0 + (L1 * c2L / 2.0 + L2 * s2L3L / 2.0)
@@ -878,77 +839,77 @@ def _singularities(
     reach = np.sqrt(r_I * r_I + h_I * h_I)
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t5 = L1 + fore
-    t6 = reach <= t5 * _runtime.VANISHING
-    c_sight = np.where(t6, 1.0, r_I / reach)
-    t7 = L1 * fore <= _runtime.VANISHING * (t5 * t5)
-    t8 = t6 | t7
-    t9 = t5 - reach
-    A = np.maximum(t9, 0.0)
-    t10 = L1 - fore
-    t11 = reach - t10
-    C = np.maximum(t11, 0.0)
-    t12 = A * C
+    folded = reach <= t5 * _runtime.VANISHING
+    c_sight = np.where(folded, 1.0, r_I / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t5 * t5)
+    t6 = folded | short
+    t7 = t5 - reach
+    A = np.maximum(t7, 0.0)
+    t8 = L1 - fore
+    t9 = reach - t8
+    C = np.maximum(t9, 0.0)
+    t10 = A * C
     S = t5 + reach
-    t13 = t10 + reach
-    B = np.maximum(t13, 0.0)
-    t14 = S * B
-    at_base = t12 + t14
-    c_base = np.where(t8, 1.0, -((t12 - t14) / at_base))
-    s_sight = np.where(t6, 0.0, h_I / reach)
+    t11 = t8 + reach
+    B = np.maximum(t11, 0.0)
+    t12 = S * B
+    at_base = t10 + t12
+    c_base = np.where(t6, 1.0, -((t10 - t12) / at_base))
+    s_sight = np.where(folded, 0.0, h_I / reach)
     bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
-    t15 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t15 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t8, 0.0, area / at_base)
+    t13 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
+    area = t13 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
+    s_base = np.where(t6, 0.0, area / at_base)
     ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(t7, 1.0, a3 / fore)
-    t16 = A * S
-    t17 = C * B
-    at_elbow = t16 + t17
-    c_elbow = np.where(t7, 1.0, -((t16 - t17) / at_elbow))
-    s_lag = np.where(t7, 0.0, L2 / fore)
-    s_elbow = np.where(t7, 0.0, area / at_elbow)
+    c_lag = np.where(short, 1.0, a3 / fore)
+    t14 = A * S
+    t15 = C * B
+    at_elbow = t14 + t15
+    c_elbow = np.where(short, 1.0, -((t14 - t15) / at_elbow))
+    s_lag = np.where(short, 0.0, L2 / fore)
+    s_elbow = np.where(short, 0.0, area / at_elbow)
     c_bend = c_lag * c_elbow - s_lag * s_elbow
     stheta2A = c_base * s_sight - c_sight * s_base
     s_bend = s_lag * c_elbow + c_lag * s_elbow
     ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    t18 = d * d
-    t19 = t1 - t2
-    t20 = t3 - t4
+    t16 = d * d
+    t17 = t1 - t2
+    t18 = t3 - t4
     stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t21 = t19 * ctheta23A + t20 * stheta23A
-    tilted = np.sqrt(t18 + t21 * t21)
-    base = np.sqrt(t18 + t19 * t19 + t20 * t20)
-    t22 = (t19 * stheta23A - ctheta23A * t20) / base * (t21 / tilted)
-    t23 = base - (gs - al)
-    t24 = gs + al
-    t25 = t24 - base
-    wrist = np.sqrt(np.maximum(t23, 0.0)) * np.sqrt(np.maximum(t25, 0.0))
-    t26 = loff + lp * c + wrist
-    t27 = a3 + lp * s * (d / tilted) - t22 * t26
-    t28 = L2 + t26 * (tilted / base)
-    t29 = L1 * ctheta2A + ctheta23A * t27 + stheta23A * t28
-    t30 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t31 = t30 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t32 = t31 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t33 = t32 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t34 = t33 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t35 = t34 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t36 = t35 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t37 = -(_runtime.FEASIBILITY * t5)
-    t38 = -(_runtime.FEASIBILITY * t24)
-    t39 = (t37 <= t9) & (t37 <= t13) & (t37 <= t11) & (t38 <= t25)
-    failed = np.logical_not(t36 & (0.0 <= lp)) | np.logical_not(t39 & (t38 <= t23))
-    t40 = np.where(failed, np.nan, 0.0)
-    t41 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t42 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    t43 = L2 * (s2L * s2L3L + c2L * c2L3L) + a3 * (s2L * c2L3L - c2L * s2L3L)
+    t19 = t17 * ctheta23A + t18 * stheta23A
+    tilted = np.sqrt(t16 + t19 * t19)
+    base = np.sqrt(t16 + t17 * t17 + t18 * t18)
+    t20 = (t17 * stheta23A - ctheta23A * t18) / base * (t19 / tilted)
+    t21 = base - (gs - al)
+    t22 = gs + al
+    t23 = t22 - base
+    wrist = np.sqrt(np.maximum(t21, 0.0)) * np.sqrt(np.maximum(t23, 0.0))
+    t24 = loff + lp * c + wrist
+    t25 = a3 + lp * s * (d / tilted) - t20 * t24
+    t26 = L2 + t24 * (tilted / base)
+    t27 = L1 * ctheta2A + ctheta23A * t25 + stheta23A * t26
+    t28 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t29 = t28 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t30 = t29 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t31 = t30 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t32 = t31 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t33 = t32 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t34 = t33 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t35 = -(_runtime.FEASIBILITY * t5)
+    t36 = -(_runtime.FEASIBILITY * t22)
+    t37 = (t35 <= t7) & (t35 <= t11) & (t35 <= t9) & (t36 <= t23)
+    failed = np.logical_not(t34 & (0.0 <= lp)) | np.logical_not(t37 & (t36 <= t21))
+    t38 = _runtime.poison(failed)
+    t39 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t40 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t41 = L2 * (s2L * s2L3L + c2L * c2L3L) + a3 * (s2L * c2L3L - c2L * s2L3L)
     return (
-        t29 + t40,
-        t28 * t41 + t27 * t42 + t40,
-        bend + t40,
-        t43 + t40,
-        L2 * t41 + a3 * t42 + t40,
-        wrist + t40,
+        t27 + t38,
+        t26 * t39 + t25 * t40 + t38,
+        bend + t38,
+        t41 + t38,
+        L2 * t39 + a3 * t40 + t38,
+        wrist + t38,
     )
 
 
@@ -977,493 +938,499 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 
 
 def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
-    s_phi = np.sin(phi)
-    c_phi = np.cos(phi)
-    s_pitch = np.sin(pitch)
-    c_pitch = np.cos(pitch)
-    s_psi = np.sin(psi)
-    c_psi = np.cos(psi)
+    s_phi, c_phi = _runtime.sincos(phi)
+    s_pitch, c_pitch = _runtime.sincos(pitch)
+    s_psi, c_psi = _runtime.sincos(psi)
     h = np.sqrt(x * x + y * y)
-    t1 = h <= _runtime.VANISHING * (L1 + L2)
-    t2 = np.arctan2(x, y)
-    t3 = lp * s_pitch
-    t4 = c_phi * c_psi
-    t5 = d - (gs - al) * t4
-    t6 = gs + al
-    t7 = t6 * t4 - d
-    t8 = np.sqrt(np.maximum(t5, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
-    t9 = loff + lp * c_pitch + t8 / t4
-    t10 = s_psi * t9
-    t11 = s_phi * t3 - c_phi * t10
-    t12 = h + t11
-    below = np.maximum(t12, 0.0)
-    t13 = np.sqrt(below)
-    t14 = h - t11
-    above = np.maximum(t14, 0.0)
-    t15 = np.sqrt(above)
-    t16 = 2.0 * np.arctan2(t13, t15)
-    t17 = _runtime.wrap(-np.where(t1, 0.0, t2 - t16))
-    t18 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t19 = t18 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t20 = t19 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
-    t21 = t20 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
-    t22 = t21 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t23 = t22 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t24 = t23 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    invalid = np.logical_not(t24 & (0.0 <= loff) & (0.0 <= lp))
-    t25 = -(_runtime.FEASIBILITY * (d + t6))
-    t26 = (-_runtime.FEASIBILITY <= c_phi) & (t25 <= t7)
-    t27 = -(_runtime.FEASIBILITY * h)
-    t28 = t26 & (t25 <= t5) & (t27 <= t12) & (t27 <= t14)
-    L_2W = L2 + c_psi * t9
-    a_3W = a3 + c_phi * t3 + s_phi * t10
+    nowhere = h <= _runtime.VANISHING * (L1 + L2)
+    t1 = np.arctan2(x, y)
+    t2 = lp * s_pitch
+    t3 = c_phi * c_psi
+    t4 = d - (gs - al) * t3
+    t5 = gs + al
+    t6 = t5 * t3 - d
+    t7 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t6, 0.0))
+    t8 = loff + lp * c_pitch + t7 / t3
+    t9 = s_psi * t8
+    t10 = s_phi * t2 - c_phi * t9
+    t11 = h + t10
+    below = np.maximum(t11, 0.0)
+    t12 = np.sqrt(below)
+    t13 = h - t10
+    above = np.maximum(t13, 0.0)
+    t14 = np.sqrt(above)
+    t15 = 2.0 * np.arctan2(t12, t14)
+    t16 = _runtime.wrap(-np.where(nowhere, 0.0, t1 - t15))
+    t17 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t18 = t17 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t19 = t18 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
+    t20 = t19 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
+    t21 = t20 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t22 = t21 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t23 = t22 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    invalid = np.logical_not(t23 & (0.0 <= loff) & (0.0 <= lp))
+    t24 = -(_runtime.FEASIBILITY * (d + t5))
+    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t6)
+    t26 = -(_runtime.FEASIBILITY * h)
+    t27 = t25 & (t24 <= t4) & (t26 <= t11) & (t26 <= t13)
+    L_2W = L2 + c_psi * t8
+    a_3W = a3 + c_phi * t2 + s_phi * t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t29 = L1 + fore
-    t30 = -(_runtime.FEASIBILITY * t29)
-    t31 = z - d1
-    t32 = t31 * t31
+    t28 = L1 + fore
+    t29 = -(_runtime.FEASIBILITY * t28)
+    t30 = z - d1
+    t31 = t30 * t30
     total = below + above
-    t33 = (below - above) / total
-    t34 = y * t33
-    s_turn = 2.0 * t13 * t15 / total
-    t35 = x * s_turn
-    t36 = x * t33
+    t32 = (below - above) / total
+    t33 = y * t32
+    s_turn = 2.0 * t12 * t14 / total
+    t34 = x * s_turn
+    t35 = x * np.where(nowhere, 1.0, -((t33 - t34) / h))
+    t36 = x * t32
     t37 = y * s_turn
-    outward = x * np.where(t1, 1.0, -((t34 - t35) / h)) + y * np.where(t1, 0.0, (t36 + t37) / h)
-    reach = np.sqrt(t32 + outward * outward)
-    t38 = t29 - reach
+    outward = t35 + y * np.where(nowhere, 0.0, (t36 + t37) / h)
+    reach = np.sqrt(t31 + outward * outward)
+    t38 = t28 - reach
     t39 = L1 - fore
     t40 = reach + t39
     t41 = reach - t39
-    t42 = t28 & (t30 <= t38) & (t30 <= t40) & (t30 <= t41)
+    t42 = t27 & (t29 <= t38) & (t29 <= t40) & (t29 <= t41)
     fore_right = np.sqrt(L2 * L2 + a3 * a3)
     t43 = L1 + fore_right
     t44 = -(_runtime.FEASIBILITY * t43)
-    t45 = _runtime.VANISHING * t29
-    t46 = reach <= t45
-    c_sight = np.where(t46, 1.0, outward / reach)
-    t47 = L1 * fore <= _runtime.VANISHING * (t29 * t29)
-    t48 = t46 | t47
+    t45 = _runtime.VANISHING * t28
+    folded = reach <= t45
+    c_sight = np.where(folded, 1.0, outward / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t28 * t28)
+    t46 = folded | short
     A = np.maximum(t38, 0.0)
     C = np.maximum(t41, 0.0)
-    t49 = A * C
-    S = t29 + reach
+    t47 = A * C
+    S = t28 + reach
     B = np.maximum(t40, 0.0)
-    t50 = S * B
-    at_base = t49 + t50
-    c_base = np.where(t48, 1.0, -((t49 - t50) / at_base))
-    t51 = c_sight * c_base
-    s_sight = np.where(t46, 0.0, t31 / reach)
+    t48 = S * B
+    at_base = t47 + t48
+    c_base = np.where(t46, 1.0, -((t47 - t48) / at_base))
+    t49 = c_sight * c_base
+    s_sight = np.where(folded, 0.0, t30 / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = np.where(t48, 0.0, area_front_elbow_down_alike / at_base)
-    t52 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t51 - t52
-    c_lag = np.where(t47, 1.0, a_3W / fore)
-    t53 = A * S
-    t54 = C * B
-    at_elbow = t53 + t54
-    c_elbow = np.where(t47, 1.0, -((t53 - t54) / at_elbow))
-    t55 = c_lag * c_elbow
-    s_lag = np.where(t47, 0.0, L_2W / fore)
-    s_elbow_front_elbow_down_alike = np.where(t47, 0.0, area_front_elbow_down_alike / at_elbow)
-    t56 = s_lag * s_elbow_front_elbow_down_alike
-    c_bend = t55 + t56
-    t57 = s_sight * c_base
-    t58 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t57 + t58
-    t59 = s_lag * c_elbow
-    t60 = c_lag * s_elbow_front_elbow_down_alike
-    s_bend = t59 - t60
+    s_base_front_elbow_down_alike = np.where(t46, 0.0, area_front_elbow_down_alike / at_base)
+    t50 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t49 - t50
+    c_lag = np.where(short, 1.0, a_3W / fore)
+    t51 = A * S
+    t52 = C * B
+    at_elbow = t51 + t52
+    c_elbow = np.where(short, 1.0, -((t51 - t52) / at_elbow))
+    t53 = c_lag * c_elbow
+    s_lag = np.where(short, 0.0, L_2W / fore)
+    s_elbow_front_elbow_down_alike = np.where(short, 0.0, area_front_elbow_down_alike / at_elbow)
+    t54 = s_lag * s_elbow_front_elbow_down_alike
+    c_bend = t53 + t54
+    t55 = s_sight * c_base
+    t56 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t55 + t56
+    t57 = s_lag * c_elbow
+    t58 = c_lag * s_elbow_front_elbow_down_alike
+    s_bend = t57 - t58
     ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
     stheta23A = stheta2A * c_bend + ctheta2A * s_bend
-    t61 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t62 = d * t61
-    t63 = a3 * stheta23A + (L1 * stheta2A - L2 * ctheta23A)
-    t64 = t62 - t63
-    t65 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t66 = d * t65
-    t67 = a3 * ctheta23A + (L1 * ctheta2A + L2 * stheta23A)
-    t68 = t66 - t67
-    reach_right = np.sqrt(t64 * t64 + t68 * t68)
-    t69 = t43 - reach_right
-    t70 = L1 - fore_right
-    t71 = t70 + reach_right
-    t72 = reach_right - t70
-    t73 = t42 & (t44 <= t69) & (t44 <= t71) & (t44 <= t72)
-    h_left = t62 + t63
-    r_left = t66 + t67
+    t59 = s_psi * ctheta23A / t3 + s_phi * stheta23A / c_phi
+    t60 = d * t59
+    t61 = a3 * stheta23A + (L1 * stheta2A - L2 * ctheta23A)
+    t62 = t60 - t61
+    t63 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t3
+    t64 = d * t63
+    t65 = a3 * ctheta23A + (L1 * ctheta2A + L2 * stheta23A)
+    t66 = t64 - t65
+    reach_right = np.sqrt(t62 * t62 + t66 * t66)
+    t67 = t43 - reach_right
+    t68 = L1 - fore_right
+    t69 = t68 + reach_right
+    t70 = reach_right - t68
+    t71 = t42 & (t44 <= t67) & (t44 <= t69) & (t44 <= t70)
+    h_left = t60 + t61
+    r_left = t64 + t65
     reach_left = np.sqrt(h_left * h_left + r_left * r_left)
-    t74 = t43 - reach_left
-    t75 = t70 + reach_left
-    t76 = reach_left - t70
-    t77 = t73 & (t44 <= t74) & (t44 <= t75) & (t44 <= t76)
-    unreachable = np.logical_not(t77)
-    t78 = np.where(invalid | unreachable, np.nan, 0.0)
-    t79 = t17 + t78
-    t80 = _runtime.VANISHING * t43
-    t81 = reach_right <= t80
-    t82 = L1 * fore_right <= _runtime.VANISHING * (t43 * t43)
-    t83 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t84 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t85 = 2.0 * np.where(0.0 <= t83 + t84, -1.0, 1.0)
-    rA_right = np.sqrt(np.maximum(t69, t80))
-    rC_right = np.sqrt(np.maximum(t72, t80))
+    t72 = t43 - reach_left
+    t73 = t68 + reach_left
+    t74 = reach_left - t68
+    t75 = t71 & (t44 <= t72) & (t44 <= t73) & (t44 <= t74)
+    unreachable = np.logical_not(t75)
+    t76 = _runtime.poison(invalid | unreachable)
+    t77 = t16 + t76
+    t78 = _runtime.VANISHING * t43
+    folded_right = reach_right <= t78
+    t79 = np.where(folded_right, 0.0, np.arctan2(-t62, -t66))
+    short_right = L1 * fore_right <= _runtime.VANISHING * (t43 * t43)
+    t80 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t81 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t82 = 2.0 * np.where(0.0 <= t80 + t81, -1.0, 1.0)
+    rA_right = np.sqrt(np.maximum(t67, t78))
+    rC_right = np.sqrt(np.maximum(t70, t78))
     rS_right = np.sqrt(t43 + reach_right)
-    rB_right = np.sqrt(np.maximum(t71, t80))
-    t86 = np.arctan2(rA_right * rC_right, rS_right * rB_right)
-    t87 = np.where(t81, 0.0, np.arctan2(-t64, -t68)) - np.where(t81 | t82, 0.0, t85 * t86)
-    t88 = _runtime.wrap(t87) + t78
-    t89 = np.arctan2(np.where(t82, 0.0, L2 / fore_right), np.where(t82, 1.0, a3 / fore_right))
-    t90 = np.arctan2(rA_right * rS_right, rC_right * rB_right)
-    t91 = _runtime.wrap(np.where(t82, 0.0, t89 + t85 * t90))
-    t92 = t91 + t78
-    t93 = reach_left <= t80
-    t94 = np.where(t93, 0.0, np.arctan2(h_left, r_left))
-    rA_left = np.sqrt(np.maximum(t74, 0.0))
-    rC_left = np.sqrt(np.maximum(t76, 0.0))
+    rB_right = np.sqrt(np.maximum(t69, t78))
+    t83 = np.arctan2(rA_right * rC_right, rS_right * rB_right)
+    t84 = np.where(folded_right | short_right, 0.0, t82 * t83)
+    t85 = _runtime.wrap(t79 - t84) + t76
+    t86 = np.arctan2(np.where(short_right, 0.0, L2 / fore_right), np.where(short_right, 1.0, a3 / fore_right))
+    t87 = np.arctan2(rA_right * rS_right, rC_right * rB_right)
+    t88 = _runtime.wrap(np.where(short_right, 0.0, t86 + t82 * t87))
+    t89 = t88 + t76
+    folded_left = reach_left <= t78
+    t90 = np.where(folded_left, 0.0, np.arctan2(h_left, r_left))
+    rA_left = np.sqrt(np.maximum(t72, 0.0))
+    rC_left = np.sqrt(np.maximum(t74, 0.0))
     rS_left = np.sqrt(t43 + reach_left)
-    rB_left = np.sqrt(np.maximum(t75, 0.0))
-    t95 = np.arctan2(rA_left * rC_left, rS_left * rB_left)
-    t96 = np.where(t93 | t82, 0.0, t85 * t95)
-    t97 = np.arctan2(rA_left * rS_left, rC_left * rB_left)
-    t98 = t85 * t97
-    t99 = _runtime.wrap(np.where(t82, 0.0, t89 + t98)) + t78
-    t100 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    t101 = t100 + t78
-    t102 = _runtime.wrap(np.where(t82, 0.0, t89 - t98)) + t78
-    ctheta2A_front_elbow_down_alike = t51 + t52
-    c_bend_front_elbow_down_alike = t55 - t56
-    t103 = ctheta2A_front_elbow_down_alike * c_bend_front_elbow_down_alike
-    stheta2A_front_elbow_down_alike = t57 - t58
-    s_bend_front_elbow_down_alike = t59 + t60
-    t104 = stheta2A_front_elbow_down_alike * s_bend_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t103 - t104
-    t105 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t106 = stheta2A_front_elbow_down_alike * c_bend_front_elbow_down_alike
-    t107 = ctheta2A_front_elbow_down_alike * s_bend_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t106 + t107
-    t108 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t109 = d * (t105 + t108)
-    t110 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    t111 = a3 * stheta23A_front_elbow_down_alike + t110
-    t112 = t109 - t111
-    t113 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t114 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t115 = d * (t113 - t114)
-    t116 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    t117 = a3 * ctheta23A_front_elbow_down_alike + t116
-    t118 = t115 - t117
-    reach_right_front_elbow_down_alike = np.sqrt(t112 * t112 + t118 * t118)
-    t119 = t43 - reach_right_front_elbow_down_alike
-    t120 = t70 + reach_right_front_elbow_down_alike
-    t121 = reach_right_front_elbow_down_alike - t70
-    t122 = t42 & (t44 <= t119) & (t44 <= t120) & (t44 <= t121)
-    h_left_front_elbow_down_alike = t109 + t111
-    t123 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = t115 + t117
-    t124 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    reach_left_front_elbow_down_alike = np.sqrt(t123 + t124)
-    t125 = t43 - reach_left_front_elbow_down_alike
-    t126 = t70 + reach_left_front_elbow_down_alike
-    t127 = reach_left_front_elbow_down_alike - t70
-    t128 = t122 & (t44 <= t125) & (t44 <= t126) & (t44 <= t127)
-    unreachable_2 = np.logical_not(t128)
-    t129 = np.where(invalid | unreachable_2, np.nan, 0.0)
-    t130 = t17 + t129
-    t131 = reach_right_front_elbow_down_alike <= t80
-    t132 = np.where(t131, 0.0, np.arctan2(-t112, -t118))
-    t133 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t134 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t135 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t136 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t137 = 0.0 <= L2 * (t133 + t134) + a3 * (t135 - t136)
-    t138 = 2.0 * np.where(t137, -1.0, 1.0)
-    rA_right_front_elbow_down_alike = np.sqrt(np.maximum(t119, t80))
-    rC_right_front_elbow_down_alike = np.sqrt(np.maximum(t121, t80))
-    t139 = rA_right_front_elbow_down_alike * rC_right_front_elbow_down_alike
+    rB_left = np.sqrt(np.maximum(t73, 0.0))
+    t91 = np.arctan2(rA_left * rC_left, rS_left * rB_left)
+    t92 = np.where(folded_left | short_right, 0.0, t82 * t91)
+    t93 = np.arctan2(rA_left * rS_left, rC_left * rB_left)
+    t94 = t82 * t93
+    t95 = _runtime.wrap(np.where(short_right, 0.0, t86 + t94))
+    t96 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
+    t97 = t96 + t76
+    t98 = _runtime.wrap(np.where(short_right, 0.0, t86 - t94))
+    ctheta2A_front_elbow_down_alike = t49 + t50
+    c_bend_front_elbow_down_alike = t53 - t54
+    t99 = ctheta2A_front_elbow_down_alike * c_bend_front_elbow_down_alike
+    stheta2A_front_elbow_down_alike = t55 - t56
+    s_bend_front_elbow_down_alike = t57 + t58
+    t100 = stheta2A_front_elbow_down_alike * s_bend_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t99 - t100
+    t101 = s_psi * ctheta23A_front_elbow_down_alike / t3
+    t102 = stheta2A_front_elbow_down_alike * c_bend_front_elbow_down_alike
+    t103 = ctheta2A_front_elbow_down_alike * s_bend_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t102 + t103
+    t104 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t105 = d * (t101 + t104)
+    t106 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    t107 = a3 * stheta23A_front_elbow_down_alike + t106
+    t108 = t105 - t107
+    t109 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t110 = s_psi * stheta23A_front_elbow_down_alike / t3
+    t111 = d * (t109 - t110)
+    t112 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    t113 = a3 * ctheta23A_front_elbow_down_alike + t112
+    t114 = t111 - t113
+    reach_right_front_elbow_down_alike = np.sqrt(t108 * t108 + t114 * t114)
+    t115 = t43 - reach_right_front_elbow_down_alike
+    t116 = t68 + reach_right_front_elbow_down_alike
+    t117 = reach_right_front_elbow_down_alike - t68
+    t118 = t42 & (t44 <= t115) & (t44 <= t116) & (t44 <= t117)
+    h_left_front_elbow_down_alike = t105 + t107
+    t119 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = t111 + t113
+    t120 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    reach_left_front_elbow_down_alike = np.sqrt(t119 + t120)
+    t121 = t43 - reach_left_front_elbow_down_alike
+    t122 = t68 + reach_left_front_elbow_down_alike
+    t123 = reach_left_front_elbow_down_alike - t68
+    t124 = t118 & (t44 <= t121) & (t44 <= t122) & (t44 <= t123)
+    unreachable_2 = np.logical_not(t124)
+    t125 = _runtime.poison(invalid | unreachable_2)
+    t126 = t16 + t125
+    folded_right_front_elbow_down_alike = reach_right_front_elbow_down_alike <= t78
+    t127 = np.where(folded_right_front_elbow_down_alike, 0.0, np.arctan2(-t108, -t114))
+    t128 = folded_right_front_elbow_down_alike | short_right
+    t129 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t130 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t131 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t132 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t133 = 0.0 <= L2 * (t129 + t130) + a3 * (t131 - t132)
+    t134 = 2.0 * np.where(t133, -1.0, 1.0)
+    rA_right_front_elbow_down_alike = np.sqrt(np.maximum(t115, t78))
+    rC_right_front_elbow_down_alike = np.sqrt(np.maximum(t117, t78))
+    t135 = rA_right_front_elbow_down_alike * rC_right_front_elbow_down_alike
     rS_right_front_elbow_down_alike = np.sqrt(t43 + reach_right_front_elbow_down_alike)
-    rB_right_front_elbow_down_alike = np.sqrt(np.maximum(t120, t80))
-    t140 = rS_right_front_elbow_down_alike * rB_right_front_elbow_down_alike
-    t141 = np.where(t131 | t82, 0.0, t138 * np.arctan2(t139, t140))
-    t142 = _runtime.wrap(t132 - t141) + t129
-    t143 = rA_right_front_elbow_down_alike * rS_right_front_elbow_down_alike
-    t144 = rC_right_front_elbow_down_alike * rB_right_front_elbow_down_alike
-    t145 = np.where(t82, 0.0, t89 + t138 * np.arctan2(t143, t144))
-    t146 = _runtime.wrap(t145) + t129
-    t147 = reach_left_front_elbow_down_alike <= t80
-    t148 = np.arctan2(h_left_front_elbow_down_alike, r_left_front_elbow_down_alike)
-    t149 = np.where(t147, 0.0, t148)
-    rA_left_front_elbow_down_alike = np.sqrt(np.maximum(t125, 0.0))
-    rC_left_front_elbow_down_alike = np.sqrt(np.maximum(t127, 0.0))
-    t150 = rA_left_front_elbow_down_alike * rC_left_front_elbow_down_alike
+    rB_right_front_elbow_down_alike = np.sqrt(np.maximum(t116, t78))
+    t136 = rS_right_front_elbow_down_alike * rB_right_front_elbow_down_alike
+    t137 = np.where(t128, 0.0, t134 * np.arctan2(t135, t136))
+    t138 = _runtime.wrap(t127 - t137) + t125
+    t139 = rA_right_front_elbow_down_alike * rS_right_front_elbow_down_alike
+    t140 = rC_right_front_elbow_down_alike * rB_right_front_elbow_down_alike
+    t141 = np.where(short_right, 0.0, t86 + t134 * np.arctan2(t139, t140))
+    t142 = _runtime.wrap(t141) + t125
+    folded_left_front_elbow_down_alike = reach_left_front_elbow_down_alike <= t78
+    t143 = np.arctan2(h_left_front_elbow_down_alike, r_left_front_elbow_down_alike)
+    t144 = np.where(folded_left_front_elbow_down_alike, 0.0, t143)
+    t145 = folded_left_front_elbow_down_alike | short_right
+    rA_left_front_elbow_down_alike = np.sqrt(np.maximum(t121, 0.0))
+    rC_left_front_elbow_down_alike = np.sqrt(np.maximum(t123, 0.0))
+    t146 = rA_left_front_elbow_down_alike * rC_left_front_elbow_down_alike
     rS_left_front_elbow_down_alike = np.sqrt(t43 + reach_left_front_elbow_down_alike)
-    rB_left_front_elbow_down_alike = np.sqrt(np.maximum(t126, 0.0))
-    t151 = rS_left_front_elbow_down_alike * rB_left_front_elbow_down_alike
-    t152 = np.where(t147 | t82, 0.0, t138 * np.arctan2(t150, t151))
-    t153 = rA_left_front_elbow_down_alike * rS_left_front_elbow_down_alike
-    t154 = rC_left_front_elbow_down_alike * rB_left_front_elbow_down_alike
-    t155 = t138 * np.arctan2(t153, t154)
-    t156 = _runtime.wrap(np.where(t82, 0.0, t89 + t155))
-    t157 = t100 + t129
-    t158 = _runtime.wrap(np.where(t82, 0.0, t89 - t155))
-    t159 = _runtime.wrap(-np.where(t1, 0.0, t2 + t16))
-    outward_rear_elbow_up_alike = x * np.where(t1, 1.0, -((t34 + t35) / h)) + y * np.where(t1, 0.0, (t36 - t37) / h)
-    t160 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t32 + t160)
-    t161 = t29 - reach_rear_elbow_up_alike
-    t162 = reach_rear_elbow_up_alike + t39
-    t163 = reach_rear_elbow_up_alike - t39
-    t164 = t28 & (t30 <= t161) & (t30 <= t162) & (t30 <= t163)
-    t165 = reach_rear_elbow_up_alike <= t45
-    t166 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = np.where(t165, 1.0, t166)
-    t167 = t165 | t47
-    A_rear_elbow_up_alike = np.maximum(t161, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t163, 0.0)
-    t168 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
-    S_rear_elbow_up_alike = t29 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t162, 0.0)
-    t169 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t168 + t169
-    t170 = -((t168 - t169) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = np.where(t167, 1.0, t170)
-    t171 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    s_sight_rear_elbow_up_alike = np.where(t165, 0.0, t31 / reach_rear_elbow_up_alike)
-    t172 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t172 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t173 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = np.where(t167, 0.0, t173)
-    t174 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t171 + t174
-    t175 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t176 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t175 + t176
-    t177 = -((t175 - t176) / at_elbow_rear_elbow_up_alike)
-    c_elbow_rear_elbow_up_alike = np.where(t47, 1.0, t177)
-    t178 = c_lag * c_elbow_rear_elbow_up_alike
-    t179 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_elbow_rear_elbow_up_alike = np.where(t47, 0.0, t179)
-    t180 = s_lag * s_elbow_rear_elbow_up_alike
-    c_bend_rear_elbow_up_alike = t178 - t180
-    t181 = ctheta2A_rear_elbow_up_alike * c_bend_rear_elbow_up_alike
-    t182 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t183 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t182 - t183
-    t184 = s_lag * c_elbow_rear_elbow_up_alike
-    t185 = c_lag * s_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = t184 + t185
-    t186 = stheta2A_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t181 - t186
-    t187 = stheta2A_rear_elbow_up_alike * c_bend_rear_elbow_up_alike
-    t188 = ctheta2A_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t187 + t188
-    t189 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t190 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t189
-    t191 = d * t190
-    t192 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    t193 = a3 * stheta23A_rear_elbow_up_alike + t192
-    t194 = t191 - t193
-    t195 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t196 = t195 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t197 = d * t196
-    t198 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    t199 = a3 * ctheta23A_rear_elbow_up_alike + t198
-    t200 = t197 - t199
-    reach_right_rear_elbow_up_alike = np.sqrt(t194 * t194 + t200 * t200)
-    t201 = t43 - reach_right_rear_elbow_up_alike
-    t202 = t70 + reach_right_rear_elbow_up_alike
-    t203 = reach_right_rear_elbow_up_alike - t70
-    t204 = t164 & (t44 <= t201) & (t44 <= t202) & (t44 <= t203)
-    h_left_rear_elbow_up_alike = t191 + t193
-    t205 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = t197 + t199
-    t206 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    reach_left_rear_elbow_up_alike = np.sqrt(t205 + t206)
-    t207 = t43 - reach_left_rear_elbow_up_alike
-    t208 = t70 + reach_left_rear_elbow_up_alike
-    t209 = reach_left_rear_elbow_up_alike - t70
-    t210 = t204 & (t44 <= t207) & (t44 <= t208) & (t44 <= t209)
-    unreachable_3 = np.logical_not(t210)
-    t211 = np.where(invalid | unreachable_3, np.nan, 0.0)
-    t212 = t159 + t211
-    t213 = reach_right_rear_elbow_up_alike <= t80
-    t214 = np.where(t213, 0.0, np.arctan2(-t194, -t200))
-    t215 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t216 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t217 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t218 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t219 = 0.0 <= L2 * (t215 + t216) + a3 * (t217 - t218)
-    t220 = 2.0 * np.where(t219, -1.0, 1.0)
-    rA_right_rear_elbow_up_alike = np.sqrt(np.maximum(t201, t80))
-    rC_right_rear_elbow_up_alike = np.sqrt(np.maximum(t203, t80))
-    t221 = rA_right_rear_elbow_up_alike * rC_right_rear_elbow_up_alike
+    rB_left_front_elbow_down_alike = np.sqrt(np.maximum(t122, 0.0))
+    t147 = rS_left_front_elbow_down_alike * rB_left_front_elbow_down_alike
+    t148 = np.where(t145, 0.0, t134 * np.arctan2(t146, t147))
+    t149 = rA_left_front_elbow_down_alike * rS_left_front_elbow_down_alike
+    t150 = rC_left_front_elbow_down_alike * rB_left_front_elbow_down_alike
+    t151 = t134 * np.arctan2(t149, t150)
+    t152 = _runtime.wrap(np.where(short_right, 0.0, t86 + t151))
+    t153 = t96 + t125
+    t154 = _runtime.wrap(np.where(short_right, 0.0, t86 - t151))
+    t155 = _runtime.wrap(-np.where(nowhere, 0.0, t1 + t15))
+    t156 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
+    outward_rear_elbow_up_alike = t156 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
+    t157 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t31 + t157)
+    t158 = t28 - reach_rear_elbow_up_alike
+    t159 = reach_rear_elbow_up_alike + t39
+    t160 = reach_rear_elbow_up_alike - t39
+    t161 = t27 & (t29 <= t158) & (t29 <= t159) & (t29 <= t160)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t45
+    t162 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t162)
+    t163 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t158, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t160, 0.0)
+    t164 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    S_rear_elbow_up_alike = t28 + reach_rear_elbow_up_alike
+    B_rear_elbow_up_alike = np.maximum(t159, 0.0)
+    t165 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t164 + t165
+    t166 = -((t164 - t165) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = np.where(t163, 1.0, t166)
+    t167 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t30 / reach_rear_elbow_up_alike)
+    t168 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t168 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t169 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = np.where(t163, 0.0, t169)
+    t170 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t167 + t170
+    t171 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t172 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t171 + t172
+    t173 = -((t171 - t172) / at_elbow_rear_elbow_up_alike)
+    c_elbow_rear_elbow_up_alike = np.where(short, 1.0, t173)
+    t174 = c_lag * c_elbow_rear_elbow_up_alike
+    t175 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_elbow_rear_elbow_up_alike = np.where(short, 0.0, t175)
+    t176 = s_lag * s_elbow_rear_elbow_up_alike
+    c_bend_rear_elbow_up_alike = t174 - t176
+    t177 = ctheta2A_rear_elbow_up_alike * c_bend_rear_elbow_up_alike
+    t178 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t179 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t178 - t179
+    t180 = s_lag * c_elbow_rear_elbow_up_alike
+    t181 = c_lag * s_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = t180 + t181
+    t182 = stheta2A_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t177 - t182
+    t183 = stheta2A_rear_elbow_up_alike * c_bend_rear_elbow_up_alike
+    t184 = ctheta2A_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t183 + t184
+    t185 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t186 = s_psi * ctheta23A_rear_elbow_up_alike / t3 + t185
+    t187 = d * t186
+    t188 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    t189 = a3 * stheta23A_rear_elbow_up_alike + t188
+    t190 = t187 - t189
+    t191 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t192 = t191 - s_psi * stheta23A_rear_elbow_up_alike / t3
+    t193 = d * t192
+    t194 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    t195 = a3 * ctheta23A_rear_elbow_up_alike + t194
+    t196 = t193 - t195
+    reach_right_rear_elbow_up_alike = np.sqrt(t190 * t190 + t196 * t196)
+    t197 = t43 - reach_right_rear_elbow_up_alike
+    t198 = t68 + reach_right_rear_elbow_up_alike
+    t199 = reach_right_rear_elbow_up_alike - t68
+    t200 = t161 & (t44 <= t197) & (t44 <= t198) & (t44 <= t199)
+    h_left_rear_elbow_up_alike = t187 + t189
+    t201 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = t193 + t195
+    t202 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    reach_left_rear_elbow_up_alike = np.sqrt(t201 + t202)
+    t203 = t43 - reach_left_rear_elbow_up_alike
+    t204 = t68 + reach_left_rear_elbow_up_alike
+    t205 = reach_left_rear_elbow_up_alike - t68
+    t206 = t200 & (t44 <= t203) & (t44 <= t204) & (t44 <= t205)
+    unreachable_3 = np.logical_not(t206)
+    t207 = _runtime.poison(invalid | unreachable_3)
+    t208 = t155 + t207
+    folded_right_rear_elbow_up_alike = reach_right_rear_elbow_up_alike <= t78
+    t209 = np.where(folded_right_rear_elbow_up_alike, 0.0, np.arctan2(-t190, -t196))
+    t210 = folded_right_rear_elbow_up_alike | short_right
+    t211 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t212 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t213 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t214 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t215 = 0.0 <= L2 * (t211 + t212) + a3 * (t213 - t214)
+    t216 = 2.0 * np.where(t215, -1.0, 1.0)
+    rA_right_rear_elbow_up_alike = np.sqrt(np.maximum(t197, t78))
+    rC_right_rear_elbow_up_alike = np.sqrt(np.maximum(t199, t78))
+    t217 = rA_right_rear_elbow_up_alike * rC_right_rear_elbow_up_alike
     rS_right_rear_elbow_up_alike = np.sqrt(t43 + reach_right_rear_elbow_up_alike)
-    rB_right_rear_elbow_up_alike = np.sqrt(np.maximum(t202, t80))
-    t222 = rS_right_rear_elbow_up_alike * rB_right_rear_elbow_up_alike
-    t223 = np.where(t213 | t82, 0.0, t220 * np.arctan2(t221, t222))
-    t224 = _runtime.wrap(t214 - t223) + t211
-    t225 = rA_right_rear_elbow_up_alike * rS_right_rear_elbow_up_alike
-    t226 = rC_right_rear_elbow_up_alike * rB_right_rear_elbow_up_alike
-    t227 = np.where(t82, 0.0, t89 + t220 * np.arctan2(t225, t226))
-    t228 = _runtime.wrap(t227) + t211
-    t229 = reach_left_rear_elbow_up_alike <= t80
-    t230 = np.arctan2(h_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike)
-    t231 = np.where(t229, 0.0, t230)
-    rA_left_rear_elbow_up_alike = np.sqrt(np.maximum(t207, 0.0))
-    rC_left_rear_elbow_up_alike = np.sqrt(np.maximum(t209, 0.0))
-    t232 = rA_left_rear_elbow_up_alike * rC_left_rear_elbow_up_alike
+    rB_right_rear_elbow_up_alike = np.sqrt(np.maximum(t198, t78))
+    t218 = rS_right_rear_elbow_up_alike * rB_right_rear_elbow_up_alike
+    t219 = np.where(t210, 0.0, t216 * np.arctan2(t217, t218))
+    t220 = _runtime.wrap(t209 - t219) + t207
+    t221 = rA_right_rear_elbow_up_alike * rS_right_rear_elbow_up_alike
+    t222 = rC_right_rear_elbow_up_alike * rB_right_rear_elbow_up_alike
+    t223 = np.where(short_right, 0.0, t86 + t216 * np.arctan2(t221, t222))
+    t224 = _runtime.wrap(t223) + t207
+    folded_left_rear_elbow_up_alike = reach_left_rear_elbow_up_alike <= t78
+    t225 = np.arctan2(h_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike)
+    t226 = np.where(folded_left_rear_elbow_up_alike, 0.0, t225)
+    t227 = folded_left_rear_elbow_up_alike | short_right
+    rA_left_rear_elbow_up_alike = np.sqrt(np.maximum(t203, 0.0))
+    rC_left_rear_elbow_up_alike = np.sqrt(np.maximum(t205, 0.0))
+    t228 = rA_left_rear_elbow_up_alike * rC_left_rear_elbow_up_alike
     rS_left_rear_elbow_up_alike = np.sqrt(t43 + reach_left_rear_elbow_up_alike)
-    rB_left_rear_elbow_up_alike = np.sqrt(np.maximum(t208, 0.0))
-    t233 = rS_left_rear_elbow_up_alike * rB_left_rear_elbow_up_alike
-    t234 = np.where(t229 | t82, 0.0, t220 * np.arctan2(t232, t233))
-    t235 = rA_left_rear_elbow_up_alike * rS_left_rear_elbow_up_alike
-    t236 = rC_left_rear_elbow_up_alike * rB_left_rear_elbow_up_alike
-    t237 = t220 * np.arctan2(t235, t236)
-    t238 = _runtime.wrap(np.where(t82, 0.0, t89 + t237))
-    t239 = t100 + t211
-    t240 = _runtime.wrap(np.where(t82, 0.0, t89 - t237))
-    ctheta2A_rear_elbow_down_alike = t171 - t174
-    c_bend_rear_elbow_down_alike = t178 + t180
-    t241 = ctheta2A_rear_elbow_down_alike * c_bend_rear_elbow_down_alike
-    stheta2A_rear_elbow_down_alike = t182 + t183
-    s_bend_rear_elbow_down_alike = t184 - t185
-    t242 = stheta2A_rear_elbow_down_alike * s_bend_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t241 - t242
-    t243 = stheta2A_rear_elbow_down_alike * c_bend_rear_elbow_down_alike
-    t244 = ctheta2A_rear_elbow_down_alike * s_bend_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t243 + t244
-    t245 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t246 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t245
-    t247 = d * t246
-    t248 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    t249 = a3 * stheta23A_rear_elbow_down_alike + t248
-    t250 = t247 - t249
-    t251 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t252 = t251 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t253 = d * t252
-    t254 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    t255 = a3 * ctheta23A_rear_elbow_down_alike + t254
-    t256 = t253 - t255
-    reach_right_rear_elbow_down_alike = np.sqrt(t250 * t250 + t256 * t256)
-    t257 = t43 - reach_right_rear_elbow_down_alike
-    t258 = t70 + reach_right_rear_elbow_down_alike
-    t259 = reach_right_rear_elbow_down_alike - t70
-    t260 = t164 & (t44 <= t257) & (t44 <= t258) & (t44 <= t259)
-    h_left_rear_elbow_down_alike = t247 + t249
-    t261 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = t253 + t255
-    t262 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    reach_left_rear_elbow_down_alike = np.sqrt(t261 + t262)
-    t263 = t43 - reach_left_rear_elbow_down_alike
-    t264 = t70 + reach_left_rear_elbow_down_alike
-    t265 = reach_left_rear_elbow_down_alike - t70
-    t266 = t260 & (t44 <= t263) & (t44 <= t264) & (t44 <= t265)
-    unreachable_4 = np.logical_not(t266)
-    t267 = np.where(invalid | unreachable_4, np.nan, 0.0)
-    t268 = t159 + t267
-    t269 = reach_right_rear_elbow_down_alike <= t80
-    t270 = np.where(t269, 0.0, np.arctan2(-t250, -t256))
-    t271 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t272 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t273 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t274 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t275 = 0.0 <= L2 * (t271 + t272) + a3 * (t273 - t274)
-    t276 = 2.0 * np.where(t275, -1.0, 1.0)
-    rA_right_rear_elbow_down_alike = np.sqrt(np.maximum(t257, t80))
-    rC_right_rear_elbow_down_alike = np.sqrt(np.maximum(t259, t80))
-    t277 = rA_right_rear_elbow_down_alike * rC_right_rear_elbow_down_alike
+    rB_left_rear_elbow_up_alike = np.sqrt(np.maximum(t204, 0.0))
+    t229 = rS_left_rear_elbow_up_alike * rB_left_rear_elbow_up_alike
+    t230 = np.where(t227, 0.0, t216 * np.arctan2(t228, t229))
+    t231 = rA_left_rear_elbow_up_alike * rS_left_rear_elbow_up_alike
+    t232 = rC_left_rear_elbow_up_alike * rB_left_rear_elbow_up_alike
+    t233 = t216 * np.arctan2(t231, t232)
+    t234 = _runtime.wrap(np.where(short_right, 0.0, t86 + t233))
+    t235 = t96 + t207
+    t236 = _runtime.wrap(np.where(short_right, 0.0, t86 - t233))
+    ctheta2A_rear_elbow_down_alike = t167 - t170
+    c_bend_rear_elbow_down_alike = t174 + t176
+    t237 = ctheta2A_rear_elbow_down_alike * c_bend_rear_elbow_down_alike
+    stheta2A_rear_elbow_down_alike = t178 + t179
+    s_bend_rear_elbow_down_alike = t180 - t181
+    t238 = stheta2A_rear_elbow_down_alike * s_bend_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t237 - t238
+    t239 = stheta2A_rear_elbow_down_alike * c_bend_rear_elbow_down_alike
+    t240 = ctheta2A_rear_elbow_down_alike * s_bend_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t239 + t240
+    t241 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t242 = s_psi * ctheta23A_rear_elbow_down_alike / t3 + t241
+    t243 = d * t242
+    t244 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    t245 = a3 * stheta23A_rear_elbow_down_alike + t244
+    t246 = t243 - t245
+    t247 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t248 = t247 - s_psi * stheta23A_rear_elbow_down_alike / t3
+    t249 = d * t248
+    t250 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    t251 = a3 * ctheta23A_rear_elbow_down_alike + t250
+    t252 = t249 - t251
+    reach_right_rear_elbow_down_alike = np.sqrt(t246 * t246 + t252 * t252)
+    t253 = t43 - reach_right_rear_elbow_down_alike
+    t254 = t68 + reach_right_rear_elbow_down_alike
+    t255 = reach_right_rear_elbow_down_alike - t68
+    t256 = t161 & (t44 <= t253) & (t44 <= t254) & (t44 <= t255)
+    h_left_rear_elbow_down_alike = t243 + t245
+    t257 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = t249 + t251
+    t258 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    reach_left_rear_elbow_down_alike = np.sqrt(t257 + t258)
+    t259 = t43 - reach_left_rear_elbow_down_alike
+    t260 = t68 + reach_left_rear_elbow_down_alike
+    t261 = reach_left_rear_elbow_down_alike - t68
+    t262 = t256 & (t44 <= t259) & (t44 <= t260) & (t44 <= t261)
+    unreachable_4 = np.logical_not(t262)
+    t263 = _runtime.poison(invalid | unreachable_4)
+    t264 = t155 + t263
+    folded_right_rear_elbow_down_alike = reach_right_rear_elbow_down_alike <= t78
+    t265 = np.where(folded_right_rear_elbow_down_alike, 0.0, np.arctan2(-t246, -t252))
+    t266 = folded_right_rear_elbow_down_alike | short_right
+    t267 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t268 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t269 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t270 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t271 = 0.0 <= L2 * (t267 + t268) + a3 * (t269 - t270)
+    t272 = 2.0 * np.where(t271, -1.0, 1.0)
+    rA_right_rear_elbow_down_alike = np.sqrt(np.maximum(t253, t78))
+    rC_right_rear_elbow_down_alike = np.sqrt(np.maximum(t255, t78))
+    t273 = rA_right_rear_elbow_down_alike * rC_right_rear_elbow_down_alike
     rS_right_rear_elbow_down_alike = np.sqrt(t43 + reach_right_rear_elbow_down_alike)
-    rB_right_rear_elbow_down_alike = np.sqrt(np.maximum(t258, t80))
-    t278 = rS_right_rear_elbow_down_alike * rB_right_rear_elbow_down_alike
-    t279 = np.where(t269 | t82, 0.0, t276 * np.arctan2(t277, t278))
-    t280 = _runtime.wrap(t270 - t279) + t267
-    t281 = rA_right_rear_elbow_down_alike * rS_right_rear_elbow_down_alike
-    t282 = rC_right_rear_elbow_down_alike * rB_right_rear_elbow_down_alike
-    t283 = np.where(t82, 0.0, t89 + t276 * np.arctan2(t281, t282))
-    t284 = _runtime.wrap(t283) + t267
-    t285 = reach_left_rear_elbow_down_alike <= t80
-    t286 = np.arctan2(h_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike)
-    t287 = np.where(t285, 0.0, t286)
-    rA_left_rear_elbow_down_alike = np.sqrt(np.maximum(t263, 0.0))
-    rC_left_rear_elbow_down_alike = np.sqrt(np.maximum(t265, 0.0))
-    t288 = rA_left_rear_elbow_down_alike * rC_left_rear_elbow_down_alike
+    rB_right_rear_elbow_down_alike = np.sqrt(np.maximum(t254, t78))
+    t274 = rS_right_rear_elbow_down_alike * rB_right_rear_elbow_down_alike
+    t275 = np.where(t266, 0.0, t272 * np.arctan2(t273, t274))
+    t276 = _runtime.wrap(t265 - t275) + t263
+    t277 = rA_right_rear_elbow_down_alike * rS_right_rear_elbow_down_alike
+    t278 = rC_right_rear_elbow_down_alike * rB_right_rear_elbow_down_alike
+    t279 = np.where(short_right, 0.0, t86 + t272 * np.arctan2(t277, t278))
+    t280 = _runtime.wrap(t279) + t263
+    folded_left_rear_elbow_down_alike = reach_left_rear_elbow_down_alike <= t78
+    t281 = np.arctan2(h_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike)
+    t282 = np.where(folded_left_rear_elbow_down_alike, 0.0, t281)
+    t283 = folded_left_rear_elbow_down_alike | short_right
+    rA_left_rear_elbow_down_alike = np.sqrt(np.maximum(t259, 0.0))
+    rC_left_rear_elbow_down_alike = np.sqrt(np.maximum(t261, 0.0))
+    t284 = rA_left_rear_elbow_down_alike * rC_left_rear_elbow_down_alike
     rS_left_rear_elbow_down_alike = np.sqrt(t43 + reach_left_rear_elbow_down_alike)
-    rB_left_rear_elbow_down_alike = np.sqrt(np.maximum(t264, 0.0))
-    t289 = rS_left_rear_elbow_down_alike * rB_left_rear_elbow_down_alike
-    t290 = np.where(t285 | t82, 0.0, t276 * np.arctan2(t288, t289))
-    t291 = rA_left_rear_elbow_down_alike * rS_left_rear_elbow_down_alike
-    t292 = rC_left_rear_elbow_down_alike * rB_left_rear_elbow_down_alike
-    t293 = t276 * np.arctan2(t291, t292)
-    t294 = _runtime.wrap(np.where(t82, 0.0, t89 + t293))
-    t295 = t100 + t267
-    t296 = _runtime.wrap(np.where(t82, 0.0, t89 - t293))
-    t297 = t1 | t46 | t47
-    t298 = np.where(unreachable, 1.0, np.where(t297 | t81 | t82 | t93, 2.0, 0.0))
-    t299 = np.where(invalid, 3.0, t298)
-    t300 = np.where(unreachable_2, 1.0, np.where(t297 | t131 | t82 | t147, 2.0, 0.0))
-    t301 = np.where(invalid, 3.0, t300)
-    t302 = t1 | t165 | t47
-    t303 = np.where(unreachable_3, 1.0, np.where(t302 | t213 | t82 | t229, 2.0, 0.0))
-    t304 = np.where(invalid, 3.0, t303)
-    t305 = np.where(unreachable_4, 1.0, np.where(t302 | t269 | t82 | t285, 2.0, 0.0))
-    t306 = np.where(invalid, 3.0, t305)
+    rB_left_rear_elbow_down_alike = np.sqrt(np.maximum(t260, 0.0))
+    t285 = rS_left_rear_elbow_down_alike * rB_left_rear_elbow_down_alike
+    t286 = np.where(t283, 0.0, t272 * np.arctan2(t284, t285))
+    t287 = rA_left_rear_elbow_down_alike * rS_left_rear_elbow_down_alike
+    t288 = rC_left_rear_elbow_down_alike * rB_left_rear_elbow_down_alike
+    t289 = t272 * np.arctan2(t287, t288)
+    t290 = _runtime.wrap(np.where(short_right, 0.0, t86 + t289))
+    t291 = t96 + t263
+    t292 = _runtime.wrap(np.where(short_right, 0.0, t86 - t289))
+    t293 = nowhere | folded | short
+    t294 = t293 | folded_right | short_right | folded_left
+    t295 = _runtime.status(invalid, unreachable, t294)
+    t296 = t293 | folded_right_front_elbow_down_alike | short_right
+    t297 = _runtime.status(invalid, unreachable_2, t296 | folded_left_front_elbow_down_alike)
+    t298 = nowhere | folded_rear_elbow_up_alike | short
+    t299 = t298 | folded_right_rear_elbow_up_alike | short_right
+    t300 = _runtime.status(invalid, unreachable_3, t299 | folded_left_rear_elbow_up_alike)
+    t301 = t298 | folded_right_rear_elbow_down_alike | short_right
+    t302 = _runtime.status(invalid, unreachable_4, t301 | folded_left_rear_elbow_down_alike)
     return (
-        t79,
-        t88,
-        t92,
-        _runtime.wrap(t94 - t96) + t78,
-        t99,
-        t101,
-        t79,
-        t88,
-        t92,
-        _runtime.wrap(t94 + t96) + t78,
-        t102,
-        t101,
-        t130,
+        t77,
+        t85,
+        t89,
+        _runtime.wrap(t90 - t92) + t76,
+        t95 + t76,
+        t97,
+        t77,
+        t85,
+        t89,
+        _runtime.wrap(t90 + t92) + t76,
+        t98 + t76,
+        t97,
+        t126,
+        t138,
         t142,
-        t146,
-        _runtime.wrap(t149 - t152) + t129,
-        t156 + t129,
-        t157,
-        t130,
+        _runtime.wrap(t144 - t148) + t125,
+        t152 + t125,
+        t153,
+        t126,
+        t138,
         t142,
-        t146,
-        _runtime.wrap(t149 + t152) + t129,
-        t158 + t129,
-        t157,
-        t212,
+        _runtime.wrap(t144 + t148) + t125,
+        t154 + t125,
+        t153,
+        t208,
+        t220,
         t224,
-        t228,
-        _runtime.wrap(t231 - t234) + t211,
-        t238 + t211,
-        t239,
-        t212,
+        _runtime.wrap(t226 - t230) + t207,
+        t234 + t207,
+        t235,
+        t208,
+        t220,
         t224,
-        t228,
-        _runtime.wrap(t231 + t234) + t211,
-        t240 + t211,
-        t239,
-        t268,
+        _runtime.wrap(t226 + t230) + t207,
+        t236 + t207,
+        t235,
+        t264,
+        t276,
         t280,
-        t284,
-        _runtime.wrap(t287 - t290) + t267,
-        t294 + t267,
-        t295,
-        t268,
+        _runtime.wrap(t282 - t286) + t263,
+        t290 + t263,
+        t291,
+        t264,
+        t276,
         t280,
-        t284,
-        _runtime.wrap(t287 + t290) + t267,
-        t296 + t267,
+        _runtime.wrap(t282 + t286) + t263,
+        t292 + t263,
+        t291,
         t295,
-        t299,
-        t299,
-        t301,
-        t301,
-        t304,
-        t304,
-        t306,
-        t306,
+        t295,
+        t297,
+        t297,
+        t300,
+        t300,
+        t302,
+        t302,
     )
 
 
@@ -1509,7 +1476,7 @@ def _wrist_length(psi, phi, d, gs, al):
     invalid = np.logical_not(t7 & (0.0 <= gs) & (0.0 <= al))
     t8 = -(_runtime.FEASIBILITY * (d + t3))
     t9 = (-_runtime.FEASIBILITY <= c_phi) & (t8 <= t4)
-    t10 = np.where(invalid | np.logical_not(t9 & (t8 <= t2)), np.nan, 0.0)
+    t10 = _runtime.poison(invalid | np.logical_not(t9 & (t8 <= t2)))
     return (
         t5 / t1 + t10,
     )
@@ -1580,7 +1547,7 @@ def _largest_yaw(phi, beta_min, d, gs, al):
     t4 = t3 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
     invalid = np.logical_not(t4 & (0.0 <= gs) & (0.0 <= al))
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    t5 = _runtime.wrap(2.0 * t2) + np.where(invalid | unreachable, np.nan, 0.0)
+    t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(invalid | unreachable)
     return (
         t5,
     )
@@ -1616,7 +1583,7 @@ def _largest_angle(beta_min, d, gs, al):
     t4 = t3 & np.isfinite(al) & (0.0 <= d) & (0.0 <= gs)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
     failed = np.logical_not(t4 & (0.0 <= al)) | unreachable
-    t5 = _runtime.wrap(2.0 * t2) + np.where(failed, np.nan, 0.0)
+    t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(failed)
     return (
         t5,
     )

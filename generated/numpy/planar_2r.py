@@ -5,13 +5,13 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 4 add, 8 multiply, 2 sincos
 #   pose: 4 add, 8 multiply, 2 sincos
-#   orientation: 1 add
+#   orientation: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
 #   jacobian: 4 add, 8 multiply, 2 sincos
 #   determinant: 2 multiply, 1 sincos
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
 #   singularities: 1 sincos
-#   ik: 13 add, 35 compare and select, 3 atan2, 13 multiply, 5 sqrt
-#   ik_pose: 95 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+#   ik: 13 add, 33 compare and select, 3 atan2, 13 multiply, 5 sqrt
+#   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
 #   workspace_radii: 1 compare and select, 2 add
 """Planar 2R arm.
 
@@ -72,10 +72,8 @@ _DEFAULT = Parameters()
 
 
 def _fk(theta1, theta2, l1, l2):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
     return (
         l1 * c1 + l2 * (c1 * c2 - s1 * s2),
         l1 * s1 + l2 * (s1 * c2 + c1 * s2),
@@ -104,10 +102,8 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
 
 
 def _pose(theta1, theta2, l1, l2):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
     c12 = c1 * c2 - s1 * s2
     s12 = s1 * c2 + c1 * s2
     return (
@@ -152,8 +148,11 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
 
 
 def _orientation(theta1, theta2):
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    t1 = np.arctan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2)
     return (
-        theta1 + theta2,
+        _runtime.wrap(t1),
     )
 
 
@@ -168,7 +167,7 @@ _ORIENTATION = _runtime.Kernel(
 
 
 def orientation(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Angle phi of the last link against the x axis, the plain sum of the joint angles.
+    """Angle phi of the last link against the x axis: the sum of the joint angles, in (-pi, pi].
 
     Source: eq. (5).
     q: shape (..., 2): theta1, theta2.
@@ -179,10 +178,8 @@ def orientation(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 
 
 def _jacobian(theta1, theta2, l1, l2):
-    s1 = np.sin(theta1)
-    c1 = np.cos(theta1)
-    s2 = np.sin(theta2)
-    c2 = np.cos(theta2)
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
     t1 = l2 * (s1 * c2 + c1 * s2)
     t2 = l2 * (c1 * c2 - s1 * s2)
     return (
@@ -300,36 +297,35 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 def _ik(px, py, l1, l2):
     r = np.sqrt(px * px + py * py)
     t1 = l1 + l2
-    t2 = r <= t1 * _runtime.VANISHING
-    t3 = np.arctan2(py, px)
-    t4 = t1 - r
-    rA = np.sqrt(np.maximum(t4, 0.0))
-    t5 = l1 - l2
-    t6 = r - t5
-    rC = np.sqrt(np.maximum(t6, 0.0))
+    at_base = r <= t1 * _runtime.VANISHING
+    t2 = np.arctan2(py, px)
+    t3 = t1 - r
+    rA = np.sqrt(np.maximum(t3, 0.0))
+    t4 = l1 - l2
+    t5 = r - t4
+    rC = np.sqrt(np.maximum(t5, 0.0))
     rS = np.sqrt(r + t1)
-    t7 = r + t5
-    rB = np.sqrt(np.maximum(t7, 0.0))
-    t8 = 2.0 * np.arctan2(rA * rC, rS * rB)
+    t6 = r + t4
+    rB = np.sqrt(np.maximum(t6, 0.0))
+    t7 = 2.0 * np.arctan2(rA * rC, rS * rB)
+    t8 = _runtime.wrap(np.where(at_base, 0.0, t2 - t7))
     t9 = np.isfinite(px) & np.isfinite(py) & np.isfinite(l1)
     t10 = t9 & np.isfinite(l2) & (0.0 <= l1) & (0.0 <= l2)
     invalid = np.logical_not(t10)
     t11 = -(_runtime.FEASIBILITY * t1)
-    unreachable = np.logical_not((t11 <= t4) & (t11 <= t7) & (t11 <= t6))
-    t12 = np.where(invalid | unreachable, np.nan, 0.0)
-    t13 = _runtime.wrap(np.where(t2, 0.0, t3 - t8)) + t12
-    t14 = 2.0 * np.arctan2(rA * rS, rC * rB)
-    t15 = _runtime.wrap(np.where(t2, 0.0, t3 + t8)) + t12
-    t16 = t2 | (l1 * l2 <= _runtime.VANISHING * (t1 * t1))
-    t17 = np.where(unreachable, 1.0, np.where(t16, 2.0, 0.0))
-    t18 = np.where(invalid, 3.0, t17)
+    unreachable = np.logical_not((t11 <= t3) & (t11 <= t6) & (t11 <= t5))
+    t12 = _runtime.poison(invalid | unreachable)
+    t13 = 2.0 * np.arctan2(rA * rS, rC * rB)
+    t14 = _runtime.wrap(np.where(at_base, 0.0, t2 + t7))
+    t15 = at_base | (l1 * l2 <= _runtime.VANISHING * (t1 * t1))
+    t16 = _runtime.status(invalid, unreachable, t15)
     return (
-        t13,
-        _runtime.wrap(t14) + t12,
-        t15,
-        _runtime.wrap(-t14) + t12,
-        t18,
-        t18,
+        t8 + t12,
+        _runtime.wrap(t13) + t12,
+        t14 + t12,
+        _runtime.wrap(-t13) + t12,
+        t16,
+        t16,
     )
 
 
@@ -363,42 +359,37 @@ def _ik_pose(
     T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T43, T44, l1, l2
 ):
     t1 = l1 + l2
-    t2 = l1 <= t1 * _runtime.VANISHING
+    no_first_link = l1 <= t1 * _runtime.VANISHING
     elbow_y = T24 - T21 * l2
-    s1 = np.where(t2, 0.0, elbow_y / l1)
+    s1 = np.where(no_first_link, 0.0, elbow_y / l1)
     elbow_x = T14 - T11 * l2
-    c1 = np.where(t2, 1.0, elbow_x / l1)
-    t3 = np.isfinite(T11) & np.isfinite(T12) & np.isfinite(T13)
-    t4 = t3 & np.isfinite(T14) & np.isfinite(T21) & np.isfinite(T22)
-    t5 = t4 & np.isfinite(T23) & np.isfinite(T24) & np.isfinite(T31)
-    t6 = t5 & np.isfinite(T32) & np.isfinite(T33) & np.isfinite(T34)
-    t7 = t6 & np.isfinite(T41) & np.isfinite(T42) & np.isfinite(T43)
-    t8 = t7 & np.isfinite(T44) & np.isfinite(l1) & np.isfinite(l2)
-    t9 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t10 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t11 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t12 = t8 & (0.0 <= l1) & (0.0 <= l2) & t9 & t10 & t11
-    t13 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t14 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t15 = t12 & (t13 <= _runtime.ROTATION) & (t14 <= _runtime.ROTATION)
-    t16 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t17 = t15 & t16 & (np.abs(T41) <= _runtime.ROTATION)
-    t18 = t17 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    t19 = t18 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    invalid = np.logical_not(t19)
-    t20 = np.sqrt(elbow_x * elbow_x + elbow_y * elbow_y)
-    t21 = _runtime.FEASIBILITY * t1
-    t22 = (np.abs(l1 - t20) <= t21) & (np.abs(T34) <= t21)
-    t23 = t22 & (np.abs(T13) <= _runtime.FEASIBILITY) & (np.abs(T23) <= _runtime.FEASIBILITY)
-    t24 = t23 & (np.abs(T33 - 1.0) <= _runtime.FEASIBILITY)
-    unreachable = np.logical_not(t24)
-    t25 = np.where(invalid | unreachable, np.nan, 0.0)
-    t26 = np.arctan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1)
-    t27 = np.where(unreachable, 1.0, np.where(t2, 2.0, 0.0))
+    c1 = np.where(no_first_link, 1.0, elbow_x / l1)
+    t2 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t3 = t2 & np.isfinite(l1) & np.isfinite(l2) & (0.0 <= l1)
+    t4 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t5 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t6 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t7 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t8 = t3 & (0.0 <= l2) & t4 & t5 & t6 & (t7 <= _runtime.ROTATION)
+    t9 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t10 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t11 = t8 & (t9 <= _runtime.ROTATION) & t10 & (np.abs(T41) <= _runtime.ROTATION)
+    t12 = t11 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    t13 = t12 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    invalid = np.logical_not(t13)
+    t14 = np.sqrt(elbow_x * elbow_x + elbow_y * elbow_y)
+    t15 = _runtime.FEASIBILITY * t1
+    t16 = (np.abs(l1 - t14) <= t15) & (np.abs(T34) <= t15)
+    t17 = t16 & (np.abs(T13) <= _runtime.FEASIBILITY) & (np.abs(T23) <= _runtime.FEASIBILITY)
+    t18 = t17 & (np.abs(T33 - 1.0) <= _runtime.FEASIBILITY)
+    unreachable = np.logical_not(t18)
+    t19 = _runtime.poison(invalid | unreachable)
+    t20 = np.arctan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1)
+    t21 = _runtime.status(invalid, unreachable, no_first_link)
     return (
-        _runtime.wrap(np.arctan2(s1, c1)) + t25,
-        _runtime.wrap(-t26) + t25,
-        np.where(invalid, 3.0, t27),
+        _runtime.wrap(np.arctan2(s1, c1)) + t19,
+        _runtime.wrap(-t20) + t19,
+        t21,
     )
 
 

@@ -9,7 +9,7 @@
 #   jacobian_body: 2 multiply, 2 sincos
 #   determinant: 1 sincos
 #   singularities: 1 sincos
-#   ik: 49 compare and select, 27 add, 6 atan2, 2 divide, 26 multiply, 1 sqrt
+#   ik: 30 compare and select, 27 add, 6 atan2, 2 divide, 26 multiply, 1 sqrt
 """Spherical wrist.
 
 Three revolute joints with axes through one point.  theta4 turns about z, theta5 about the y
@@ -64,12 +64,9 @@ _DEFAULT = Parameters()
 
 
 def _fk(theta4, theta5, theta6):
-    s5 = np.sin(theta5)
-    c5 = np.cos(theta5)
-    s4 = np.sin(theta4)
-    c4 = np.cos(theta4)
-    s6 = np.sin(theta6)
-    c6 = np.cos(theta6)
+    s5, c5 = _runtime.sincos(theta5)
+    s4, c4 = _runtime.sincos(theta4)
+    s6, c6 = _runtime.sincos(theta6)
     t1 = c4 * c6
     t2 = s4 * s6
     t3 = s4 * c6
@@ -109,12 +106,9 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
 
 
 def _pose(theta4, theta5, theta6, d6):
-    s5 = np.sin(theta5)
-    c5 = np.cos(theta5)
-    s4 = np.sin(theta4)
-    c4 = np.cos(theta4)
-    s6 = np.sin(theta6)
-    c6 = np.cos(theta6)
+    s5, c5 = _runtime.sincos(theta5)
+    s4, c4 = _runtime.sincos(theta4)
+    s6, c6 = _runtime.sincos(theta6)
     t1 = c4 * c6
     t2 = s4 * s6
     t3 = s4 * c6
@@ -162,10 +156,8 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
 
 
 def _jacobian_space(theta4, theta5, _theta6):
-    s4 = np.sin(theta4)
-    c4 = np.cos(theta4)
-    s5 = np.sin(theta5)
-    c5 = np.cos(theta5)
+    s4, c4 = _runtime.sincos(theta4)
+    s5, c5 = _runtime.sincos(theta5)
     return (
         0.0,
         -s4,
@@ -200,10 +192,8 @@ def jacobian_space(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = No
 
 
 def _jacobian_body(_theta4, theta5, theta6):
-    s5 = np.sin(theta5)
-    c5 = np.cos(theta5)
-    s6 = np.sin(theta6)
-    c6 = np.cos(theta6)
+    s5, c5 = _runtime.sincos(theta5)
+    s6, c6 = _runtime.sincos(theta6)
     return (
         -(s5 * c6),
         s6,
@@ -293,41 +283,38 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 
 def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33):
     h = np.sqrt(R13 * R13 + R23 * R23)
-    t1 = h <= _runtime.VANISHING
-    s4 = np.where(t1, 0.0, R23 / h)
-    t2 = R13 / h
-    c4 = np.where(t1, 1.0, t2)
-    t3 = np.isfinite(R11) & np.isfinite(R12) & np.isfinite(R13)
-    t4 = t3 & np.isfinite(R21) & np.isfinite(R22) & np.isfinite(R23)
-    t5 = t4 & np.isfinite(R31) & np.isfinite(R32) & np.isfinite(R33)
-    t6 = np.abs(R13 - R21 * R32 + R22 * R31) <= _runtime.ROTATION
-    t7 = np.abs(R23 + R11 * R32 - R12 * R31) <= _runtime.ROTATION
-    t8 = np.abs(R33 - R11 * R22 + R12 * R21) <= _runtime.ROTATION
-    t9 = np.abs(1.0 - R11 * R11 - R21 * R21 - R31 * R31)
-    t10 = t5 & t6 & t7 & t8 & (t9 <= _runtime.ROTATION)
-    t11 = np.abs(1.0 - R12 * R12 - R22 * R22 - R32 * R32)
-    t12 = np.abs(R11 * R12 + R21 * R22 + R31 * R32) <= _runtime.ROTATION
-    invalid = np.logical_not(t10 & (t11 <= _runtime.ROTATION) & t12)
-    t13 = np.where(invalid, np.nan, 0.0)
-    t14 = R23 * s4
-    t15 = _runtime.wrap(np.arctan2(R13 * c4 + t14, R33))
-    t16 = R11 * s4
-    t17 = R12 * s4
-    t18 = _runtime.wrap(-np.arctan2(t16 - R21 * c4, R22 * c4 - t17))
-    c4_theta5_negative = np.where(t1, 1.0, -t2)
-    t19 = _runtime.wrap(-np.arctan2(s4, c4_theta5_negative))
-    t20 = np.arctan2(t14 - R13 * c4_theta5_negative, R33)
-    t21 = np.arctan2(t16 + R21 * c4_theta5_negative, t17 + R22 * c4_theta5_negative)
-    t22 = np.where(invalid, 3.0, np.where(t1, 2.0, 0.0))
+    aligned = h <= _runtime.VANISHING
+    s4 = np.where(aligned, 0.0, R23 / h)
+    t1 = R13 / h
+    c4 = np.where(aligned, 1.0, t1)
+    t2 = np.abs(R13 - R21 * R32 + R22 * R31) <= _runtime.ROTATION
+    t3 = np.abs(R23 + R11 * R32 - R12 * R31) <= _runtime.ROTATION
+    t4 = np.abs(R33 - R11 * R22 + R12 * R21) <= _runtime.ROTATION
+    t5 = np.abs(1.0 - R11 * R11 - R21 * R21 - R31 * R31)
+    t6 = np.abs(1.0 - R12 * R12 - R22 * R22 - R32 * R32)
+    t7 = t2 & t3 & t4 & (t5 <= _runtime.ROTATION) & (t6 <= _runtime.ROTATION)
+    t8 = np.abs(R11 * R12 + R21 * R22 + R31 * R32) <= _runtime.ROTATION
+    invalid = np.logical_not(t7 & t8)
+    t9 = _runtime.poison(invalid)
+    t10 = R23 * s4
+    t11 = _runtime.wrap(np.arctan2(R13 * c4 + t10, R33))
+    t12 = R11 * s4
+    t13 = R12 * s4
+    t14 = _runtime.wrap(-np.arctan2(t12 - R21 * c4, R22 * c4 - t13))
+    c4_theta5_negative = np.where(aligned, 1.0, -t1)
+    t15 = _runtime.wrap(-np.arctan2(s4, c4_theta5_negative))
+    t16 = np.arctan2(t10 - R13 * c4_theta5_negative, R33)
+    t17 = np.arctan2(t12 + R21 * c4_theta5_negative, t13 + R22 * c4_theta5_negative)
+    t18 = _runtime.status(invalid, np.False_, aligned)
     return (
-        _runtime.wrap(np.arctan2(s4, c4)) + t13,
-        t15 + t13,
-        t18 + t13,
-        t19 + t13,
-        _runtime.wrap(-t20) + t13,
-        _runtime.wrap(t21) + t13,
-        t22,
-        t22,
+        _runtime.wrap(np.arctan2(s4, c4)) + t9,
+        t11 + t9,
+        t14 + t9,
+        t15 + t9,
+        _runtime.wrap(-t16) + t9,
+        _runtime.wrap(t17) + t9,
+        t18,
+        t18,
     )
 
 

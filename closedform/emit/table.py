@@ -1,0 +1,21 @@
+"""Prints a table of a derivation as comma-separated values: the nearest doubles."""
+
+from __future__ import annotations
+
+from closedform.derivation import Derivation, Table
+from closedform.functions import reject_floats
+from closedform.reference import Evaluator, to_float
+
+
+def csv(derivation: Derivation, table: Table) -> str:
+    """The header and a line for each value of the variable."""
+    example = {p.symbol: p.value for p in derivation.parameters}
+    columns = [e.xreplace(example) for e in table.columns.values()]
+    for name, column in zip(table.columns, columns, strict=True):
+        reject_floats(column, f"{derivation.name}, table {table.name}, column {name}")
+    evaluate = Evaluator([table.variable], columns)
+    lines = [",".join([table.header, *table.columns])]
+    for value in table.values:
+        numbers = [float(value), *map(to_float, evaluate([value]))]
+        lines.append(",".join(repr(n + 0.0) for n in numbers))  # never -0.0
+    return "\n".join(lines) + "\n"

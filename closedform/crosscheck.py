@@ -154,12 +154,17 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
 
 
 def _scale(magnitude: Callable[..., Any], values: Sequence[float], backend: Backend) -> float:
-    """The natural scale; infinite, so that nothing is compared, where the float type overflows."""
+    """The natural scale; infinite, so that nothing is compared, where the float type overflows.
+
+    Zero, so that the value itself is the scale, where rounding takes a root out of its domain.
+    """
     try:
         with np.errstate(over="ignore", under="ignore"):
             return float(magnitude(*map(backend.dtype, values)))
     except OverflowError:
         return math.inf
+    except (ValueError, ZeroDivisionError):
+        return 0.0
 
 
 def _variation(
@@ -167,8 +172,8 @@ def _variation(
 ) -> float:
     """How far the exact value moves when every input moves by an ulp: near a singularity, far."""
     moved = []
-    for pattern in range(4):
-        signs = [1 if (pattern >> (i % 2)) & 1 else -1 for i in range(len(values))]
+    for pattern in range(8):  # neighbours, and joints of the same place in twin arms, move apart
+        signs = [1 if (pattern >> (i % 3)) & 1 else -1 for i in range(len(values))]
         nearby = [v * (1 + s * backend.eps) for v, s in zip(values, signs, strict=True)]
         moved.append(abs(to_float(reference(nearby)[k] - exact)))
     return max((m for m in moved if math.isfinite(m)), default=0.0)
@@ -235,7 +240,7 @@ class _Truth:
             margins = _margins(function, signs)
             self._bounds.append(Evaluator((*function.symbols, *parameters), margins))
         factors = next((f for f in derivation.functions if f.name == "singularities"), None)
-        entries = factors.outputs[0].entries if factors and self._is_image else ()
+        entries = factors.values({}) if factors and self._is_image else ()
         self._factors = Evaluator((*inverse.unknowns, *parameters), entries)
 
     def images(self, sample: Sample) -> NDArray[np.float64]:

@@ -337,28 +337,21 @@ def two_sines(
 
     The part of the equation across u gives sin y; what is left along u gives sin x, so that an
     error of y does no harm where u and v are nearly parallel.  Where they are parallel a
-    combination of the sines is free; the convention is y = 0.
+    combination of the sines is free; the convention is y = 0.  Cosines are kept from zero by 1e-7, so
+    that their sign can be read from the answer.
     """
-    start = len(program.body)
     x, y = unknowns
+    area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
+    sigma = program.let("sigma_uv", sp.Piecewise((1, area >= 0), (-1, True)))
+    start = len(program.body)
     size = program.let("size_u", sp.sqrt(u[0] ** 2 + u[1] ** 2), nonnegative=True)
     other = program.let("size_v", sp.sqrt(v[0] ** 2 + v[1] ** 2), nonnegative=True)
-    uv = program.let("uv", u[0] * v[1] - u[1] * v[0])
-    up = program.let("up", u[0] * p[1] - u[1] * p[0])
-    scale = size * other
-    below = program.bound("below_y", sp.Abs(uv) - sp.Abs(up), scale, "the sine of y is at most 1")
-    above = program.let("above_y", sp.Abs(uv) + sp.Abs(up), nonnegative=True)
-    parallel = program.vanishes("parallel", sp.Abs(uv), scale, "both vectors are parallel", free)
-    root = program.let("root_y", sp.sqrt(below) * sp.sqrt(above), nonnegative=True)
-    norm = program.let("norm_y", sp.sqrt(up**2 + root**2), nonnegative=True)
-    sy = program.let(f"s{y.name}", choose(parallel, 0, uv / sp.Abs(uv) * up / norm))
-    cy = program.let(f"c{y.name}", choose(parallel, 1, root / norm))
+    uv = program.let("uv", sigma * (u[0] * v[1] - u[1] * v[0]))
+    up = program.let("up", sigma * (u[0] * p[1] - u[1] * p[0]))
+    parallel = program.vanishes("parallel", uv, size * other, "both vectors are parallel", free)
+    cy, sy = _from_sine(program, y, up, uv, size * other, parallel)
     along = program.let("along", ((p[0] - sy * v[0]) * u[0] + (p[1] - sy * v[1]) * u[1]) / size)
-    below = program.bound("below_x", size - sp.Abs(along), size, "the sine of x is at most 1")
-    above = program.let("above_x", size + sp.Abs(along), nonnegative=True)
-    root = program.let("root_x", sp.sqrt(below) * sp.sqrt(above), nonnegative=True)
-    norm = program.let("norm_x", sp.sqrt(along**2 + root**2), nonnegative=True)
-    sx, cx = program.let(f"s{x.name}", along / norm), program.let(f"c{x.name}", root / norm)
+    cx, sx = _from_sine(program, x, along, size, size, sp.false)
     return Lemma(
         "two sines",
         r"u\sin x + v\sin y = p,\ \cos x \ge 0,\ \cos y \ge 0 \;\Rightarrow\; "
@@ -371,3 +364,19 @@ def two_sines(
         pairs={x: (cx, sx), y: (cy, sy)},
         body=tuple(program.body[start:]),
     )
+
+
+def _from_sine(
+    program: Program, x: sp.Symbol, part: sp.Expr, whole: sp.Expr, scale: sp.Expr, flag: sp.Basic
+) -> tuple[sp.Symbol, sp.Symbol]:
+    """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""
+    below, above = (
+        program.bound(f"{name}_{x.name}", value, scale, meaning, positive=True)
+        for name, value, meaning in (
+            ("below", whole - part, "a sine is at most 1"),
+            ("above", whole + part, "a sine is at least -1"),
+        )
+    )
+    total = program.let(f"total_{x.name}", below + above)
+    cosine = program.let(f"c{x.name}", choose(flag, 1, 2 * sp.sqrt(below) * sp.sqrt(above) / total))
+    return cosine, program.let(f"s{x.name}", choose(flag, 0, (above - below) / total))

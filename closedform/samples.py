@@ -82,12 +82,12 @@ def inverse_postures(
 
 
 def _besides(derivation: Derivation, symbols: Sequence[sp.Symbol], values: Array) -> Array:
-    """Of two rows in three, a joint that stays beside another is drawn close to it."""
+    """A joint that stays beside another is drawn close to it."""
     values = values.copy()
     for joint in derivation.joints:
         if joint.beside is not None and joint.symbol in symbols:
             own, other = symbols.index(joint.symbol), symbols.index(joint.beside)
-            for start, fraction in ((0, 16.0), (1, 256.0)):
+            for start, fraction in ((0, 8.0), (1, 32.0), (2, 512.0)):
                 rows = values[start::3]
                 values[start::3, own] = rows[:, other] + rows[:, own] / fraction
     return values

@@ -1,6 +1,9 @@
 """The H6AR of Rao and Raju, as published: the wrist moves with the averages of the arms' angles."""
 
+from functools import partial
+
 import sympy as sp
+from closedform.derivations.claims.h6ar import Robot, state
 from closedform.derivations.h6ar_mechanism import (
     ELBOW,
     MID_PLANE_ROWS,
@@ -84,9 +87,7 @@ halves = {
 # Tips of the fore-arms
 
 right, left = arm(m, theta2R, theta2R + theta3R), arm(m, theta2L, theta2L + theta3L)
-tips = [
-    in_space(m, pair(theta1), planar, side) for planar, side in ((right, m.d), (left, -m.d))
-]
+tips = [in_space(m, pair(theta1), planar, side) for planar, side in ((right, m.d), (left, -m.d))]
 end = homogeneous(sp.eye(3), (0, 0, m.L2))
 by_frames = [
     product([*arm_frames(m, theta1, second, third, side), end])[:3, 3]
@@ -190,15 +191,18 @@ d.step(
         (cos(atan2(a, m.d)), m.d / half_base),
         (sin(atan2(a, m.d)), a / half_base),
         *(
-            ((m.al + k * m.gs) * m.d / half_base - k * m.d, m.d / half_base * (m.al + k * (m.gs - half_base)))
+            (
+                (m.al + k * m.gs) * m.d / half_base - k * m.d,
+                m.d / half_base * (m.al + k * (m.gs - half_base)),
+            )
             for k in (1, -1)
         ),
     ],
 )
 
 
-def stand(p: Program) -> tuple[Posture, sp.Matrix]:
-    """The posture of the joints: averages on the shorter arc, yaw, roll and the wrist."""
+def averages(p: Program) -> tuple[Pair, Pair]:
+    """The directions of the virtual arm: averages on the shorter arc."""
     upper, fore = (
         Pair(p.let(f"c{n}", side * cos(mean)), p.let(f"s{n}", side * sin(mean)))
         for n, mean, half in (
@@ -207,8 +211,16 @@ def stand(p: Program) -> tuple[Posture, sp.Matrix]:
         )
         for side in [p.let(f"side{n}", sp.Piecewise((1, cos(half) >= 0), (-1, True)))]
     )
+    return upper, fore
+
+
+def stand(p: Program) -> tuple[Posture, sp.Matrix]:
+    """The posture of the joints: averages, yaw, roll and the wrist."""
+    upper, fore = averages(p)
     joints = {theta2A: shoulder_mean, theta23A: fore_mean, alpha: shoulder_half, beta: fore_half}
-    ahead, above = (p.let(n, e) for n, e in zip(("ahead", "higher"), mean.subs(joints), strict=True))
+    ahead, above = (
+        p.let(n, e) for n, e in zip(("ahead", "higher"), mean.subs(joints), strict=True)
+    )
     base = p.let("base", sqrt(m.d**2 + ahead**2), nonnegative=True)
     rise = p.let("rise", sqrt(m.d**2 + above**2), nonnegative=True)
     yaw = Pair(p.let("cpsi", m.d / base), p.let("spsi", ahead / base))
@@ -251,12 +263,12 @@ d.function(
     source="eqs. (1) and (2)",
 )
 p = Program()
-here, _ = stand(p)
+mid_arm = reach(m, *averages(p), m.L2, m.a3)
 d.function(
     "invariant_point",
     "The invariant point, by the averages of the angles.",
     {"q": q},
-    {"p": in_space(m, here.waist, reach(m, here.upper, here.fore, m.L2, m.a3), sp.S.Zero)},
+    {"p": in_space(m, pair(theta1), mid_arm, sp.S.Zero)},
     program=p,
     source="eq. (7)",
 )
@@ -266,6 +278,7 @@ d.function(
 outer = outer_jacobian(m, q, m.d / cos(psi), wrist)
 by_half = sp.Matrix([shoulder_mean, fore_mean, shoulder_half, fore_half]).jacobian(q)
 gap = real("ahead"), real("higher")
+side2A, side23A = real("side2A"), real("side23A")
 inner = sp.zeros(6)
 inner[0, 0] = inner[5, 5] = sp.S.One
 inner[1:3, :] = by_half[:2, :]
@@ -304,8 +317,8 @@ def factors(here: Posture) -> list[sp.Expr]:
         reach(m, here.upper, here.fore, along, across)[0],
         straight(along, across, here.upper, here.fore),
         straight(m.L2, m.a3, here.upper, here.fore),
-        sp.Abs(cos(shoulder_half)),
-        sp.Abs(cos(fore_half)),
+        side2A * cos(shoulder_half),
+        side23A * cos(fore_half),
         here.wrist,
     ]
 
@@ -387,3 +400,25 @@ d.inverses.append(
     )
 )
 design(d, m, cos(psi))
+
+# Claims of the paper
+
+state(
+    d,
+    Robot(
+        m,
+        theta1,
+        theta2A,
+        theta23A,
+        alpha,
+        beta,
+        psi,
+        phi,
+        tips,
+        by_frames,
+        serial,
+        T,
+        extended(m, posture),
+        partial(arm, m),
+    ),
+)

@@ -160,9 +160,7 @@ def stand(p: Program) -> Posture:
     half = p.let("base", sqrt(m.d**2 + ahead**2 + higher**2), nonnegative=True)
     yaw = Pair(p.let("cpsi", tilted / half), p.let("spsi", beyond / half))
     roll = Pair(p.let("cphi", m.d / tilted), p.let("sphi", -width / tilted))
-    return Posture(
-        pair(theta1), upper, fore, yaw, roll, pair(theta), wrist_let(p, m, half), half
-    )
+    return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), wrist_let(p, m, half), half)
 
 
 p = Program()
@@ -381,7 +379,10 @@ d.inverses.append(
         (
             *forward,
             *(middle - arm(m, theta2A, theta23A)),
-            *(sp.Matrix([along_fore, -across_fore]).subs({ahead: apart[0], higher: apart[1]}) / m.d),
+            *(
+                sp.Matrix([along_fore, -across_fore]).subs({ahead: apart[0], higher: apart[1]})
+                / m.d
+            ),
         ),
         angles=(psi, phi, pitch),
         image=d["fk"].values({}),

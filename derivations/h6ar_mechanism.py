@@ -126,9 +126,7 @@ def arm(m: Dimensions, upper: sp.Expr, fore: sp.Expr) -> sp.Matrix:
 def in_space(m: Dimensions, waist: Pair, planar: sp.Matrix, side: sp.Expr) -> sp.Matrix:
     """A point of an arm's plane, ``side`` to the right of the mid-plane, in the base frame."""
     r, h = planar
-    return sp.Matrix(
-        [waist.s * side + waist.c * r, -waist.c * side + waist.s * r, m.d1 + h]
-    )
+    return sp.Matrix([waist.s * side + waist.c * r, -waist.c * side + waist.s * r, m.d1 + h])
 
 
 def arm_frames(m: Dimensions, theta1: sp.Expr, theta2: sp.Expr, theta3: sp.Expr, d: sp.Expr):
@@ -302,7 +300,9 @@ def outer_jacobian(m: Dimensions, q: Joints, base: sp.Expr, wrist: sp.Symbol) ->
 def named(expr, p: Posture, q: Joints):
     """An expression in the angles of the mid-plane, over the named pairs of a program."""
     state = (q.theta1, theta2A, theta23A, psi, phi, q.theta)
-    names = {f: n for s, t in zip(state, p[:6], strict=True) for f, n in zip(pair(s), t, strict=True)}
+    names = {
+        f: n for s, t in zip(state, p[:6], strict=True) for f, n in zip(pair(s), t, strict=True)
+    }
     return expr.xreplace(names)
 
 

@@ -7,11 +7,11 @@
  *   fk: 45 add, 63 compare and select, 3 atan2, 8 divide, 60 multiply, 6 sincos, 4 sqrt
  *   pose: 72 add, 60 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
- *   invariant_point: 31 add, 50 compare and select, 4 divide, 44 multiply, 5 sincos, 1 sqrt
+ *   invariant_point: 19 add, 4 divide, 4 compare and select, 34 multiply, 5 sincos
  *   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
- *   determinant: 58 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
- *   singularities: 58 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
- *   ik: 204 compare and select, 183 add, 18 atan2, 43 divide, 215 multiply, 3 sincos, 48 sqrt
+ *   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
+ *   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
+ *   ik: 191 add, 224 compare and select, 18 atan2, 43 divide, 211 multiply, 3 sincos, 40 sqrt
  *   wrist_length: 6 add, 26 compare and select, 1 divide, 4 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt

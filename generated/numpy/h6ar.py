@@ -6,11 +6,11 @@
 #   fk: 45 add, 63 compare and select, 3 atan2, 8 divide, 60 multiply, 6 sincos, 4 sqrt
 #   pose: 72 add, 60 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
-#   invariant_point: 31 add, 50 compare and select, 4 divide, 44 multiply, 5 sincos, 1 sqrt
+#   invariant_point: 19 add, 4 divide, 4 compare and select, 34 multiply, 5 sincos
 #   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
-#   determinant: 58 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
-#   singularities: 58 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
-#   ik: 204 compare and select, 183 add, 18 atan2, 43 divide, 215 multiply, 3 sincos, 48 sqrt
+#   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
+#   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
+#   ik: 191 add, 224 compare and select, 18 atan2, 43 divide, 211 multiply, 3 sincos, 40 sqrt
 #   wrist_length: 6 add, 26 compare and select, 1 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -361,9 +361,7 @@ def arm_tips(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
     return result
 
 
-def _invariant_point(
-    theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al
-):
+def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2, a3, d1):
     s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
     s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
     s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
@@ -378,40 +376,20 @@ def _invariant_point(
     t6 = s3L_half * c3R_half
     t7 = c3L_half * s3R_half
     t8 = t6 - t7
-    t9 = c2R_half * t5 + s2R_half * t8
-    t10 = s2R_half * t5 - c2R_half * t8
-    side23A = np.where(0.0 <= c2L_half * t9 + s2L_half * t10, 1.0, -1.0)
-    t11 = t3 - t4
-    t12 = t6 + t7
-    t13 = c2R_half * t11 - s2R_half * t12
-    t14 = s2R_half * t11 + c2R_half * t12
-    t15 = s2L_half * t13 + c2L_half * t14
-    s23A = side23A * t15
-    t16 = c2L_half * t13 - s2L_half * t14
-    c23A = side23A * t16
-    t17 = L1 * (side2A * (t1 - t2)) + L2 * s23A + a3 * c23A
-    t18 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t19 = t18 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t20 = t19 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t21 = t20 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t22 = t21 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= L1)
-    t23 = t22 & (0.0 <= L2) & (0.0 <= a3) & (0.0 <= d1)
-    invalid = np.logical_not(t23 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al))
-    t24 = gs + al
-    t25 = -(_runtime.FEASIBILITY * t24)
-    t26 = s2L_half * c2R_half
-    t27 = c2L_half * s2R_half
-    t28 = t26 + t27
-    t29 = (s2L_half * t9 - c2L_half * t10) * (L2 * t16 - a3 * t15)
-    ahead = L1 * (t26 - t27) * t28 - t29
-    base = np.sqrt(ahead * ahead + d * d)
-    t30 = (t25 <= t24 - base) & (t25 <= base - (gs - al))
-    t31 = _runtime.poison(invalid | np.logical_not(t30))
-    t32 = d1 + L1 * (side2A * t28) - L2 * c23A + a3 * s23A
+    t9 = c2L_half * (c2R_half * t5 + s2R_half * t8) + s2L_half * (s2R_half * t5 - c2R_half * t8)
+    side23A = np.where(0.0 <= t9, 1.0, -1.0)
+    t10 = t3 - t4
+    t11 = t6 + t7
+    t12 = c2R_half * t10 - s2R_half * t11
+    t13 = s2R_half * t10 + c2R_half * t11
+    s23A = side23A * (s2L_half * t12 + c2L_half * t13)
+    c23A = side23A * (c2L_half * t12 - s2L_half * t13)
+    t14 = L1 * (side2A * (t1 - t2)) + L2 * s23A + a3 * c23A
+    s2A = side2A * (s2L_half * c2R_half + c2L_half * s2R_half)
     return (
-        t17 * c1 + t31,
-        t17 * s1 + t31,
-        t32 + t31,
+        t14 * c1,
+        t14 * s1,
+        d1 + L1 * s2A - L2 * c23A + a3 * s23A,
     )
 
 
@@ -421,7 +399,7 @@ _INVARIANT_POINT = _runtime.Kernel(
     (_runtime.Array("q", (6,)),),
     (_runtime.Array("p", (3,)),),
     Parameters._fields,
-    ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al'),
+    ('L1', 'L2', 'a3', 'd1'),
 )
 
 
@@ -653,20 +631,20 @@ def _determinant(
     t2 = s2L_half * s2R_half
     t3 = t1 + t2
     side2A = np.where(0.0 <= t3, 1.0, -1.0)
-    t4 = t1 - t2
-    c2A = side2A * t4
-    t5 = c3L_half * c3R_half
-    t6 = s3L_half * s3R_half
-    t7 = t5 + t6
-    t8 = s3L_half * c3R_half
-    t9 = c3L_half * s3R_half
-    t10 = t8 - t9
-    t11 = c2R_half * t7 + s2R_half * t10
-    t12 = s2R_half * t7 - c2R_half * t10
-    t13 = c2L_half * t11 + s2L_half * t12
-    side23A = np.where(0.0 <= t13, 1.0, -1.0)
-    t14 = t5 - t6
-    t15 = t8 + t9
+    t4 = c3L_half * c3R_half
+    t5 = s3L_half * s3R_half
+    t6 = t4 + t5
+    t7 = s3L_half * c3R_half
+    t8 = c3L_half * s3R_half
+    t9 = t7 - t8
+    t10 = c2R_half * t6 + s2R_half * t9
+    t11 = s2R_half * t6 - c2R_half * t9
+    t12 = c2L_half * t10 + s2L_half * t11
+    side23A = np.where(0.0 <= t12, 1.0, -1.0)
+    t13 = t1 - t2
+    c2A = side2A * t13
+    t14 = t4 - t5
+    t15 = t7 + t8
     t16 = c2R_half * t14 - s2R_half * t15
     t17 = s2R_half * t14 + c2R_half * t15
     t18 = c2L_half * t16 - s2L_half * t17
@@ -679,11 +657,11 @@ def _determinant(
     s23A = side23A * t22
     t23 = c2A * c23A + s2A * s23A
     t24 = s2A * c23A - c2A * s23A
-    t25 = L1 * L1 * (L2 * t23 + a3 * t24) * np.abs(t3) * np.abs(t13)
+    t25 = t3 * side2A * t12 * side23A * (L1 * L1) * (L2 * t23 + a3 * t24)
     t26 = d * d
-    t27 = s2L_half * t11 - c2L_half * t12
+    t27 = s2L_half * t10 - c2L_half * t11
     t28 = L1 * (t19 - t20)
-    t29 = t27 * (L2 * t22 + a3 * t18) + t4 * t28
+    t29 = t27 * (L2 * t22 + a3 * t18) + t13 * t28
     rise = np.sqrt(t26 + t29 * t29)
     cphi = d / rise
     t30 = t27 * (L2 * t18 - a3 * t22) - t21 * t28
@@ -799,8 +777,8 @@ def _singularities(
         L1 * c2A + c23A * t32 + s23A * t33 + t42,
         t43 * t33 + t44 * t32 + t42,
         L2 * t43 + a3 * t44 + t42,
-        np.abs(t3) + t42,
-        np.abs(t13) + t42,
+        t3 * side2A + t42,
+        t13 * side23A + t42,
         wrist + t42,
     )
 
@@ -932,260 +910,285 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     v1 = L2 * ctheta23A - a3 * stheta23A
     v2 = L2 * stheta23A + a3 * ctheta23A
     t59 = size_u * np.sqrt(v1 * v1 + v2 * v2)
-    t60 = t50 * v2 + u2 * v1
-    t61 = np.abs(t60)
+    t60 = -(_runtime.FEASIBILITY * t59)
+    t61 = t50 * v2 + u2 * v1
+    sigma_uv = np.where(0.0 <= -t61, 1.0, -1.0)
     ahead = d * s_psi / c_psi
     higher = d * s_phi / c_phi
-    t62 = ahead * u2 + higher * t50
-    t63 = np.abs(t62)
-    t64 = t61 - t63
-    parallel = t61 <= _runtime.VANISHING * t59
-    root_y = np.sqrt(t63 + t61) * np.sqrt(np.maximum(t64, 0.0))
-    norm_y = np.sqrt(root_y * root_y + t62 * t62)
-    sbeta = np.where(parallel, 0.0, t62 * t60 / (t61 * norm_y))
-    t65 = t50 * (ahead - v1 * sbeta) - u2 * (higher - v2 * sbeta)
-    t66 = t65 / size_u
-    t67 = np.abs(t66)
-    t68 = size_u - t67
-    t69 = t41 & (-(_runtime.FEASIBILITY * t59) <= t64) & (-(_runtime.FEASIBILITY * size_u) <= t68)
-    unreachable = np.logical_not(t69)
-    t70 = _runtime.poison(invalid | unreachable)
-    t71 = np.where(folded, 0.0, np.arctan2(t29, outward))
-    t72 = np.where(t43, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
-    t73 = t71 + t72
-    root_x = np.sqrt(size_u + t67) * np.sqrt(np.maximum(t68, 0.0))
-    norm_x = np.sqrt(t66 * t66 + root_x * root_x)
-    t74 = np.arctan2(t66 / norm_x, root_x / norm_x)
-    t75 = np.arctan2(s_lag, c_lag)
-    t76 = 2.0 * np.arctan2(t47, t48)
-    t77 = np.where(short, 0.0, t75 - t76)
-    t78 = np.arctan2(sbeta, np.where(parallel, 1.0, root_y / norm_y))
-    t79 = t74 + t78
-    t80 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
+    t62 = sigma_uv * (ahead * u2 + higher * t50)
+    t63 = t61 * sigma_uv
+    t64 = t62 - t63
+    t65 = -(t63 + t62)
+    t66 = -(_runtime.FEASIBILITY * size_u)
+    t67 = _runtime.VANISHING * t59
+    parallel = -t63 <= t67
+    below_beta = np.maximum(t64, t67)
+    above_beta = np.maximum(t65, t67)
+    total_beta = below_beta + above_beta
+    t68 = np.where(parallel, 0.0, (below_beta - above_beta) / total_beta)
+    t69 = t50 * (ahead + v1 * t68) - u2 * (higher + v2 * t68)
+    t70 = t69 / size_u
+    t71 = size_u + t70
+    t72 = t41 & (t60 <= t64) & (t60 <= t65) & (t66 <= t71)
+    t73 = size_u - t70
+    unreachable = np.logical_not(t72 & (t66 <= t73))
+    t74 = _runtime.poison(invalid | unreachable)
+    t75 = np.where(folded, 0.0, np.arctan2(t29, outward))
+    t76 = np.where(t43, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
+    t77 = t75 + t76
+    t78 = _runtime.VANISHING * size_u
+    below_alpha = np.maximum(t71, t78)
+    above_alpha = np.maximum(t73, t78)
+    total_alpha = below_alpha + above_alpha
+    t79 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t80 = np.arctan2((below_alpha - above_alpha) / total_alpha, t79 / total_alpha)
+    t81 = np.arctan2(s_lag, c_lag)
+    t82 = 2.0 * np.arctan2(t47, t48)
+    t83 = np.where(short, 0.0, t81 - t82)
+    t84 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t85 = np.arctan2(t68, np.where(parallel, 1.0, t84 / total_beta))
+    t86 = t80 - t85
+    t87 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
     stheta2A_front_elbow_down = t46 - t49
-    t81 = L1 * stheta2A_front_elbow_down
+    t88 = L1 * stheta2A_front_elbow_down
     ctheta2A_front_elbow_down = t51 + t52
     u2_front_elbow_down = L1 * ctheta2A_front_elbow_down
-    t82 = t81 * t81 + u2_front_elbow_down * u2_front_elbow_down
-    size_u_front_elbow_down = np.sqrt(t82)
+    t89 = t88 * t88 + u2_front_elbow_down * u2_front_elbow_down
+    size_u_front_elbow_down = np.sqrt(t89)
     c_bend_front_elbow_down = t55 - t56
-    t83 = ctheta2A_front_elbow_down * c_bend_front_elbow_down
+    t90 = ctheta2A_front_elbow_down * c_bend_front_elbow_down
     s_bend_front_elbow_down = t57 + t58
-    t84 = stheta2A_front_elbow_down * s_bend_front_elbow_down
-    ctheta23A_front_elbow_down = t83 - t84
-    t85 = stheta2A_front_elbow_down * c_bend_front_elbow_down
-    t86 = ctheta2A_front_elbow_down * s_bend_front_elbow_down
-    stheta23A_front_elbow_down = t85 + t86
+    t91 = stheta2A_front_elbow_down * s_bend_front_elbow_down
+    ctheta23A_front_elbow_down = t90 - t91
+    t92 = stheta2A_front_elbow_down * c_bend_front_elbow_down
+    t93 = ctheta2A_front_elbow_down * s_bend_front_elbow_down
+    stheta23A_front_elbow_down = t92 + t93
     v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down
     v2_front_elbow_down = L2 * stheta23A_front_elbow_down + a3 * ctheta23A_front_elbow_down
-    t87 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
-    t88 = size_u_front_elbow_down * np.sqrt(t87)
-    t89 = t81 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
-    t90 = np.abs(t89)
-    t91 = ahead * u2_front_elbow_down + higher * t81
-    t92 = np.abs(t91)
-    t93 = t90 - t92
-    t94 = _runtime.FEASIBILITY * size_u_front_elbow_down
-    parallel_front_elbow_down = t90 <= _runtime.VANISHING * t88
-    root_y_front_elbow_down = np.sqrt(t92 + t90) * np.sqrt(np.maximum(t93, 0.0))
-    t95 = root_y_front_elbow_down * root_y_front_elbow_down
-    norm_y_front_elbow_down = np.sqrt(t95 + t91 * t91)
-    sbeta_front_elbow_down = np.where(parallel_front_elbow_down, 0.0, t91 * t89 / (t90 * norm_y_front_elbow_down))
-    t96 = ahead - v1_front_elbow_down * sbeta_front_elbow_down
-    t97 = higher - v2_front_elbow_down * sbeta_front_elbow_down
-    t98 = (t81 * t96 - u2_front_elbow_down * t97) / size_u_front_elbow_down
-    t99 = np.abs(t98)
-    t100 = size_u_front_elbow_down - t99
-    t101 = t41 & (-(_runtime.FEASIBILITY * t88) <= t93) & (-t94 <= t100)
-    unreachable_2 = np.logical_not(t101)
-    t102 = _runtime.poison(invalid | unreachable_2)
-    t103 = t71 - t72
-    root_x_front_elbow_down = np.sqrt(size_u_front_elbow_down + t99) * np.sqrt(np.maximum(t100, 0.0))
-    t104 = root_x_front_elbow_down * root_x_front_elbow_down
-    norm_x_front_elbow_down = np.sqrt(t98 * t98 + t104)
-    calpha_front_elbow_down = root_x_front_elbow_down / norm_x_front_elbow_down
-    t105 = np.arctan2(t98 / norm_x_front_elbow_down, calpha_front_elbow_down)
-    t106 = np.where(short, 0.0, t75 + t76)
-    t107 = root_y_front_elbow_down / norm_y_front_elbow_down
-    cbeta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t107)
-    t108 = np.arctan2(sbeta_front_elbow_down, cbeta_front_elbow_down)
-    t109 = t105 + t108
-    t110 = _runtime.wrap(-np.where(nowhere, 0.0, t1 + t14))
-    t111 = x * np.where(nowhere, 1.0, -((t32 + t33) / h))
-    outward_rear_elbow_up = t111 + y * np.where(nowhere, 0.0, (t35 - t36) / h)
-    t112 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t30 + t112)
-    t113 = t27 - reach_rear_elbow_up
-    t114 = reach_rear_elbow_up + t38
-    t115 = reach_rear_elbow_up - t38
-    t116 = t26 & (t28 <= t113) & (t28 <= t114) & (t28 <= t115)
+    t94 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
+    t95 = size_u_front_elbow_down * np.sqrt(t94)
+    t96 = -(_runtime.FEASIBILITY * t95)
+    t97 = t88 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
+    sigma_uv_front_elbow_down = np.where(0.0 <= -t97, 1.0, -1.0)
+    t98 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t88)
+    t99 = t97 * sigma_uv_front_elbow_down
+    t100 = t98 - t99
+    t101 = -(t99 + t98)
+    t102 = _runtime.FEASIBILITY * size_u_front_elbow_down
+    t103 = _runtime.VANISHING * t95
+    parallel_front_elbow_down = -t99 <= t103
+    below_beta_front_elbow_down = np.maximum(t100, t103)
+    above_beta_front_elbow_down = np.maximum(t101, t103)
+    t104 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
+    t105 = np.where(parallel_front_elbow_down, 0.0, t104 / total_beta_front_elbow_down)
+    t106 = u2_front_elbow_down * (higher + v2_front_elbow_down * t105)
+    t107 = t88 * (ahead + v1_front_elbow_down * t105) - t106
+    t108 = t107 / size_u_front_elbow_down
+    t109 = size_u_front_elbow_down + t108
+    t110 = t41 & (t96 <= t100) & (t96 <= t101) & (-t102 <= t109)
+    t111 = size_u_front_elbow_down - t108
+    unreachable_2 = np.logical_not(t110 & (-t102 <= t111))
+    t112 = _runtime.poison(invalid | unreachable_2)
+    t113 = t75 - t76
+    t114 = _runtime.VANISHING * size_u_front_elbow_down
+    below_alpha_front_elbow_down = np.maximum(t109, t114)
+    above_alpha_front_elbow_down = np.maximum(t111, t114)
+    t115 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
+    t116 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t117 = np.arctan2(t115 / total_alpha_front_elbow_down, t116 / total_alpha_front_elbow_down)
+    t118 = np.where(short, 0.0, t81 + t82)
+    t119 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    cbeta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t119 / total_beta_front_elbow_down)
+    t120 = t117 - np.arctan2(t105, cbeta_front_elbow_down)
+    t121 = _runtime.wrap(-np.where(nowhere, 0.0, t1 + t14))
+    t122 = x * np.where(nowhere, 1.0, -((t32 + t33) / h))
+    outward_rear_elbow_up = t122 + y * np.where(nowhere, 0.0, (t35 - t36) / h)
+    t123 = outward_rear_elbow_up * outward_rear_elbow_up
+    reach_rear_elbow_up = np.sqrt(t30 + t123)
+    t124 = t27 - reach_rear_elbow_up
+    t125 = reach_rear_elbow_up + t38
+    t126 = reach_rear_elbow_up - t38
+    t127 = t26 & (t28 <= t124) & (t28 <= t125) & (t28 <= t126)
     folded_rear_elbow_up = reach_rear_elbow_up <= t42
     s_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 0.0, t29 / reach_rear_elbow_up)
-    t117 = folded_rear_elbow_up | short
-    A_rear_elbow_up = np.maximum(t113, 0.0)
-    C_rear_elbow_up = np.maximum(t115, 0.0)
-    t118 = A_rear_elbow_up * C_rear_elbow_up
+    t128 = folded_rear_elbow_up | short
+    A_rear_elbow_up = np.maximum(t124, 0.0)
+    C_rear_elbow_up = np.maximum(t126, 0.0)
+    t129 = A_rear_elbow_up * C_rear_elbow_up
     S_rear_elbow_up = t27 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t114, 0.0)
-    t119 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t118 + t119
-    c_base_rear_elbow_up = np.where(t117, 1.0, -((t118 - t119) / at_base_rear_elbow_up))
-    t120 = s_sight_rear_elbow_up * c_base_rear_elbow_up
+    B_rear_elbow_up = np.maximum(t125, 0.0)
+    t130 = S_rear_elbow_up * B_rear_elbow_up
+    at_base_rear_elbow_up = t129 + t130
+    c_base_rear_elbow_up = np.where(t128, 1.0, -((t129 - t130) / at_base_rear_elbow_up))
+    t131 = s_sight_rear_elbow_up * c_base_rear_elbow_up
     c_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
     rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
     rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t121 = rS_rear_elbow_up * rA_rear_elbow_up
+    t132 = rS_rear_elbow_up * rA_rear_elbow_up
     rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
     rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t122 = rB_rear_elbow_up * rC_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t121 * t122
-    s_base_rear_elbow_up = np.where(t117, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t123 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t120 - t123
-    t124 = L1 * stheta2A_rear_elbow_up
-    t125 = c_sight_rear_elbow_up * c_base_rear_elbow_up
-    t126 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t125 + t126
+    t133 = rB_rear_elbow_up * rC_rear_elbow_up
+    area_rear_elbow_up = 2.0 * t132 * t133
+    s_base_rear_elbow_up = np.where(t128, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
+    t134 = c_sight_rear_elbow_up * s_base_rear_elbow_up
+    stheta2A_rear_elbow_up = t131 - t134
+    t135 = L1 * stheta2A_rear_elbow_up
+    t136 = c_sight_rear_elbow_up * c_base_rear_elbow_up
+    t137 = s_sight_rear_elbow_up * s_base_rear_elbow_up
+    ctheta2A_rear_elbow_up = t136 + t137
     u2_rear_elbow_up = L1 * ctheta2A_rear_elbow_up
-    t127 = t124 * t124 + u2_rear_elbow_up * u2_rear_elbow_up
-    size_u_rear_elbow_up = np.sqrt(t127)
-    t128 = A_rear_elbow_up * S_rear_elbow_up
-    t129 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t128 + t129
-    c_elbow_rear_elbow_up = np.where(short, 1.0, -((t128 - t129) / at_elbow_rear_elbow_up))
-    t130 = c_lag * c_elbow_rear_elbow_up
+    t138 = t135 * t135 + u2_rear_elbow_up * u2_rear_elbow_up
+    size_u_rear_elbow_up = np.sqrt(t138)
+    t139 = A_rear_elbow_up * S_rear_elbow_up
+    t140 = C_rear_elbow_up * B_rear_elbow_up
+    at_elbow_rear_elbow_up = t139 + t140
+    c_elbow_rear_elbow_up = np.where(short, 1.0, -((t139 - t140) / at_elbow_rear_elbow_up))
+    t141 = c_lag * c_elbow_rear_elbow_up
     s_elbow_rear_elbow_up = np.where(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t131 = s_lag * s_elbow_rear_elbow_up
-    c_bend_rear_elbow_up = t130 - t131
-    t132 = ctheta2A_rear_elbow_up * c_bend_rear_elbow_up
-    t133 = s_lag * c_elbow_rear_elbow_up
-    t134 = c_lag * s_elbow_rear_elbow_up
-    s_bend_rear_elbow_up = t133 + t134
-    t135 = stheta2A_rear_elbow_up * s_bend_rear_elbow_up
-    ctheta23A_rear_elbow_up = t132 - t135
-    t136 = stheta2A_rear_elbow_up * c_bend_rear_elbow_up
-    t137 = ctheta2A_rear_elbow_up * s_bend_rear_elbow_up
-    stheta23A_rear_elbow_up = t136 + t137
+    t142 = s_lag * s_elbow_rear_elbow_up
+    c_bend_rear_elbow_up = t141 - t142
+    t143 = ctheta2A_rear_elbow_up * c_bend_rear_elbow_up
+    t144 = s_lag * c_elbow_rear_elbow_up
+    t145 = c_lag * s_elbow_rear_elbow_up
+    s_bend_rear_elbow_up = t144 + t145
+    t146 = stheta2A_rear_elbow_up * s_bend_rear_elbow_up
+    ctheta23A_rear_elbow_up = t143 - t146
+    t147 = stheta2A_rear_elbow_up * c_bend_rear_elbow_up
+    t148 = ctheta2A_rear_elbow_up * s_bend_rear_elbow_up
+    stheta23A_rear_elbow_up = t147 + t148
     v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up
     v2_rear_elbow_up = L2 * stheta23A_rear_elbow_up + a3 * ctheta23A_rear_elbow_up
-    t138 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
-    t139 = size_u_rear_elbow_up * np.sqrt(t138)
-    t140 = t124 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
-    t141 = np.abs(t140)
-    t142 = ahead * u2_rear_elbow_up + higher * t124
-    t143 = np.abs(t142)
-    t144 = t141 - t143
-    t145 = t116 & (-(_runtime.FEASIBILITY * t139) <= t144)
-    t146 = -(_runtime.FEASIBILITY * size_u_rear_elbow_up)
-    parallel_rear_elbow_up = t141 <= _runtime.VANISHING * t139
-    root_y_rear_elbow_up = np.sqrt(t143 + t141) * np.sqrt(np.maximum(t144, 0.0))
-    t147 = root_y_rear_elbow_up * root_y_rear_elbow_up + t142 * t142
-    norm_y_rear_elbow_up = np.sqrt(t147)
-    sbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 0.0, t142 * t140 / (t141 * norm_y_rear_elbow_up))
-    t148 = ahead - v1_rear_elbow_up * sbeta_rear_elbow_up
-    t149 = higher - v2_rear_elbow_up * sbeta_rear_elbow_up
-    t150 = (t124 * t148 - u2_rear_elbow_up * t149) / size_u_rear_elbow_up
-    t151 = np.abs(t150)
-    t152 = size_u_rear_elbow_up - t151
-    unreachable_3 = np.logical_not(t145 & (t146 <= t152))
-    t153 = _runtime.poison(invalid | unreachable_3)
-    t154 = np.where(folded_rear_elbow_up, 0.0, np.arctan2(t29, outward_rear_elbow_up))
-    t155 = np.arctan2(rA_rear_elbow_up * rC_rear_elbow_up, rS_rear_elbow_up * rB_rear_elbow_up)
-    t156 = np.where(t117, 0.0, 2.0 * t155)
-    t157 = t154 - t156
-    root_x_rear_elbow_up = np.sqrt(size_u_rear_elbow_up + t151) * np.sqrt(np.maximum(t152, 0.0))
-    t158 = t150 * t150 + root_x_rear_elbow_up * root_x_rear_elbow_up
-    norm_x_rear_elbow_up = np.sqrt(t158)
-    t159 = np.arctan2(t150 / norm_x_rear_elbow_up, root_x_rear_elbow_up / norm_x_rear_elbow_up)
-    t160 = 2.0 * np.arctan2(t121, t122)
-    t161 = np.where(short, 0.0, t75 + t160)
-    cbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, root_y_rear_elbow_up / norm_y_rear_elbow_up)
-    t162 = np.arctan2(sbeta_rear_elbow_up, cbeta_rear_elbow_up)
-    t163 = t159 + t162
-    stheta2A_rear_elbow_down = t120 + t123
-    t164 = L1 * stheta2A_rear_elbow_down
-    ctheta2A_rear_elbow_down = t125 - t126
+    t149 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
+    t150 = size_u_rear_elbow_up * np.sqrt(t149)
+    t151 = -(_runtime.FEASIBILITY * t150)
+    t152 = t135 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
+    sigma_uv_rear_elbow_up = np.where(0.0 <= -t152, 1.0, -1.0)
+    t153 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t135)
+    t154 = t152 * sigma_uv_rear_elbow_up
+    t155 = t153 - t154
+    t156 = -(t154 + t153)
+    t157 = -(_runtime.FEASIBILITY * size_u_rear_elbow_up)
+    t158 = _runtime.VANISHING * t150
+    parallel_rear_elbow_up = -t154 <= t158
+    below_beta_rear_elbow_up = np.maximum(t155, t158)
+    above_beta_rear_elbow_up = np.maximum(t156, t158)
+    t159 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
+    t160 = np.where(parallel_rear_elbow_up, 0.0, t159 / total_beta_rear_elbow_up)
+    t161 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t160)
+    t162 = t135 * (ahead + v1_rear_elbow_up * t160) - t161
+    t163 = t162 / size_u_rear_elbow_up
+    t164 = size_u_rear_elbow_up + t163
+    t165 = t127 & (t151 <= t155) & (t151 <= t156) & (t157 <= t164)
+    t166 = size_u_rear_elbow_up - t163
+    unreachable_3 = np.logical_not(t165 & (t157 <= t166))
+    t167 = _runtime.poison(invalid | unreachable_3)
+    t168 = np.where(folded_rear_elbow_up, 0.0, np.arctan2(t29, outward_rear_elbow_up))
+    t169 = np.arctan2(rA_rear_elbow_up * rC_rear_elbow_up, rS_rear_elbow_up * rB_rear_elbow_up)
+    t170 = np.where(t128, 0.0, 2.0 * t169)
+    t171 = t168 - t170
+    t172 = _runtime.VANISHING * size_u_rear_elbow_up
+    below_alpha_rear_elbow_up = np.maximum(t164, t172)
+    above_alpha_rear_elbow_up = np.maximum(t166, t172)
+    t173 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
+    t174 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t175 = np.arctan2(t173 / total_alpha_rear_elbow_up, t174 / total_alpha_rear_elbow_up)
+    t176 = 2.0 * np.arctan2(t132, t133)
+    t177 = np.where(short, 0.0, t81 + t176)
+    t178 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    cbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, t178 / total_beta_rear_elbow_up)
+    t179 = t175 - np.arctan2(t160, cbeta_rear_elbow_up)
+    stheta2A_rear_elbow_down = t131 + t134
+    t180 = L1 * stheta2A_rear_elbow_down
+    ctheta2A_rear_elbow_down = t136 - t137
     u2_rear_elbow_down = L1 * ctheta2A_rear_elbow_down
-    t165 = t164 * t164 + u2_rear_elbow_down * u2_rear_elbow_down
-    size_u_rear_elbow_down = np.sqrt(t165)
-    c_bend_rear_elbow_down = t130 + t131
-    t166 = ctheta2A_rear_elbow_down * c_bend_rear_elbow_down
-    s_bend_rear_elbow_down = t133 - t134
-    t167 = stheta2A_rear_elbow_down * s_bend_rear_elbow_down
-    ctheta23A_rear_elbow_down = t166 - t167
-    t168 = stheta2A_rear_elbow_down * c_bend_rear_elbow_down
-    t169 = ctheta2A_rear_elbow_down * s_bend_rear_elbow_down
-    stheta23A_rear_elbow_down = t168 + t169
+    t181 = t180 * t180 + u2_rear_elbow_down * u2_rear_elbow_down
+    size_u_rear_elbow_down = np.sqrt(t181)
+    c_bend_rear_elbow_down = t141 + t142
+    t182 = ctheta2A_rear_elbow_down * c_bend_rear_elbow_down
+    s_bend_rear_elbow_down = t144 - t145
+    t183 = stheta2A_rear_elbow_down * s_bend_rear_elbow_down
+    ctheta23A_rear_elbow_down = t182 - t183
+    t184 = stheta2A_rear_elbow_down * c_bend_rear_elbow_down
+    t185 = ctheta2A_rear_elbow_down * s_bend_rear_elbow_down
+    stheta23A_rear_elbow_down = t184 + t185
     v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down
     v2_rear_elbow_down = L2 * stheta23A_rear_elbow_down + a3 * ctheta23A_rear_elbow_down
-    t170 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
-    t171 = size_u_rear_elbow_down * np.sqrt(t170)
-    t172 = t164 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
-    t173 = np.abs(t172)
-    t174 = ahead * u2_rear_elbow_down + higher * t164
-    t175 = np.abs(t174)
-    t176 = t173 - t175
-    t177 = t116 & (-(_runtime.FEASIBILITY * t171) <= t176)
-    t178 = _runtime.FEASIBILITY * size_u_rear_elbow_down
-    parallel_rear_elbow_down = t173 <= _runtime.VANISHING * t171
-    root_y_rear_elbow_down = np.sqrt(t175 + t173) * np.sqrt(np.maximum(t176, 0.0))
-    t179 = root_y_rear_elbow_down * root_y_rear_elbow_down
-    norm_y_rear_elbow_down = np.sqrt(t179 + t174 * t174)
-    t180 = t174 * t172 / (t173 * norm_y_rear_elbow_down)
-    sbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 0.0, t180)
-    t181 = ahead - v1_rear_elbow_down * sbeta_rear_elbow_down
-    t182 = higher - v2_rear_elbow_down * sbeta_rear_elbow_down
-    t183 = (t164 * t181 - u2_rear_elbow_down * t182) / size_u_rear_elbow_down
-    t184 = np.abs(t183)
-    t185 = size_u_rear_elbow_down - t184
-    unreachable_4 = np.logical_not(t177 & (-t178 <= t185))
-    t186 = _runtime.poison(invalid | unreachable_4)
-    t187 = t154 + t156
-    root_x_rear_elbow_down = np.sqrt(size_u_rear_elbow_down + t184) * np.sqrt(np.maximum(t185, 0.0))
-    t188 = root_x_rear_elbow_down * root_x_rear_elbow_down
-    norm_x_rear_elbow_down = np.sqrt(t183 * t183 + t188)
-    calpha_rear_elbow_down = root_x_rear_elbow_down / norm_x_rear_elbow_down
-    t189 = np.arctan2(t183 / norm_x_rear_elbow_down, calpha_rear_elbow_down)
-    t190 = np.where(short, 0.0, t75 - t160)
-    t191 = root_y_rear_elbow_down / norm_y_rear_elbow_down
-    cbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t191)
-    t192 = np.arctan2(sbeta_rear_elbow_down, cbeta_rear_elbow_down)
-    t193 = t189 + t192
-    t194 = nowhere | folded | short
-    t195 = _runtime.status(invalid, unreachable, t194 | parallel)
-    t196 = _runtime.status(invalid, unreachable_2, t194 | parallel_front_elbow_down)
-    t197 = nowhere | folded_rear_elbow_up | short
-    t198 = _runtime.status(invalid, unreachable_3, t197 | parallel_rear_elbow_up)
-    t199 = _runtime.status(invalid, unreachable_4, t197 | parallel_rear_elbow_down)
+    t186 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
+    t187 = size_u_rear_elbow_down * np.sqrt(t186)
+    t188 = -(_runtime.FEASIBILITY * t187)
+    t189 = t180 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
+    sigma_uv_rear_elbow_down = np.where(0.0 <= -t189, 1.0, -1.0)
+    t190 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t180)
+    t191 = t189 * sigma_uv_rear_elbow_down
+    t192 = t190 - t191
+    t193 = -(t191 + t190)
+    t194 = _runtime.FEASIBILITY * size_u_rear_elbow_down
+    t195 = _runtime.VANISHING * t187
+    parallel_rear_elbow_down = -t191 <= t195
+    below_beta_rear_elbow_down = np.maximum(t192, t195)
+    above_beta_rear_elbow_down = np.maximum(t193, t195)
+    t196 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
+    t197 = np.where(parallel_rear_elbow_down, 0.0, t196 / total_beta_rear_elbow_down)
+    t198 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t197)
+    t199 = t180 * (ahead + v1_rear_elbow_down * t197) - t198
+    t200 = t199 / size_u_rear_elbow_down
+    t201 = size_u_rear_elbow_down + t200
+    t202 = t127 & (t188 <= t192) & (t188 <= t193) & (-t194 <= t201)
+    t203 = size_u_rear_elbow_down - t200
+    unreachable_4 = np.logical_not(t202 & (-t194 <= t203))
+    t204 = _runtime.poison(invalid | unreachable_4)
+    t205 = t168 + t170
+    t206 = _runtime.VANISHING * size_u_rear_elbow_down
+    below_alpha_rear_elbow_down = np.maximum(t201, t206)
+    above_alpha_rear_elbow_down = np.maximum(t203, t206)
+    t207 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
+    t208 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t209 = np.arctan2(t207 / total_alpha_rear_elbow_down, t208 / total_alpha_rear_elbow_down)
+    t210 = np.where(short, 0.0, t81 - t176)
+    t211 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    cbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t211 / total_beta_rear_elbow_down)
+    t212 = t209 - np.arctan2(t197, cbeta_rear_elbow_down)
+    t213 = nowhere | folded | short
+    t214 = _runtime.status(invalid, unreachable, t213 | parallel)
+    t215 = _runtime.status(invalid, unreachable_2, t213 | parallel_front_elbow_down)
+    t216 = nowhere | folded_rear_elbow_up | short
+    t217 = _runtime.status(invalid, unreachable_3, t216 | parallel_rear_elbow_up)
+    t218 = _runtime.status(invalid, unreachable_4, t216 | parallel_rear_elbow_down)
     return (
-        t15 + t70,
-        _runtime.wrap(t73 - t74) + t70,
-        _runtime.wrap(t77 + t79) + t70,
-        _runtime.wrap(t74 + t73) + t70,
-        _runtime.wrap(t77 - t79) + t70,
-        t80 + t70,
-        t15 + t102,
-        _runtime.wrap(t103 - t105) + t102,
-        _runtime.wrap(t106 + t109) + t102,
-        _runtime.wrap(t105 + t103) + t102,
-        _runtime.wrap(t106 - t109) + t102,
-        t80 + t102,
-        t110 + t153,
-        _runtime.wrap(t157 - t159) + t153,
-        _runtime.wrap(t161 + t163) + t153,
-        _runtime.wrap(t159 + t157) + t153,
-        _runtime.wrap(t161 - t163) + t153,
-        t80 + t153,
-        t110 + t186,
-        _runtime.wrap(t187 - t189) + t186,
-        _runtime.wrap(t190 + t193) + t186,
-        _runtime.wrap(t189 + t187) + t186,
-        _runtime.wrap(t190 - t193) + t186,
-        t80 + t186,
-        t195,
-        t196,
-        t198,
-        t199,
+        t15 + t74,
+        _runtime.wrap(t77 - t80) + t74,
+        _runtime.wrap(t83 + t86) + t74,
+        _runtime.wrap(t80 + t77) + t74,
+        _runtime.wrap(t83 - t86) + t74,
+        t87 + t74,
+        t15 + t112,
+        _runtime.wrap(t113 - t117) + t112,
+        _runtime.wrap(t118 + t120) + t112,
+        _runtime.wrap(t117 + t113) + t112,
+        _runtime.wrap(t118 - t120) + t112,
+        t87 + t112,
+        t121 + t167,
+        _runtime.wrap(t171 - t175) + t167,
+        _runtime.wrap(t177 + t179) + t167,
+        _runtime.wrap(t175 + t171) + t167,
+        _runtime.wrap(t177 - t179) + t167,
+        t87 + t167,
+        t121 + t204,
+        _runtime.wrap(t205 - t209) + t204,
+        _runtime.wrap(t210 + t212) + t204,
+        _runtime.wrap(t209 + t205) + t204,
+        _runtime.wrap(t210 - t212) + t204,
+        t87 + t204,
+        t214,
+        t215,
+        t217,
+        t218,
     )
 
 

@@ -6,7 +6,7 @@ refutes, by a counterexample, and raises `Undecided` where it can do neither.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -25,7 +25,16 @@ from closedform.tower import (
     shortened,
 )
 
-__all__ = ["Decision", "Undecided", "ZeroResult", "decide", "equal", "is_zero", "normal"]
+__all__ = [
+    "Decision",
+    "Undecided",
+    "ZeroResult",
+    "decide",
+    "equal",
+    "is_zero",
+    "normal",
+    "positive_form",
+]
 
 
 @dataclass(frozen=True)
@@ -92,6 +101,19 @@ def normal(e: Expr, nonnegative: Iterable[Expr] = ()) -> Expr:
     scale = content(value.den)
     num, den = value.num / scale, value.den / scale
     return tower.expression(num) / tower.expression(den)
+
+
+def positive_form(expr: Expr, slack: Sequence[tuple[sp.Symbol, Expr]]) -> Expr:
+    """``expr`` with symbols written in nonnegative ones, so that all its coefficients are positive.
+
+    Such a form proves that the expression is not negative where the new symbols are not.
+    """
+    top, bottom = sp.fraction(sp.together(sp.expand(expr.subs(slack))))
+    for part in (top, bottom):
+        polynomial = sp.Poly(part, sp.Dummy("one"), *sorted(part.free_symbols, key=str))
+        if any(c.is_negative for c in polynomial.coeffs()):
+            raise ValueError(f"{expr}: not evidently positive as {polynomial.as_expr()}")
+    return sp.expand(top) / bottom
 
 
 def decide(problem: Problem, nonnegative: Iterable[Expr] = (), seed: int = 0) -> Decision:

@@ -241,6 +241,35 @@ class Enumeration(Check):
 
 
 @dataclass(frozen=True)
+class Holds(Check):
+    """Relations between constants, by name: all of them hold, or the statement is refuted.
+
+    They are decided by enclosures; an equation by the exact zero test.
+    """
+
+    relations: Mapping[str, Expr]
+
+    def judge(self) -> Verdict:
+        failed = [name for name, relation in self.relations.items() if not _holds(relation)]
+        if failed:
+            return Verdict(REFUTED, f"not so: {', '.join(failed)}")
+        return Verdict(PROVED, ", ".join(self.relations))
+
+
+@dataclass(frozen=True)
+class Under(Check):
+    """A check that holds under an ``assumption`` which the paper leaves open."""
+
+    check: Check
+    assumption: str
+
+    def judge(self) -> Verdict:
+        verdict = self.check.judge()
+        kind = PROVED_UNDER if verdict.kind == PROVED else verdict.kind
+        return Verdict(kind, self.assumption, verdict.corrected)
+
+
+@dataclass(frozen=True)
 class Every(Check):
     """A statement with several parts: it is worth what its worst part is worth."""
 
@@ -368,6 +397,22 @@ def _sign(e: Expr) -> int:
     if decide(_denested(e)).holds:
         return 0
     raise Undecided(f"the sign of {e}")
+
+
+def _holds(relation: Expr) -> bool:
+    """Whether a relation between constants holds; SymPy may have decided it already."""
+    if relation in (sp.true, sp.false):
+        return bool(relation)
+    sign = _sign(relation.lhs - relation.rhs)
+    allowed = {
+        sp.Eq: (0,),
+        sp.Ne: (-1, 1),
+        sp.Gt: (1,),
+        sp.Ge: (0, 1),
+        sp.Lt: (-1,),
+        sp.Le: (-1, 0),
+    }
+    return sign in allowed[type(relation)]
 
 
 def _nearest(e: Expr) -> int:

@@ -85,6 +85,8 @@ def crosscheck(derivation: Derivation, backend: Backend) -> list[Finding]:
     for function in derivation.functions:
         if function.name in inverses:
             findings.append(check_inverse(derivation, function, inverses[function.name], backend))
+        elif function.boolean:
+            findings.append(check_boolean(derivation, function, backend))
         else:
             findings.append(check_forward(derivation, function, backend))
     return findings
@@ -126,6 +128,7 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     scales = [sp.lambdify(symbols, magnitude(e), "math") for e in exprs]
     margins = [Evaluator(symbols, _margins(function, signs)) for _, signs in function.cases()]
     entries = len(exprs) // len(cases)
+    flags = Evaluator(symbols, _flagged(function))
     for sample in joint_samples(derivation, function):
         sample = _round(sample, backend)
         if not len(sample.values):
@@ -135,6 +138,8 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
         computed = np.concatenate([o.reshape(rows, -1) for o in outputs], axis=1)
         for row in range(rows):
             values = [*map(float, sample.values[row]), *sample.parameters]
+            if any(to_float(f) < 2 * backend.tolerances.vanishing for f in flags(values)):
+                continue
             slack = 2 * backend.tolerances.feasibility
             exists = [_feasible(margin, values, slack) for margin in margins]
             for k, exact in enumerate(reference(values)):
@@ -165,6 +170,39 @@ def _scale(magnitude: Callable[..., Any], values: Sequence[float], backend: Back
         return math.inf
     except (ValueError, ZeroDivisionError):
         return 0.0
+
+
+def _flagged(function: Function) -> list[sp.Expr]:
+    """What the flags of a function look at, over its scale: near zero the value is a convention."""
+    return [
+        margin for _, signs in function.cases() for margin in _margins(function, signs, Vanishes)
+    ]
+
+
+def check_boolean(derivation: Derivation, function: Function, backend: Backend) -> Finding:
+    """Compare truth values with the exact bounds, where those are not within a tolerance of zero.
+
+    A condition in the output itself is compared in Arb as well.
+    """
+    finding = Finding(derivation.name, function.name, backend.name, unit="wrong answers")
+    symbols = _symbols(derivation, function)
+    bounds = Evaluator(symbols, _margins(function, {}))
+    (output,) = (sp.Piecewise((1, e), (0, True)) for a in function.outputs for e in a.entries)
+    condition = Evaluator(symbols, [output])
+    slack = 2 * backend.tolerances.feasibility
+    for sample in joint_samples(derivation, function):
+        sample = _round(sample, backend)
+        (computed,) = _call(backend, function, sample)
+        for answer, row in zip(computed, sample.values, strict=True):
+            values = [*map(float, row), *sample.parameters]
+            margins = list(map(to_float, bounds(values)))
+            if any(abs(m) <= slack for m in margins):
+                continue
+            expected = all(m > 0 for m in margins) and to_float(condition(values)[0]) == 1
+            finding.see(0.0, str)
+            if bool(answer) != expected:
+                finding.fail(f"{bool(answer)} at {sample.name}: {values}")
+    return finding
 
 
 def _variation(
@@ -199,18 +237,19 @@ def check_inverse(
     back; else (the assembly modes of a loop) inputs are sampled as they are.
     """
     finding = Finding(derivation.name, function.name, backend.name, unit="residual / eps")
-    inverse = inverse.posed(function.symbols)
+    if inverse.chain:
+        inverse = inverse.posed(function.symbols, derivation[inverse.images].values({}))
     truth = _Truth(derivation, function, inverse)
-    if tuple(inverse.targets) != function.symbols:
+    if not truth.has_images:
         for sample in joint_samples(derivation, function):
             _check_batch(finding, truth, backend, _round(sample, backend), None, exact=True)
         return finding
     for sample in inverse_postures(derivation, inverse.unknowns):
         postures = _round(sample, backend)
-        images = truth.images(postures)
-        possible = np.isfinite(images).all(axis=1)  # a posture may break a loop
-        images, postures = images[possible], replace(postures, values=postures.values[possible])
-        for values, known in ((images, postures.values), (perturbed(images), None)):
+        images, known_postures = truth.images(postures)
+        if not len(images):
+            continue
+        for values, known in ((images, known_postures), (perturbed(images), None)):
             posed = _round(Sample(sample.name, values, sample.parameters), backend)
             _check_batch(finding, truth, backend, posed, known, exact=known is not None)
     return finding
@@ -232,23 +271,34 @@ class _Truth:
         ]
         lengths = [f for f, x in pairs if x not in inverse.angles]
         self._scales = [sp.lambdify(place, magnitude(f), "math") for f in lengths]
-        self._is_image = tuple(inverse.targets) == function.symbols
-        if self._is_image:
-            self._forward = Evaluator((*inverse.unknowns, *parameters), inverse.forward)
+        explicit = tuple(inverse.targets) == function.symbols
+        self.has_images = explicit or bool(inverse.images)
+        maps = [inverse.forward] if explicit else []
+        if inverse.images:
+            forward = derivation[inverse.images]
+            maps = [forward.values(mode) for _, mode in forward.cases()]
+        self._maps = [Evaluator((*inverse.unknowns, *parameters), m) for m in maps]
         self._bounds = []
         for _, signs in function.cases():
             margins = _margins(function, signs)
             self._bounds.append(Evaluator((*function.symbols, *parameters), margins))
         factors = next((f for f in derivation.functions if f.name == "singularities"), None)
-        entries = factors.values({}) if factors and self._is_image else ()
+        entries: list[sp.Expr] = []
+        if factors and self.has_images:
+            entries = [e for _, signs in factors.cases() for e in factors.values(signs)]
         self._factors = Evaluator((*inverse.unknowns, *parameters), entries)
 
-    def images(self, sample: Sample) -> NDArray[np.float64]:
-        rows = [
-            [to_float(b) for b in self._forward([*map(float, row), *sample.parameters])]
-            for row in sample.values
-        ]
-        return np.array(rows).reshape(len(sample.values), -1)
+    def images(self, sample: Sample) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """What the postures are taken to, in each assembly mode they have, and the postures."""
+        rows, postures = [], []
+        for forward in self._maps:
+            for row in sample.values:
+                image = forward([*map(float, row), *sample.parameters])
+                if all(b.is_finite() for b in image):
+                    rows.append([to_float(b) for b in image])
+                    postures.append(row)
+        shape = (-1, len(self.function.symbols))
+        return np.array(rows).reshape(shape), np.array(postures).reshape(-1, len(self.angular))
 
     def residual(
         self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]
@@ -271,7 +321,7 @@ class _Truth:
     def condition(self, posture: NDArray[Any], parameters: Sequence[float]) -> float:
         """The smallest factor of the singular set, at most 1."""
         factors = self._factors([*map(float, posture), *parameters])
-        return min([1.0, *(abs(to_float(f)) for f in factors)])
+        return min([1.0, *(abs(to_float(f)) for f in factors if f.is_finite())])
 
     def gap(self, solutions: NDArray[Any], posture: NDArray[Any]) -> NDArray[np.float64]:
         """The distance of each solution from a posture, angles modulo a turn."""
@@ -288,8 +338,10 @@ def _feasible(margins: Evaluator, values: Sequence[float], slack: float) -> bool
     return False if min(found) < -slack else None
 
 
-def _margins(function: Function, signs: Mapping[sp.Symbol, int]) -> list[sp.Expr]:
-    """The bounds of a branch over their natural scales."""
+def _margins(
+    function: Function, signs: Mapping[sp.Symbol, int], kind: type = Bound
+) -> list[sp.Expr]:
+    """The bounds (or the flags) of a branch over their natural scales."""
     known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
     margins = []
     for statement in function.body:
@@ -297,8 +349,9 @@ def _margins(function: Function, signs: Mapping[sp.Symbol, int]) -> list[sp.Expr
             known[statement.symbol] = substitute(statement.value, known)
         elif isinstance(statement, Vanishes):
             known[statement.symbol] = sp.false
-        if isinstance(statement, Bound):
-            margins.append(known[statement.symbol] / substitute(statement.scale, known))
+        if isinstance(statement, kind) and isinstance(statement, (Bound, Vanishes)):
+            value = substitute(statement.value, known)
+            margins.append(value / substitute(statement.scale, known))
     return margins
 
 

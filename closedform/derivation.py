@@ -86,6 +86,8 @@ class Solved:
     unknown: sp.Symbol
     lemma: Lemma
     equation: sp.Expr
+    posture: Mapping[sp.Symbol, sp.Expr] | None = None
+    """The inputs in terms of joints, passive ones too, where the inverse does not say it itself."""
 
 
 @dataclass(frozen=True)
@@ -100,10 +102,26 @@ class Continuum:
     free: sp.Symbol
     relation: str
     branches: tuple[str, ...] = ()
+    also: tuple[sp.Symbol, ...] = ()
+    """Other flags that are true on the locus."""
 
 
 @dataclass(frozen=True)
-class Stages:
+class Stage:
+    """One of several steps in which the solutions of a system are counted.
+
+    ``equations`` are places in the system; they hold no unknowns but those of this stage and of
+    earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
+    equations of the earlier stages hold identically.
+    """
+
+    unknowns: tuple[sp.Symbol, ...]
+    equations: tuple[int, ...]
+    given: Mapping[sp.Symbol, sp.Expr]
+
+
+@dataclass(frozen=True)
+class Chain:
     """An inverse that is too large for one Groebner basis, certified lemma by lemma.
 
     ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas``.  The equations of
@@ -127,10 +145,14 @@ class Inverse:
     same number of expressions in free symbols.  Of the targets in ``angles`` only the sine and the
     cosine count.
 
+    A closed loop gives equations in unknowns and inputs together: they are ``forward``, the
+    ``targets`` are zeros, and ``images`` names the function whose values, in each assembly mode,
+    are inputs with a known solution.  ``stages`` count the solutions step by step.
+
     Where the equations that are solved are not the forward map itself, targets are expressions in
-    the inputs (such as ``tan(psi)``), ``forward`` may hold inputs too, and ``image`` is the forward
-    map: the inputs of the function in the unknowns.  A step shows that it satisfies the equations;
-    the cross-check puts the answers into it.
+    the inputs (such as ``tan(psi)``), and ``forward`` may hold inputs too; then ``chain`` proves the
+    inverse lemma by lemma, a step shows that the map named by ``images`` satisfies the equations,
+    and the cross-check puts the answers into that map.
     """
 
     function: str
@@ -140,12 +162,13 @@ class Inverse:
     continua: tuple[Continuum, ...] = ()
     parametrisation: tuple[sp.Expr, ...] = ()
     angles: tuple[sp.Symbol, ...] = ()
-    image: tuple[sp.Expr, ...] = ()
-    stages: Stages | None = None
+    images: str = ""
+    stages: tuple[Stage, ...] = ()
+    chain: Chain | None = None
 
-    def posed(self, inputs: tuple[sp.Symbol, ...]) -> Inverse:
-        """The same inverse with the forward map for its equations."""
-        return replace(self, targets=inputs, forward=self.image) if self.image else self
+    def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
+        """The same inverse with the forward map, ``image``, for its equations."""
+        return replace(self, targets=inputs, forward=image, images="")
 
     @property
     def equations(self) -> tuple[sp.Expr, ...]:

@@ -17,7 +17,7 @@ import sympy as sp
 
 from closedform.algebra import Decision, Undecided, decide, normal
 from closedform.claims import VERDICTS
-from closedform.derivation import Continuum, Derivation, Inverse, Stages
+from closedform.derivation import Chain, Continuum, Derivation, Inverse
 from closedform.functions import Array, Bound, Function, Let, Program, substitute
 from closedform.lemmas import Lemma
 from closedform.refute import Counterexample
@@ -143,8 +143,8 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
 def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     """Sound: each branch satisfies the equations.  Complete: there are no other solutions."""
     function = derivation[inverse.function]
-    if inverse.stages:
-        return _prove_staged(derivation, function, inverse, inverse.stages)
+    if inverse.chain:
+        return _prove_chained(derivation, function, inverse, inverse.chain)
     assumptions = _prove_sound(derivation, function, inverse)
     for continuum in inverse.continua:
         _prove_continuum(derivation, function, inverse, continuum)
@@ -167,41 +167,41 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     )
 
 
-def _prove_staged(
-    derivation: Derivation, function: Function, inverse: Inverse, stages: Stages
+def _prove_chained(
+    derivation: Derivation, function: Function, inverse: Inverse, chain: Chain
 ) -> InverseResult:
     """The lemmas have all their solutions; their equations are equivalent to the system."""
     where = f"{derivation.name}.{function.name}"
-    known, equations = _meanings(function, stages), []
-    for lemma in stages.lemmas:
+    known, equations = _meanings(function, chain), []
+    for lemma in chain.lemmas:
         prove_lemma(lemma, Program(list(lemma.body)))
         equations += [substitute(e, known) for e in lemma.equations]
-    graph = dict(stages.joints)
+    graph = dict(chain.joints)
     system = sp.Matrix([substitute(e, graph) for e in inverse.equations])
-    combined = stages.combination * sp.Matrix(equations)
+    combined = chain.combination * sp.Matrix(equations)
     _require(system - combined, (), f"{where}: the lemmas' equations do not combine to the system")
-    if not normal(stages.combination.det()).is_nonzero:
+    if not normal(chain.combination.det()).is_nonzero:
         raise ProofError(f"{where}: the matrix that combines the lemmas' equations is singular")
-    solution = {u: _generic(e) for lemma in stages.lemmas for u, e in lemma.solution.items()}
+    solution = {u: _generic(e) for lemma in chain.lemmas for u, e in lemma.solution.items()}
     answers = [_generic(e) for a in function.outputs for e in a.entries]
     for joint, answer in zip(inverse.unknowns, answers, strict=True):
-        difference = substitute(stages.joints[joint], solution) - answer
+        difference = substitute(chain.joints[joint], solution) - answer
         if sp.expand(difference) != 0:
             raise ProofError(f"{where}: {joint} is not what the lemmas give: {difference}")
-    count = math.prod(lemma.branches for lemma in stages.lemmas)
+    count = math.prod(lemma.branches for lemma in chain.lemmas)
     branches = len(function.branches) if function.branches else 1
-    if count != branches * stages.kept_of:
+    if count != branches * chain.kept_of:
         raise ProofError(f"{where}: the lemmas give {count} solutions, not {branches}")
-    names = tuple(dict.fromkeys(lemma.name for lemma in stages.lemmas))
-    method = "lemma by lemma" + (f"; {stages.because}" if stages.because else "")
+    names = tuple(dict.fromkeys(lemma.name for lemma in chain.lemmas))
+    method = "lemma by lemma" + (f"; {chain.because}" if chain.because else "")
     return InverseResult(function.name, branches, 0, branches, method, (), names)
 
 
-def _meanings(function: Function, stages: Stages) -> dict[sp.Basic, sp.Basic]:
+def _meanings(function: Function, chain: Chain) -> dict[sp.Basic, sp.Basic]:
     """What the names of a program stand for, in inputs, parameters and unknowns of the lemmas."""
     known: dict[sp.Basic, sp.Basic] = {}
     inside: set[int] = set()
-    for lemma in stages.lemmas:
+    for lemma in chain.lemmas:
         for unknown, (cosine, sine) in lemma.pairs.items():
             known |= {cosine: sp.cos(unknown), sine: sp.sin(unknown)}
         inside |= {id(s) for s in lemma.body}
@@ -251,7 +251,8 @@ def _prove_continuum(
     for label, signs in function.cases():
         if continuum.branches and label not in continuum.branches:
             continue
-        values = function.at(signs, {continuum.flag: True}, continuum.locus)
+        flags = dict.fromkeys((continuum.flag, *continuum.also), True)
+        values = function.at(signs, flags, continuum.locus)
         solution = dict(zip(inverse.unknowns, values, strict=True))
         difference = sp.Matrix(
             [substitute(substitute(e, solution), continuum.locus) for e in inverse.equations]
@@ -272,12 +273,15 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
             f"{derivation.name}.{inverse.function}: the equation solved for {solved.unknown} by "
             f"the lemma {solved.lemma.name!r} must follow from the forward map"
         )
-        _require(substitute(solved.equation, graph), (), where)
+        posture = graph if solved.posture is None else solved.posture
+        _require(substitute(solved.equation, posture), (), where)
         lemmas.append(solved.lemma.name)
     return tuple(dict.fromkeys(lemmas))
 
 
 def _count(inverse: Inverse) -> tuple[int, str]:
+    if inverse.stages:
+        return _count_in_stages(inverse), "step by step"
     given = _targets(inverse)
     equations = []
     for equation in (substitute(e, given) for e in inverse.equations):
@@ -290,6 +294,30 @@ def _count(inverse: Inverse) -> tuple[int, str]:
     except InfinitelyManyError as error:
         raise ProofError(f"{inverse.function}: {error}") from error
     return counted.count, counted.method
+
+
+def _count_in_stages(inverse: Inverse) -> int:
+    """The product of the counts, each over the field of the inputs and the earlier unknowns."""
+    where = f"{inverse.function}: the stages of the count"
+    used = [i for stage in inverse.stages for i in stage.equations]
+    solved = [u for stage in inverse.stages for u in stage.unknowns]
+    if sorted(used) != list(range(len(inverse.equations))) or set(solved) != set(inverse.unknowns):
+        raise ProofError(f"{where} must take every equation and every unknown once")
+    count, before = 1, 0
+    for k, stage in enumerate(inverse.stages):
+        equations = [substitute(inverse.equations[i], stage.given) for i in stage.equations]
+        depends = [s for s in inverse.stages[:k] if any(e.has(*s.unknowns) for e in equations)]
+        for i in (i for s in depends for i in s.equations):
+            earlier = substitute(inverse.equations[i], stage.given)
+            _require(earlier, (), f"{where}: an earlier equation")
+        before += len(stage.unknowns)
+        if any(e.has(*solved[before:]) for e in equations if solved[before:]):
+            raise ProofError(f"{where}: an equation holds an unknown of a later stage")
+        try:
+            count *= count_solutions(equations, stage.unknowns).count
+        except InfinitelyManyError as error:
+            raise ProofError(f"{where}: {error}") from error
+    return count
 
 
 def prove_lemma(

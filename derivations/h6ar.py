@@ -48,7 +48,7 @@ from closedform.derivations.h6ar_mechanism import (
 from closedform.derivations.papers import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
-from closedform.derivation import Derivation, Inverse, Stages
+from closedform.derivation import Chain, Derivation, Inverse
 from closedform.frames import homogeneous, rotation
 from closedform.functions import Program, branches, real
 from closedform.lemmas import two_sines
@@ -395,8 +395,8 @@ d.inverses.append(
         (*targets, tan(psi), tan(phi)),
         (*forward, *(apart / m.d)),
         angles=(psi, phi, pitch),
-        image=d["fk"].values({}),
-        stages=Stages(lemmas, joints, sp.diag(MID_PLANE_ROWS, 1 / m.d, 1 / m.d)),
+        images="fk",
+        chain=Chain(lemmas, joints, sp.diag(MID_PLANE_ROWS, 1 / m.d, 1 / m.d)),
     )
 )
 design(d, m, cos(psi))

@@ -34,7 +34,7 @@ from closedform.derivations.h6ar_mechanism import (
 from closedform.derivations.papers import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
-from closedform.derivation import Derivation, Inverse, Stages
+from closedform.derivation import Chain, Derivation, Inverse
 from closedform.frames import rotation
 from closedform.functions import Program, branches, real
 from closedform.lemmas import two_link_arm
@@ -385,8 +385,8 @@ d.inverses.append(
             ),
         ),
         angles=(psi, phi, pitch),
-        image=d["fk"].values({}),
-        stages=Stages(
+        images="fk",
+        chain=Chain(
             lemmas,
             joints,
             sp.diag(MID_PLANE_ROWS, sp.Matrix.vstack(closure, turned_line * difference)),

@@ -3,11 +3,14 @@
 from itertools import accumulate
 
 import sympy as sp
-from sympy import atan2, cos, pi, sin, sqrt
-
-from closedform.derivation import Continuum, Derivation, Inverse, Solved, Table
 from closedform.derivations.claims.irb260 import Palletiser, state
+from closedform.derivations.irb260_experiment import experiment
+from closedform.derivations.irb260_inverse import inverse_kinematics, workspace
+from closedform.derivations.irb260_linkage import double_parallelogram
 from closedform.derivations.papers import SHI_ZHU_LI
+from sympy import atan2, cos, pi, sin
+
+from closedform.derivation import Derivation
 from closedform.frames import (
     adjoint,
     denavit_hartenberg,
@@ -20,8 +23,7 @@ from closedform.frames import (
     twist_matrix,
     twist_of,
 )
-from closedform.functions import Program, branches, choose, real
-from closedform.lemmas import linear_pair, parallelogram, two_link_triangle
+from closedform.functions import real
 
 d = Derivation(
     "irb260",
@@ -94,80 +96,14 @@ d.step(
         r"\omega": w.T,
     },
     published=("(10)",),
-    equal=[
-        (e.diff(theta), twist_matrix(sp.Matrix([*v, *w])) * e),
-        (e.subs(theta, 0), sp.eye(4)),
-    ],
+    equal=[(e.diff(theta), twist_matrix(sp.Matrix([*v, *w])) * e), (e.subs(theta, 0), sp.eye(4))],
 )
 
-# The mechanism behind the virtual joint
+# The mechanism behind the virtual joint, and its motors
 
-sigma = real("sigma")
-a1, a2, a3 = (real(f"a{i}", positive=True) for i in (1, 2, 3))
-gamma1, gamma2, gamma3 = (real(f"gamma{i}") for i in (1, 2, 3))
-phi1, phi2, phi3 = (real(f"phi{i}") for i in (1, 2, 3))
-beta1, beta2, beta3 = (real(f"beta{i}") for i in (1, 2, 3))
-motor3 = real("m3")
-forearm = theta2 + theta3 + pi / 2
-lower = parallelogram(l3, a1, theta2, gamma1, phi1, beta1, sigma)
-upper = parallelogram(l4, a2, forearm - phi1, gamma2, phi2, beta2, sigma)
-drive = parallelogram(l3, a3, theta2, gamma3 + motor3, phi3, beta3, sigma)
-loops = (lower, upper, drive)
-
-
-def closed(loop, sign):
-    """What the equations of a loop leave in one of its assemblies."""
-    return sp.Matrix(loop.equations).subs(loop.solution).subs(sigma, sign)
-
-
-flat = 2 * l3**2 * sin(theta2 - gamma1) ** 2
-stretch = l3**2 + a1**2 - 2 * l3 * a1 * cos(theta2 - gamma1)
-d.step(
-    "The lower loop and its assemblies",
-    "In the plane of the arm, with angles from the vertical: the lower arm and a rod of the same "
-    "length join the turret to a plate at the elbow, over a distance a1 in the direction gamma1 on "
-    "both.  The loop equations have two solutions for the turn phi1 of the plate and the angle "
-    "beta1 of the rod.  In the parallelogram the plate does not turn, whatever a1 and gamma1; in "
-    "the antiparallelogram it does.  The assemblies meet where phi1 = 0 in both, and so exactly "
-    "where the loop is flat, sin(theta2 - gamma1) = 0.",
-    {
-        "0": sp.Matrix(lower.equations),
-        r"(\varphi_1, \beta_1)_{\text{parallelogram}}": (sp.Integer(0), theta2),
-        r"\varphi_{1,\text{antiparallelogram}}": lower[phi1].subs(sigma, -1),
-        r"\beta_{1,\text{antiparallelogram}}": 2 * gamma1 + phi1 - theta2,
-        r"1 - \cos\varphi_{1,\text{antiparallelogram}}": flat / stretch,
-    },
-    equal=[
-        *((closed(loop, sign), sp.zeros(2, 1)) for loop in loops for sign in (1, -1)),
-        (1 - cos(lower[phi1].subs(sigma, -1)), flat / stretch),
-    ],
-)
-bracket = (lower[phi1] + upper[phi2]).subs(sigma, 1)
-d.step(
-    "The upper loop and the virtual joint",
-    "The upper arm and a second rod join the plate to the wrist bracket, over a distance a2.  The "
-    "bracket turns by phi1 + phi2 against the turret; joint 4 is what it turns against the upper "
-    "arm.  In two parallelograms phi1 = phi2 = 0: the distances a1, a2 drop out, and the bracket "
-    "stays level.  This is the virtual joint.  Each of the other three assemblies gives another "
-    "theta4, but where a loop is flat.",
-    {r"\theta_4 = \varphi_1 + \varphi_2 - \theta_2 - \theta_3": bracket - theta2 - theta3},
-    equal=[(bracket - theta2 - theta3, d.couple(theta4))],
-)
-M = sp.Matrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, -1, 1, 0], [0, 0, 0, 1]])
+lower, upper, M = double_parallelogram(d, l3, l4, theta2, theta3)
 motors = sp.Matrix([real(f"m{i}") for i in (1, 2, 3, 5)])
-d.step(
-    "Motors",
-    "Motor 3 sits on the turret as motor 2 does.  Its crank of length a3 drives the upper arm "
-    "through a rod as long as the lower arm: a third parallelogram, whose fixed link is the crank. "
-    "The upper arm does not turn against the crank, so theta2 + theta3 is the motor's angle.  The "
-    "paper is silent about this, and its theta3 is the angle against the lower arm.",
-    {
-        r"\theta_2 + \theta_3 - m_3 = \varphi_3": drive[phi3].subs(sigma, 1),
-        r"M = \partial\theta / \partial m": M,
-        r"M^{-1}": M.inv(),
-    },
-    equal=[((M * motors)[2], drive[phi3].subs(sigma, 1) + motor3 - motors[1])],
-)
+turns = ("The map is linear and counts turns: its angles are not reduced to (-pi, pi].",)
 d.function(
     "joint4",
     "Angle theta4 of the virtual joint, which keeps the wrist bracket level.",
@@ -180,14 +116,14 @@ d.function(
     "Joint angles of motor angles: theta3 = m3 - m2.",
     {"motors": motors},
     {"q": M * motors},
-    notes=("The map is linear and counts turns: its angles are not reduced to (-pi, pi].",),
+    notes=turns,
 )
 d.function(
     "motors_from_joints",
     "Motor angles of joint angles: m3 = theta2 + theta3.",
     {"q": q},
     {"motors": M.inv() * sp.Matrix(q)},
-    notes=("The map is linear and counts turns: its angles are not reduced to (-pi, pi].",),
+    notes=turns,
 )
 
 # Forward kinematics
@@ -276,12 +212,8 @@ d.step(
     "The body Jacobian is the same twist seen from the hand.  The task Jacobian is the derivative "
     "of (x, y, z, yaw); its first rows are the velocity of the hand's origin, v + omega x p.",
     {"J_b": J_body, "J": J},
-    equal=[
-        (J_body[:, i], twist_of(inverse(pose) * pose.diff(angle))) for i, angle in enumerate(q)
-    ]
-    + [
-        (J[:3, i], J_space[:3, i] + J_space[3:, i].cross(position)) for i in range(4)
-    ]
+    equal=[(J_body[:, i], twist_of(inverse(pose) * pose.diff(angle))) for i, angle in enumerate(q)]
+    + [(J[:3, i], J_space[:3, i] + J_space[3:, i].cross(position)) for i in range(4)]
     + [(J[3, :], J_space[5, :])],
 )
 rates = sp.Matrix([real(f"theta{i}_dot") for i in (1, 2, 3, 5)])
@@ -368,237 +300,30 @@ d.function(
     source="eq. (23)",
 )
 
-# Inverse kinematics
+# The inverse, which the paper leaves out, and the workspace
 
-px, py, pz, psi = target = (real("px"), real("py"), real("pz"), real("psi"))
-side, bend = real("sigma_side"), real("sigma_elbow")
-alpha, elbow = real("alpha"), real("elbow")
-choices = branches(
-    (side, {+1: "front", -1: "back"}), (bend, {+1: "elbow_up", -1: "elbow_down"})
-)
-d.branches = choices.labels
+lengths = (l1, l2, l3, l4, l5, l6)
+inverse_kinematics(d, lengths, position)
+workspace(d, lengths, position, rho)
 
-p = Program()
-size = l1 + l2 + l3 + l4 + l5 + l6
-r = p.let("r", sqrt(px**2 + py**2), nonnegative=True)
-on_axis = p.vanishes("on_axis", r, size, "the hand is on the base axis", free=(theta1,))
-c1 = p.let("c_turret", choose(on_axis, 1, side * py))
-s1 = p.let("s_turret", choose(on_axis, 0, -side * px))
-u = p.let("u", side * r - l1 - l6)
-h = p.let("h", pz - l2 + l5)
-reach = p.let("reach", sqrt(u**2 + h**2), nonnegative=True)
-triangle = two_link_triangle(p, l3, l4, reach, elbow, alpha, bend, scale=size)
-folded = p.vanishes("folded", reach, size, "the wrist is on the shoulder", free=(theta2,))
-p.vanishes("no_link", l3 * l4, (l3 + l4) ** 2, "an arm has no length", free=(theta3,))
-turret = linear_pair(theta1, s1, c1)
-shoulder = linear_pair(theta2, u, h)
-hand = linear_pair(theta5, sin(psi) * c1 - cos(psi) * s1, cos(psi) * c1 + sin(psi) * s1)
-solution = {
-    theta1: turret[theta1],
-    theta2: choose(folded, 0, shoulder[theta2] - triangle[alpha]),
-    theta3: triangle[elbow] - pi / 2,
-    theta5: hand[theta5],
-}
-wrist = py * cos(theta1) - px * sin(theta1) - l1 - l6
-height = pz - l2 + l5
-along3, across3 = l3 - l4 * sin(theta3), l4 * cos(theta3)
-d.solved += [
-    Solved("ik", theta1, turret, px * cos(theta1) + py * sin(theta1)),
-    Solved(
-        "ik", theta3, triangle, wrist**2 + height**2 - l3**2 - l4**2 + 2 * l3 * l4 * sin(theta3)
-    ),
-    Solved(
-        "ik",
-        theta2,
-        shoulder,
-        sin(theta2) * (height * along3 + wrist * across3)
-        - cos(theta2) * (wrist * along3 - height * across3),
-    ),
-    Solved("ik", theta5, hand, sin(theta1 + theta5 - psi)),
-]
-d.step(
-    "Inverse: the turret",
-    "The hand is in the plane of the arm, at the distance rho = +-r from the base axis: the arm "
-    "faces it (front, sigma_side = +1) or reaches over the axis (back, sigma_side = -1).  On the "
-    "axis itself theta1 is free; we return 0.",
-    {
-        r"\rho": side * sqrt(px**2 + py**2),
-        r"\theta_1": atan2(-side * px, side * py),
-        r"u": r"\rho - l_1 - l_6",
-        r"h": pz - l2 + l5,
-    },
-)
-d.step(
-    "Inverse: the elbow and the shoulder",
-    "Seen from the shoulder the wrist is at u forward and h up.  The two arms and the line between "
-    "these joints form a triangle, in which the angle of the elbow is theta3 + 90 degrees: "
-    "elbow_up (sigma_elbow = +1) is cos(theta3) >= 0, as at home, and elbow_down is "
-    "cos(theta3) <= 0.  If the arms are equal and the wrist is on the shoulder, theta2 is free; we "
-    "return 0.",
-    {
-        r"\theta_3": solution[theta3],
-        r"\alpha": triangle[alpha],
-        r"\theta_2": shoulder[theta2] - alpha,
-    },
-)
-d.step(
-    "Inverse: the hand",
-    "What the turret leaves of the yaw, by sine and cosine.",
-    {r"\theta_5": r"\psi - \theta_1"},
-)
-d.function(
-    "ik",
-    "All four configurations of a position and a yaw.",
-    {"x": target},
-    {"q": [solution[angle] for angle in q]},
-    program=p,
-    branches=choices,
-    result="Solutions",
-    source="solved from eq. (13); the paper leaves the inverse out",
-    notes=(
-        "front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0, "
-        "where rho = y cos(theta1) - x sin(theta1).  elbow_up: cos(theta3) >= 0, as at home; "
-        "elbow_down: cos(theta3) <= 0.",
-        "SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0 "
-        "is returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is "
-        "returned; or an arm without length, whose angle is free.",
-        "Ill-conditioned where the arm is straight or folded: the angles lose half the digits "
-        "there, the position does not.",
+# The experiment of section V, and the claims of the paper
+
+experiment(d, position, velocity, rates, M)
+state(
+    d,
+    Palletiser(
+        lengths,
+        thetas,
+        moves,
+        free,
+        links,
+        pose,
+        twists,
+        moved,
+        J_space,
+        rates,
+        velocity,
+        lower,
+        upper,
     ),
 )
-bearing = real("bearing")
-d.inverses.append(
-    Inverse(
-        "ik",
-        q,
-        target,
-        (*position, turn),
-        (
-            Continuum(
-                on_axis, {px: sp.S.Zero, py: sp.S.Zero}, theta1, r"\theta_1 + \theta_5 = \psi"
-            ),
-            Continuum(
-                folded,
-                {
-                    px: -(l1 + l6) * sin(bearing),
-                    py: (l1 + l6) * cos(bearing),
-                    pz: l2 - l5,
-                    l4: l3,
-                },
-                theta2,
-                r"\theta_3 = \pm\pi/2",
-                ("front_elbow_up", "front_elbow_down"),
-            ),
-        ),
-        angles=(psi,),
-    )
-)
-
-# Workspace
-
-inner, outer = sp.Abs(l3 - l4), l3 + l4
-d.step(
-    "Workspace",
-    "In the plane of the arm the hand reaches an annulus about the point at rho = l1 + l6 and "
-    "z = l2 - l5, with the arms' difference and sum as radii; all around the base axis, this "
-    "annulus and its mirror image.  At the radii the arm is folded and straight.",
-    {r"\rho_0": l1 + l6, "z_0": l2 - l5, "r_{min}": inner, "r_{max}": outer},
-    equal=[
-        (
-            ((rho - l1 - l6) ** 2 + (position[2] - l2 + l5) ** 2).subs(theta3, turned),
-            (l3 - sin(turned) * l4) ** 2,
-        )
-        for turned in (pi / 2, -pi / 2)
-    ],
-)
-d.function(
-    "workspace_section",
-    "The annulus that the hand can reach in the plane of the arm.",
-    {},
-    {"section": [l1 + l6, l2 - l5, inner, outer]},
-    notes=("Radius and height of the centre, inner and outer radius.",),
-)
-m = Program()
-r = m.let("r", sqrt(px**2 + py**2), nonnegative=True)
-h = m.let("h", pz - l2 + l5)
-gaps = []
-for name, sign in (("front", 1), ("back", -1)):
-    there = m.let(f"reach_{name}", sqrt((sign * r - l1 - l6) ** 2 + h**2), nonnegative=True)
-    gaps.append(sp.Min(l3 + l4 - there, there - inner))
-d.function(
-    "workspace_margin",
-    "How far a position is inside the workspace, in the plane of the arm; negative outside.",
-    {"p": (px, py, pz)},
-    {"margin": sp.Max(*gaps)},
-    program=m,
-    notes=("Some configuration reaches the position exactly where the margin is not negative.",),
-)
-
-# The experiment of section V
-
-degree = pi / 180
-omega = sp.Matrix([-30, 10, 5, 0]) * degree
-motion = dict(zip(q, omega * time, strict=True))
-grounded = dict(zip(q, M * omega * time, strict=True))
-v_relative = velocity.subs(dict(zip(rates, omega, strict=True))).subs(motion)
-v_grounded = velocity.subs(dict(zip(rates, M * omega, strict=True))).subs(grounded)
-difference = v_relative - v_grounded
-d.step(
-    "The experiment of section V",
-    "From theta = 0 with the rates -30, 10, 5 and 0 degrees per second (t in seconds).  These are "
-    "the derivatives in time of the position along the path.",
-    {"v": v_relative},
-    equal=[(v_relative, position.subs(motion).diff(time))],
-)
-first, second = (difference.diff(time, k).subs(time, 0) for k in (1, 2))
-d.step(
-    "Relative or grounded",
-    "If 5 degrees per second were the rate of the motor 3 on the turret, the joint would turn by "
-    "theta3 = (5 - 10) t.  All three components tell the readings apart, but not equally soon: at "
-    "t = 0 only the vertical one differs, threefold; the difference of the others grows from 0, "
-    "that of y with t and that of x with t^2.",
-    {
-        r"v_{\text{grounded}}": v_grounded,
-        r"(v - v_{\text{grounded}})_{t = 0}": difference.subs(time, 0).T,
-        r"\frac{d}{dt}(v - v_{\text{grounded}})_{t = 0}": first.T,
-        r"\frac{d^2}{dt^2}(v - v_{\text{grounded}})_{t = 0}": second.T,
-    },
-    equal=[
-        (v_grounded, position.subs(grounded).diff(time)),
-        (v_relative[2].subs(time, 0), 3 * v_grounded[2].subs(time, 0)),
-        (difference[:2, 0].subs(time, 0), sp.zeros(2, 1)),
-        (first[0], sp.S.Zero),
-    ],
-)
-d.tables.append(
-    Table(
-        "irb260_section_v",
-        "t [s]",
-        time,
-        tuple(sp.Rational(k, 10) for k in range(101)),
-        {
-            f"v{axis}{suffix} [m/s]": value
-            for suffix, values in (("", v_relative), (" if motor 3 is grounded", v_grounded))
-            for axis, value in zip("xyz", values, strict=True)
-        },
-    )
-)
-
-# Claims of the paper
-
-arms = Palletiser(
-    (l1, l2, l3, l4, l5, l6),
-    thetas,
-    moves,
-    free,
-    links,
-    pose,
-    twists,
-    moved,
-    J_space,
-    rates,
-    velocity,
-    lower,
-    upper,
-)
-state(d, arms)

@@ -14,6 +14,13 @@ SHI_ZHU_LI = Paper(
     ("Jun Shi", "Xiaorui Zhu", "Zexiang Li"),
 )
 
+CHABLAT_WENGER_ANGELES = Paper(
+    "chablat-wenger-angeles",
+    "The Kinematic Design of a 3-DOF Hybrid Manipulator",
+    ("Damien Chablat", "Philippe Wenger", "Jorge Angeles"),
+    "Integrated Design and Manufacturing in Mechanical Engineering, Compiègne, 1998",
+)
+
 RAO_RAJU = Paper(
     "rao-raju",
     "Forward and inverse kinematics of a hybrid series-parallel manipulator",

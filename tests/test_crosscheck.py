@@ -7,11 +7,19 @@ import numpy as np
 import pytest
 
 from closedform.clibrary import CLibrary
-from closedform.crosscheck import Backend, Finding, crosscheck, float_backend, module_backend
+from closedform.crosscheck import (
+    Backend,
+    Finding,
+    check_forward,
+    check_inverse,
+    crosscheck,
+    float_backend,
+    module_backend,
+)
 from closedform.derivation import Derivation
 from closedform.tolerances import DOUBLE
 
-ROBOTS = ("planar_2r", "spherical_wrist")
+ROBOTS = ("hybrid_five_bar", "irb260", "planar_2r", "spherical_wrist")
 GENERATED = Path(__file__).parent.parent / "generated"
 
 
@@ -45,8 +53,11 @@ def broken(robot: str, function: str, change) -> list[str]:
         original = getattr(module, name)
         return (lambda *a: change(original(*a))) if name == function else original
 
-    found = crosscheck(derivation(robot), Backend("broken", lookup, np.float64, DOUBLE))
-    return [failure for f in found if f.function == function for failure in f.failures]
+    d, backend = derivation(robot), Backend("broken", lookup, np.float64, DOUBLE)
+    inverse = next((i for i in d.inverses if i.function == function), None)
+    if inverse:
+        return check_inverse(d, d[function], inverse, backend).failures
+    return check_forward(d, d[function], backend).failures
 
 
 def swapped_sign(solutions):
@@ -68,7 +79,7 @@ def test_a_wrong_inverse_is_found(robot: str, change) -> None:
     assert broken(robot, "ik", change)
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", ["planar_2r", "spherical_wrist"])
 def test_a_wrong_value_is_found(robot: str) -> None:
     assert broken(robot, "fk", lambda x: x * (1 + 1e-14))
     assert broken(robot, "determinant", lambda x: x + 1e-13)

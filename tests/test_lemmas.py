@@ -5,17 +5,21 @@ import dataclasses
 import pytest
 import sympy as sp
 
+from closedform.algebra import positive_form
 from closedform.functions import Program, real
 from closedform.lemmas import (
     Lemma,
+    circle_intersection,
     linear_pair,
     parallelogram,
     sine_cosine,
     two_link_triangle,
     zyz_angles,
 )
+from closedform.loops import eliminate, velocity_matrices
 from closedform.prove import ProofError, prove_lemma
 from closedform.solutions import rotation_parametrisation
+from closedform.volumes import lens
 
 x, y, z = (real(n) for n in ("x", "y", "z"))
 a, b, c = (real(n) for n in "abc")
@@ -36,12 +40,25 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
     if name == "parallelogram":
         crank, coupler = (real(n, positive=True) for n in ("l", "a"))
         return parallelogram(crank, coupler, z, real("gamma"), x, y, sigma), program, {}
+    if name.startswith("circles"):
+        r1, r2 = (real(n, positive=True) for n in ("r1", "r2"))
+        second = r1 if name == "circles of one size" else r2
+        lemma, _ = circle_intersection(program, (a, b), r1, second, (x, y), sigma, r1 + r2)
+        return lemma, program, {}
     R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
     given = dict(zip(R, rotation_parametrisation(), strict=True))
     return zyz_angles(program, R, x, y, z, sigma), program, given
 
 
-NAMES = ["linear pair", "sine and cosine", "triangle", "parallelogram", "zyz"]
+NAMES = [
+    "linear pair",
+    "sine and cosine",
+    "triangle",
+    "parallelogram",
+    "zyz",
+    "circles",
+    "circles of one size",
+]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -63,3 +80,40 @@ def test_a_missing_branch_is_found(name: str) -> None:
     lemma, program, given = applied(name)
     with pytest.raises(ProofError, match="solutions"):
         prove_lemma(dataclasses.replace(lemma, branches=lemma.branches - 1), program, given)
+
+
+def test_elimination_gives_the_factors() -> None:
+    """The points of a line that are at distance 1 from some point of the unit circle."""
+    u, v, t = (real(n) for n in "uvt")
+    found = eliminate([u**2 + v**2 - 1, (u - t) ** 2 + v**2 - 1, v - c], (u, v))
+    assert sp.factor(sp.prod(f**k for f, k in found.factors)).has(t)
+    points = {sp.sqrt(4 - 4 * sp.Rational(1, 4)), sp.S.Zero}
+    for point in points:
+        assert found.vanishing([(t, point), (c, sp.Rational(1, 2))])
+    with pytest.raises(ValueError, match="need 3 equations"):
+        eliminate([u, v], (u, v))
+
+
+def test_implicit_velocities_of_a_crank() -> None:
+    """A slider at x, a bar of length b from it to a crank of length a."""
+    F = (x - a * sp.cos(z)) ** 2 + (a * sp.sin(z)) ** 2 - b**2
+    A, B = velocity_matrices([F], [x], [z])
+    explicit = a * sp.cos(z) + sp.sqrt(b**2 - a**2 * sp.sin(z) ** 2)
+    rate = (B[0] / A[0]).subs(x, explicit)
+    assert sp.simplify(rate - explicit.diff(z)) == 0
+
+
+def test_lens_of_two_balls() -> None:
+    """Known: equal balls through each other's centres share 5/16 of a ball; balls that touch, 0."""
+    r = real("r", positive=True)
+    ball = sp.Rational(4, 3) * sp.pi * r**3
+    assert sp.simplify(lens(r, r, r) - sp.Rational(5, 16) * ball) == 0
+    assert sp.simplify(lens(r, 2 * r, 3 * r)) == 0
+    assert sp.simplify(lens(r, 2 * r, r) - ball) == 0
+
+
+def test_positive_form_refuses_what_is_not_evident() -> None:
+    u, v = (real(n, positive=True) for n in "uv")
+    assert positive_form(a - b, [(a, b + u), (b, v)]) == u
+    with pytest.raises(ValueError, match="not evidently positive"):
+        positive_form(u - v, [])

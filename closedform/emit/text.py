@@ -38,6 +38,7 @@ class Interface:
     joints: str
     task: str
     branches: str
+    assembly_modes: str
     singularities: str
     functions: tuple[str, ...]
 
@@ -56,6 +57,7 @@ def interface(derivation: Derivation) -> Interface:
         repr(tuple(s.name for s in derivation.actuated)),
         repr(tuple(derivation.task)),
         repr(tuple(derivation.branches)),
+        repr(tuple(derivation.assembly_modes)),
         repr(tuple(derivation.singularities)),
         tuple(f.name for f in derivation.functions),
     )

@@ -82,10 +82,9 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
     turns = {name: next(iter(loop.solution)) for name, loop in loops.items()}
     parallel = {name: loops[name][turn].subs(sigma, 1) for name, turn in turns.items()}
     bracket = sum(parallel.values())
-    assemblies = {
-        f"assemblies of the {name}": Count(loop.equations, tuple(loop.solution), 2)
-        for name, loop in loops.items()
-    }
+    crank = real("crank")  # the angle of the upper arm against the plate
+    plate = turns["lower loop"]
+    upper = [e.subs(theta2, crank - theta3 - pi / 2 + plate) for e in arm.upper.equations]
     claim = partial(d.claim, where="II. Background")
 
     claim(
@@ -109,7 +108,9 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
         "parallel translation",
         "“Therefore the end-effector of the robot can only obtain the parallel translation.”",
         Refuted(
-            Identity(R.subs(dict.fromkeys(arm.actuated, 0) | {theta5: pi / 2}), rotation("z", pi / 2)),
+            Identity(
+                R.subs(dict.fromkeys(arm.actuated, 0) | {theta5: pi / 2}), rotation("z", pi / 2)
+            ),
             "at theta5 = pi/2, all others 0, the hand is turned by a right angle about z",
             r"$R = R_z(\theta_1 + \theta_5)$: the hand stays level, and turns about the vertical",
             Identity(R, rotation("z", arm.thetas[0] + theta5)),
@@ -134,7 +135,9 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
         "axes 1 and 5",
         "“Since the axis 1 and 5 are only rotating along the z axis, so they can be ignored "
         "temporarily.”",
-        Identity(sp.Matrix.hstack(arm.moved[0][3:, :], arm.moved[4][3:, :]), sp.Matrix.hstack(z, z)),
+        Identity(
+            sp.Matrix.hstack(arm.moved[0][3:, :], arm.moved[4][3:, :]), sp.Matrix.hstack(z, z)
+        ),
     )
     claim(
         "rotation along X",
@@ -157,7 +160,10 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
             {
                 "two parallelograms": Identity(bracket - theta2 - theta3, -(theta2 + theta3)),
                 "it keeps the hand level": Identity(arm.couple(arm.free)[:3, 2], z),
-                **assemblies,
+                "assemblies of the lower loop": Count(
+                    arm.lower.equations, tuple(arm.lower.solution), 2
+                ),
+                "assemblies of the upper loop": Count(upper, tuple(arm.upper.solution), 2),
             }
         ),
     )
@@ -171,8 +177,8 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
             "the axes turn with the turret; at theta1 = pi/2 that of joint 2 is along -y",
             r"they give it along $-(\cos\theta_1, \sin\theta_1, 0)$, the axis X of the turret",
             Identity(sp.Matrix.hstack(*(arm.moved[i][3:, :] for i in (1, 2, 3))),
-                     sp.Matrix.hstack(*[across] * 3)),
-        ),
+                     sp.Matrix.hstack(*[across] * 3))
+        )
     )  # fmt: skip
     claim(
         "equivalent open chain",
@@ -221,11 +227,7 @@ def screws(d: Derivation, arm: Palletiser) -> None:
         ([0, l1, l2], "0 \\\\ l_1 \\\\ l_2", across),
         ([0, l1, l2 + l3], "0 \\\\ l_1 \\\\ l_2 + l_3", across),
         ([0, l1 + l4, l2 + l3], "0 \\\\ l_1 + l_4 \\\\ l_2 + l_3", across),
-        (
-            [0, l1 + l4 + l6, l2 + l3 - l5],
-            "0 \\\\ l_1 + l_4 + l_6 \\\\ l_2 + l_3 - l_5",
-            up,
-        ),
+        ([0, l1 + l4 + l6, l2 + l3 - l5], "0 \\\\ l_1 + l_4 + l_6 \\\\ l_2 + l_3 - l_5", up),
     )
     at_home = dict.fromkeys(arm.thetas, 0)
     for i, (point, text, (axis, axis_text)) in enumerate(printed, 1):
@@ -248,7 +250,7 @@ def screws(d: Derivation, arm: Palletiser) -> None:
             {
                 "as a set; a product of motions is one": Identity(
                     homogeneous(R1, p1) * homogeneous(R2, p2), homogeneous(R1 * R2, R1 * p2 + p1)
-                ),
+                )
             }
         ),
     )
@@ -301,8 +303,8 @@ def screws(d: Derivation, arm: Palletiser) -> None:
         Identity(
             sp.Matrix([*(-w.cross(p)), *w]),
             twist_of((homogeneous(sp.eye(3), p) * exponential(sp.Matrix([0, 0, 0, *w]), theta)
-                      * homogeneous(sp.eye(3), -p)).diff(theta).subs(theta, 0)),
-        ),
+                      * homogeneous(sp.eye(3), -p)).diff(theta).subs(theta, 0))
+        )
     )  # fmt: skip
 
 
@@ -396,9 +398,9 @@ def velocities(d: Derivation, arm: Palletiser) -> None:
                     "the derivative has no inverse": Identity(velocity[3, :], sp.zeros(1, 4)),
                 }
             ),
-            "the order is reversed: with the derivative of the inverse this is minus the velocity, "
-            "and the derivative itself has no inverse (nor is the velocity a derivative, as the "
-            "dot on V says where eqs. (15) and (23) have a hat)",
+            "the factors are in the wrong order: with the derivative of the inverse this is minus "
+            "the velocity, and the derivative itself has no inverse; in eqs. (15) and (23) the V "
+            "has a hat, and no dot",
             r"\hat{V}_{st}^s = \dot{g}_{st}(\theta) g_{st}^{-1}(\theta)",
             Identity(velocity * back, arm.V),
         ),
@@ -501,16 +503,15 @@ def adjoints(d: Derivation, arm: Palletiser) -> None:
             witness,
             "as in eq. (19), the primed twists are moved twice; and Ad multiplies the six "
             "coordinates of a twist, not the 4x4 matrix with the hat",
-            r"\xi_i' = Ad_{(e^{\hat{\xi}_1 \theta_1} \dots e^{\hat{\xi}_{i-1} \theta_{i-1}})} \xi_i",
+            r"\xi_i' = Ad_{(e^{\hat{\xi}_1 \theta_1} \dots "
+            r"e^{\hat{\xi}_{i-1} \theta_{i-1}})} \xi_i",
             Deferred(partial(adjoint_twists, arm)),
         ),
     )
     xi = sp.Matrix([*symbols("v", 1), *symbols("w", 1)])
     p = symbols("p", 1)
     R = sp.prod(rotation(a, real(f"turn_{i}")) for i, a in enumerate("zyz"))
-    blocks = sp.Matrix.vstack(
-        sp.Matrix.hstack(R, hat(p) * R), sp.Matrix.hstack(sp.zeros(3, 3), R)
-    )
+    blocks = sp.Matrix.vstack(sp.Matrix.hstack(R, hat(p) * R), sp.Matrix.hstack(sp.zeros(3, 3), R))
     g = homogeneous(R, p)
     claim(
         "eq. (21)",
@@ -543,14 +544,14 @@ def adjoints(d: Derivation, arm: Palletiser) -> None:
             Identity(
                 sp.Matrix.hstack((arm.V * at_home).subs(turned), arm.rate(position).subs(turned))
                 .diff(arm.rates[0]),
-                sp.Matrix([[-rho, 0], [0, -rho], [0, 0], [0, 0]]),
+                sp.Matrix([[-rho, 0], [0, -rho], [0, 0], [0, 0]])
             ),
             "q5 of eq. (5) is where the hand is at home; for theta1 = pi/2 and a turning turret "
             "the constant point would move along x, and the hand moves along -y",
             r"$q_5^s$ is where the point is now, $g_{st}(\theta)(0, 0, 0, 1)^T$, in homogeneous "
             r"coordinates",
-            Identity(arm.V * position, arm.rate(position)),
-        ),
+            Identity(arm.V * position, arm.rate(position))
+        )
     )  # fmt: skip
 
 
@@ -646,20 +647,17 @@ def values(d: Derivation) -> None:
 def chain_rule(arm: Palletiser) -> Every:
     """Eq. (15) with five independent joints."""
     time, rates = real("t"), [real(f"rate_{i}") for i in range(1, 6)]
-    paths = [sp.Function(q.name, real=True)(time) for q in arm.thetas]
     g = sp.prod(arm.links)
     back = inverse(g)
-    slopes = [g.diff(q) for q in arm.thetas]
-    speeds = dict(zip([path.diff(time) for path in paths], rates, strict=True))
-    names = dict(zip(paths, arm.thetas, strict=True))
-    total = g.subs(dict(zip(arm.thetas, paths, strict=True))).diff(time).subs(speeds).subs(names)
-    terms = list(zip(slopes, rates, strict=True))
+    path = {q: q + rate * time for q, rate in zip(arm.thetas, rates, strict=True)}
+    total = g.xreplace(path).diff(time).subs(time, 0)
+    terms = [(g.diff(q), rate) for q, rate in zip(arm.thetas, rates, strict=True)]
+    first = sum((slope * rate for slope, rate in terms), sp.zeros(4)) * back
     return Every(
         {
-            "the chain rule": Identity(sum((s * r for s, r in terms), sp.zeros(4)), total),
-            "term by term": Identity(
-                sum((s * back * r for s, r in terms), sp.zeros(4)),
-                sum((s * r for s, r in terms), sp.zeros(4)) * back,
+            "first form": Identity(first, total * back),
+            "second form": Identity(
+                sum((slope * back * rate for slope, rate in terms), sp.zeros(4)), first
             ),
         }
     )

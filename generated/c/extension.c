@@ -4,6 +4,7 @@
 #include "closedform_module.h"
 #include "h6ar.h"
 #include "h6ar_loop_closed.h"
+#include "hybrid_five_bar.h"
 #include "irb260.h"
 #include "planar_2r.h"
 #include "spherical_wrist.h"
@@ -478,6 +479,218 @@ static const cf_array h6ar_loop_closed_largest_angle_in[] = {
 
 static const cf_array h6ar_loop_closed_largest_angle_out[] = {
     { "angle", 0, { 0 }, 1, CF_REAL },
+};
+
+static const char *const hybrid_five_bar_fields[] = { "L0", "L1", "L2" };
+static const double hybrid_five_bar_values[] = HYBRID_FIVE_BAR_DEFAULTS;
+
+static void hybrid_five_bar_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_fk((const hybrid_five_bar_params *)params, in[0], out[0], out[1]);
+}
+
+static void hybrid_five_bar_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_fk_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array hybrid_five_bar_fk_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_fk_out[] = {
+    { "p", 2, { 2, 3 }, 6, CF_REAL },
+    { "status", 1, { 2 }, 2, CF_STATUS },
+};
+
+static void hybrid_five_bar_passive_angles_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_passive_angles((const hybrid_five_bar_params *)params, in[0], out[0]);
+}
+
+static void hybrid_five_bar_passive_angles_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_passive_angles_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_passive_angles_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_passive_angles_out[] = {
+    { "theta", 2, { 2, 2 }, 4, CF_REAL },
+};
+
+static void hybrid_five_bar_jacobian_parallel_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_jacobian_parallel((const hybrid_five_bar_params *)params, in[0], out[0]);
+}
+
+static void hybrid_five_bar_jacobian_parallel_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_jacobian_parallel_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_jacobian_parallel_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_jacobian_parallel_out[] = {
+    { "A", 3, { 2, 3, 3 }, 18, CF_REAL },
+};
+
+static void hybrid_five_bar_jacobian_serial_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_jacobian_serial((const hybrid_five_bar_params *)params, in[0], out[0]);
+}
+
+static void hybrid_five_bar_jacobian_serial_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_jacobian_serial_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_jacobian_serial_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_jacobian_serial_out[] = {
+    { "B", 2, { 2, 3 }, 6, CF_REAL },
+};
+
+static void hybrid_five_bar_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_jacobian((const hybrid_five_bar_params *)params, in[0], out[0]);
+}
+
+static void hybrid_five_bar_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_jacobian_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_jacobian_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_jacobian_out[] = {
+    { "J", 3, { 2, 3, 3 }, 18, CF_REAL },
+};
+
+static void hybrid_five_bar_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_determinant((const hybrid_five_bar_params *)params, in[0], out[0]);
+}
+
+static void hybrid_five_bar_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_determinant_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_determinant_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_determinant_out[] = {
+    { "det", 1, { 2 }, 2, CF_REAL },
+};
+
+static void hybrid_five_bar_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_singularities((const hybrid_five_bar_params *)params, in[0], out[0]);
+}
+
+static void hybrid_five_bar_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_singularities_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_singularities_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_singularities_out[] = {
+    { "factors", 2, { 2, 4 }, 8, CF_REAL },
+};
+
+static void hybrid_five_bar_condition_number_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_condition_number((const hybrid_five_bar_params *)params, in[0], out[0]);
+}
+
+static void hybrid_five_bar_condition_number_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_condition_number_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_condition_number_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_condition_number_out[] = {
+    { "kappa", 1, { 2 }, 2, CF_REAL },
+};
+
+static void hybrid_five_bar_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_ik((const hybrid_five_bar_params *)params, in[0], out[0], out[1]);
+}
+
+static void hybrid_five_bar_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_ik_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array hybrid_five_bar_ik_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_ik_out[] = {
+    { "q", 2, { 8, 3 }, 24, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
+};
+
+static void hybrid_five_bar_workspace_contains_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_workspace_contains((const hybrid_five_bar_params *)params, in[0], out[0]);
+}
+
+static void hybrid_five_bar_workspace_contains_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_workspace_contains_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_workspace_contains_in[] = {
+    { "p", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_workspace_contains_out[] = {
+    { "inside", 0, { 0 }, 1, CF_BOOL },
+};
+
+static void hybrid_five_bar_workspace_volume_one(const double *params, const double *const *in, void *const *out)
+{
+    (void)in;
+    hybrid_five_bar_workspace_volume((const hybrid_five_bar_params *)params, out[0]);
+}
+
+static void hybrid_five_bar_workspace_volume_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    (void)in, (void)in_stride;
+    hybrid_five_bar_workspace_volume_batch(n, (const hybrid_five_bar_params *)params, out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_workspace_volume_out[] = {
+    { "volume", 0, { 0 }, 1, CF_REAL },
 };
 
 static const char *const irb260_fields[] = { "l1", "l2", "l3", "l4", "l5", "l6" };
@@ -1357,6 +1570,135 @@ const cf_function cf_functions[] = {
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_largest_angle_in, 1, h6ar_loop_closed_largest_angle_out,
       h6ar_loop_closed_largest_angle_one, h6ar_loop_closed_largest_angle_many },
+    { "hybrid_five_bar.fk",
+      "Position of P in both assembly modes.\n"
+      "Source: the loop closure of section 2.3.\n"
+      "q: shape (..., 3): theta1, theta2, theta3.\n"
+      "Returns p: shape (..., 2, 3).\n"
+      "Branches: left_of_CD, right_of_CD.\n"
+      "UNREACHABLE: C and D are more than 2 L2 apart, the loop is open.\n"
+      "SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and\n"
+      "    the point at theta4 = theta5 = +90 or -90 degrees is returned.\n"
+      "Ill-conditioned near the parallel singularities, where both modes meet or P is\n"
+      "    free.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_fk_in, 2, hybrid_five_bar_fk_out,
+      hybrid_five_bar_fk_one, hybrid_five_bar_fk_many },
+    { "hybrid_five_bar.passive_angles",
+      "Angles theta4 and theta5 of CP and DP in both assembly modes.\n"
+      "q: shape (..., 3): theta1, theta2, theta3.\n"
+      "Returns theta: shape (..., 2, 2).\n"
+      "Branches: left_of_CD, right_of_CD.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_passive_angles_in, 1, hybrid_five_bar_passive_angles_out,
+      hybrid_five_bar_passive_angles_one, hybrid_five_bar_passive_angles_many },
+    { "hybrid_five_bar.jacobian_parallel",
+      "A of A dp = B dq; its rows are L2 k, p - c and p - d.\n"
+      "q: shape (..., 3): theta1, theta2, theta3.\n"
+      "Returns A: shape (..., 2, 3, 3).\n"
+      "Branches: left_of_CD, right_of_CD.\n"
+      "NaN for an assembly mode that does not exist.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_jacobian_parallel_in, 1, hybrid_five_bar_jacobian_parallel_out,
+      hybrid_five_bar_jacobian_parallel_one, hybrid_five_bar_jacobian_parallel_many },
+    { "hybrid_five_bar.jacobian_serial",
+      "The diagonal of B of A dp = B dq.\n"
+      "q: shape (..., 3): theta1, theta2, theta3.\n"
+      "Returns B: shape (..., 2, 3).\n"
+      "Branches: left_of_CD, right_of_CD.\n"
+      "NaN for an assembly mode that does not exist.\n"
+      "Its signs tell the working modes apart, in the order of BRANCHES.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_jacobian_serial_in, 1, hybrid_five_bar_jacobian_serial_out,
+      hybrid_five_bar_jacobian_serial_one, hybrid_five_bar_jacobian_serial_many },
+    { "hybrid_five_bar.jacobian",
+      "Derivative of p with respect to q, A^-1 B.\n"
+      "q: shape (..., 3): theta1, theta2, theta3.\n"
+      "Returns J: shape (..., 2, 3, 3).\n"
+      "Branches: left_of_CD, right_of_CD.\n"
+      "NaN for an assembly mode that does not exist.\n"
+      "Not finite at a parallel singularity.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_jacobian_in, 1, hybrid_five_bar_jacobian_out,
+      hybrid_five_bar_jacobian_one, hybrid_five_bar_jacobian_many },
+    { "hybrid_five_bar.determinant",
+      "Determinant of the Jacobian.\n"
+      "q: shape (..., 3): theta1, theta2, theta3.\n"
+      "Returns det: shape (..., 2).\n"
+      "Branches: left_of_CD, right_of_CD.\n"
+      "NaN for an assembly mode that does not exist.\n"
+      "Not finite at a parallel singularity.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_determinant_in, 1, hybrid_five_bar_determinant_out,
+      hybrid_five_bar_determinant_one, hybrid_five_bar_determinant_many },
+    { "hybrid_five_bar.singularities",
+      "Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2)\n"
+      "    and L2 sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the\n"
+      "    parallel one.\n"
+      "q: shape (..., 3): theta1, theta2, theta3.\n"
+      "Returns factors: shape (..., 2, 4).\n"
+      "Branches: left_of_CD, right_of_CD.\n"
+      "NaN for an assembly mode that does not exist.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_singularities_in, 1, hybrid_five_bar_singularities_out,
+      hybrid_five_bar_singularities_one, hybrid_five_bar_singularities_many },
+    { "hybrid_five_bar.condition_number",
+      "Ratio of the largest to the smallest singular value of A.\n"
+      "q: shape (..., 3): theta1, theta2, theta3.\n"
+      "Returns kappa: shape (..., 2).\n"
+      "Branches: left_of_CD, right_of_CD.\n"
+      "NaN for an assembly mode that does not exist.\n"
+      "Infinite at a parallel singularity; it does not depend on theta1.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_condition_number_in, 1, hybrid_five_bar_condition_number_out,
+      hybrid_five_bar_condition_number_one, hybrid_five_bar_condition_number_many },
+    { "hybrid_five_bar.ik",
+      "The driven angles of all eight working modes.\n"
+      "Source: the working modes of section 2.4.\n"
+      "x: shape (..., 3): x, y, z.\n"
+      "Returns q: shape (..., 8, 3).\n"
+      "Branches: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,\n"
+      "    minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.\n"
+      "BRANCHES name the signs of the diagonal of B; each posture is in one of the two\n"
+      "    assembly modes.\n"
+      "UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.\n"
+      "SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or\n"
+      "    theta3 is free; L1 = 0, both are.  0 is returned for theta1, and for the\n"
+      "    others unless L1 = 0.\n"
+      "Ill-conditioned near the boundary of the workspace: the angles lose half the\n"
+      "    digits there, the loop still closes.  fk loses them again near a parallel\n"
+      "    singularity.\n"
+      "If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_ik_in, 2, hybrid_five_bar_ik_out,
+      hybrid_five_bar_ik_one, hybrid_five_bar_ik_many },
+    { "hybrid_five_bar.workspace_contains",
+      "Whether P can be reached: it lies in both hollow spheres.\n"
+      "Source: section 3.1.\n"
+      "p: shape (..., 3): x, y, z.\n"
+      "Returns inside: shape (...).\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_workspace_contains_in, 1, hybrid_five_bar_workspace_contains_out,
+      hybrid_five_bar_workspace_contains_one, hybrid_five_bar_workspace_contains_many },
+    { "hybrid_five_bar.workspace_volume",
+      "Volume of the workspace.\n"
+      "Source: section 3.1, in closed form.\n"
+      "Returns volume: shape (...).\n"
+      "NaN for a length that is negative or not finite.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      0, NULL, 1, hybrid_five_bar_workspace_volume_out,
+      hybrid_five_bar_workspace_volume_one, hybrid_five_bar_workspace_volume_many },
     { "irb260.joint4",
       "Angle theta4 of the virtual joint, which keeps the wrist bracket level.\n"
       "Source: the virtual constraint, section III.\n"

@@ -1,6 +1,7 @@
 """Spherical wrist: the generated C, with the names and the meaning of the NumPy module."""
 
 from closedform.generated.numpy.spherical_wrist import (
+    ASSEMBLY_MODES,
     BRANCHES,
     JOINTS,
     SINGULARITIES,
@@ -14,6 +15,7 @@ from closedform.generated.numpy.spherical_wrist import (
 from . import _native
 
 __all__ = [
+    "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",

@@ -37,12 +37,14 @@ from numpy.typing import ArrayLike
 from . import _runtime
 from ._runtime import Positions, Solutions, Status
 
+ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2R', 'theta3R', 'theta2L', 'theta3L', 'theta')
 TASK = ('x', 'y', 'z', 'psi', 'phi', 'theta')
 BRANCHES = ('front_elbow_up', 'front_elbow_down', 'rear_elbow_up', 'rear_elbow_down')
 SINGULARITIES = ('the tip is above or below the waist axis', 'virtual arm with the wrist straight or folded', 'virtual arm straight or folded', 'upper arms half a turn apart', 'fore-arms half a turn apart', 'wrist links stretched along the base line')
 
 __all__ = [
+    "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",

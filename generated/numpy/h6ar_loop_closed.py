@@ -38,12 +38,14 @@ from numpy.typing import ArrayLike
 from . import _runtime
 from ._runtime import Positions, Solutions, Status
 
+ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2R', 'theta3R', 'theta2L', 'theta3L', 'theta')
 TASK = ('x', 'y', 'z', 'psi', 'phi', 'theta')
 BRANCHES = ('front_elbow_up_alike', 'front_elbow_up_mixed', 'front_elbow_down_alike', 'front_elbow_down_mixed', 'rear_elbow_up_alike', 'rear_elbow_up_mixed', 'rear_elbow_down_alike', 'rear_elbow_down_mixed')
 SINGULARITIES = ('the tip is above or below the waist axis', 'virtual arm with the wrist straight or folded', 'right arm straight or folded', 'left arm straight or folded', 'virtual arm straight or folded (a pole of the determinant)', 'wrist links stretched along the base line')
 
 __all__ = [
+    "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",

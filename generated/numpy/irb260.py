@@ -40,12 +40,14 @@ from numpy.typing import ArrayLike
 from . import _runtime
 from ._runtime import Positions, Solutions, Status
 
+ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2', 'theta3', 'theta5')
 TASK = ('x', 'y', 'z', 'yaw')
 BRANCHES = ('front_elbow_up', 'front_elbow_down', 'back_elbow_up', 'back_elbow_down')
 SINGULARITIES = ('base axis', 'elbow')
 
 __all__ = [
+    "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",

@@ -32,12 +32,14 @@ from numpy.typing import ArrayLike
 from . import _runtime
 from ._runtime import Positions, Solutions, Status
 
+ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2')
 TASK = ('x', 'y')
 BRANCHES = ('elbow_down', 'elbow_up')
 SINGULARITIES = ('elbow',)
 
 __all__ = [
+    "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",

@@ -29,12 +29,14 @@ from numpy.typing import ArrayLike
 from . import _runtime
 from ._runtime import Positions, Solutions, Status
 
+ASSEMBLY_MODES = ()
 JOINTS = ('theta4', 'theta5', 'theta6')
 TASK = ('R11', 'R12', 'R13', 'R21', 'R22', 'R23', 'R31', 'R32', 'R33')
 BRANCHES = ('theta5_positive', 'theta5_negative')
 SINGULARITIES = ('axes 4 and 6 coincide',)
 
 __all__ = [
+    "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",

@@ -1,0 +1,437 @@
+"""The hybrid manipulator of Chablat, Wenger and Angeles: a five-bar linkage on a revolute."""
+
+import sympy as sp
+from closedform.derivations import hybrid_five_bar_design as design
+from closedform.derivations.claims.five_bar_postures import FiveBar
+from closedform.derivations.claims.hybrid_five_bar import state
+from closedform.derivations.papers import CHABLAT_WENGER_ANGELES
+from sympy import atan2, cos, sin, sqrt
+
+from closedform.algebra import normal
+from closedform.derivation import Continuum, Derivation, Inverse, Solved, Stage
+from closedform.frames import merge_angles, rotation
+from closedform.functions import Program, branches, choose, real
+from closedform.lemmas import circle_intersection, linear_pair, two_link_triangle
+from closedform.loops import velocity_matrices
+
+d = Derivation(
+    "hybrid_five_bar",
+    "Five-bar linkage on a revolute",
+    CHABLAT_WENGER_ANGELES,
+    "The pivots A, the origin, and B lie L0 apart on the y axis.  The bars AC and BD of length L1 "
+    "are driven at the angles theta2 and theta3, the bars CP and DP of length L2 follow at theta4 "
+    "and theta5; all four angles are measured from the y axis.  theta1 turns the linkage about AB; "
+    "at theta1 = 0 it lies in the plane of x and y, and a bar at the angle t points along "
+    "(-sin t, cos t, 0).",
+    task=["x", "y", "z"],
+    singularities=("P on AB", "A, C, P in line", "B, D, P in line", "C, D, P in line"),
+)
+UNIT, NONE = "any length", "the paper gives no value"
+L0 = d.parameter("L0", value=7, unit=UNIT, meaning="distance AB of the pivots", source=NONE)
+L1 = d.parameter("L1", value=8, unit=UNIT, meaning="length of the driven bars", source=NONE)
+L2 = d.parameter("L2", value=5, unit=UNIT, meaning="length of the following bars", source=NONE)
+theta1, theta2, theta3 = (d.joint(f"theta{i}") for i in (1, 2, 3))
+theta4, theta5 = (d.joint(f"theta{i}", passive=True) for i in (4, 5))
+q = (theta1, theta2, theta3)
+
+
+def in_space(along: sp.Expr, off: sp.Expr) -> sp.Matrix:
+    """A vector of the linkage, along AB and at right angles to it, turned by theta1."""
+    return rotation("y", theta1) * sp.Matrix([-off, along, 0])
+
+
+def bar(length: sp.Expr, angle: sp.Expr) -> sp.Matrix:
+    return in_space(length * cos(angle), length * sin(angle))
+
+
+# The loop
+
+x, y, z = p = sp.Matrix([real("x"), real("y"), real("z")])
+k = rotation("y", theta1) * sp.Matrix([0, 0, 1])
+A, B = in_space(0, 0), in_space(L0, 0)
+c, d_point = A + bar(L1, theta2), B + bar(L1, theta3)
+loop = [
+    L2 * k.dot(p),
+    ((p - c).dot(p - c) - L2**2) / 2,
+    ((p - d_point).dot(p - d_point) - L2**2) / 2,
+]
+by_c, by_d = c + bar(L2, theta4), d_point + bar(L2, theta5)
+rho = L1 * sin(theta2) + L2 * sin(theta4)
+leg_c, leg_d = (dict(zip(p, point, strict=True)) for point in (by_c, by_d))
+d.step(
+    "The loop",
+    "P lies in the plane of the linkage, whose normal is k, and L2 away from C and from D.  Seen "
+    "along the leg over C it is rho off the axis, a distance with a sign; the leg over D must lead "
+    "to the same point.",
+    {
+        r"\mathbf k": k,
+        r"\mathbf c": c,
+        r"\mathbf d": d_point,
+        r"\mathbf p = \mathbf c + \overrightarrow{CP}": by_c,
+        r"\mathbf p = \mathbf d + \overrightarrow{DP}": by_d,
+        r"\rho": rho,
+    },
+    equal=[
+        (
+            by_c,
+            sp.Matrix([-rho * cos(theta1), L1 * cos(theta2) + L2 * cos(theta4), rho * sin(theta1)]),
+        ),
+        (loop[0].subs(leg_c) + loop[1].subs(leg_c), sp.S.Zero),
+        (loop[0].subs(leg_d) + loop[2].subs(leg_d), sp.S.Zero),
+    ],
+)
+
+# Forward kinematics: both assembly modes
+
+sigma = real("sigma_assembly")
+modes = branches((sigma, {+1: "left_of_CD", -1: "right_of_CD"}))
+d.assembly_modes = modes.labels
+
+f = Program()
+C = f.let("C_y", L1 * cos(theta2)), f.let("C_r", L1 * sin(theta2))
+D = f.let("D_y", L0 + L1 * cos(theta3)), f.let("D_r", L1 * sin(theta3))
+CP, DP = (real("CP_y"), real("CP_r")), (real("DP_y"), real("DP_r"))
+CD = f.let("CD_y", D[0] - C[0]), f.let("CD_r", D[1] - C[1])
+meeting, chord = circle_intersection(f, CD, L2, L2, CP, sigma, L0 + L1 + L2, free=(theta4, theta5))
+n, half, height = chord.direction, chord.along, chord.height
+for name, value in zip(CP, (meeting[CP[0]], meeting[CP[1]]), strict=True):
+    f.let(str(name), value)
+for name, value in zip(DP, (meeting[u].subs(half, -half) for u in CP), strict=True):
+    f.let(str(name), value)
+P_y, P_r = f.let("P_y", C[0] + CP[0]), f.let("P_r", C[1] + CP[1])
+d.step(
+    "Forward: P from two circles",
+    "In the plane of the linkage, P is where the circles of radius L2 about C and D meet: to the "
+    "left or to the right of CD, the two assembly modes.  With n the direction of CD and h half "
+    "its length, CP and DP are +h n and -h n, plus the same vector e along the normal.  The loop "
+    "stays open where CD is longer than 2 L2.  If C and D coincide, P is free on a circle; we "
+    "return the limit of C and D parting along the y axis.",
+    {
+        r"h": chord.distance / 2,
+        r"e": sqrt(L2 - half) * sqrt(L2 + half),
+        r"\overrightarrow{CP}": sp.Matrix(
+            [half * n[0] - sigma * height * n[1], half * n[1] + sigma * height * n[0]]
+        ),
+    },
+)
+d.function(
+    "fk",
+    "Position of P in both assembly modes.",
+    {"q": q},
+    {"p": in_space(P_y, P_r)},
+    program=f,
+    branches=modes,
+    result="Positions",
+    source="the loop closure of section 2.3",
+    notes=(
+        "UNREACHABLE: C and D are more than 2 L2 apart, the loop is open.",
+        "SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the "
+        "point at theta4 = theta5 = +90 or -90 degrees is returned.",
+        "Ill-conditioned near the parallel singularities, where both modes meet or P is free.",
+    ),
+)
+d.inverses.append(Inverse("fk", tuple(p), (sp.S.Zero,) * 3, tuple(loop)))
+d.function(
+    "passive_angles",
+    "Angles theta4 and theta5 of CP and DP in both assembly modes.",
+    {"q": q},
+    {"theta": [atan2(CP[1], CP[0]), atan2(DP[1], DP[0])]},
+    program=f,
+    branches=modes,
+)
+
+# Velocity
+
+A_loop, B_loop = velocity_matrices(loop, p, q)
+on_c, on_d = (dict(zip(p, s + in_space(*b), strict=True)) for s, b in ((c, CP), (d_point, DP)))
+at_p = dict(zip(p, in_space(real("P_y"), P_r), strict=True))
+
+
+def on_the_loop(M: sp.Matrix) -> sp.Matrix:
+    """Row by row at P on the axis plane, over C and over D."""
+    rows = [M[i, :].subs(place, simultaneous=True) for i, place in enumerate((at_p, on_c, on_d))]
+    return sp.Matrix.vstack(*rows).applyfunc(normal)
+
+
+A_p, B_q = on_the_loop(A_loop), on_the_loop(B_loop)
+passive = dict(
+    zip(
+        (*CP, *DP, P_r),
+        (*(L2 * g(t) for t in (theta4, theta5) for g in (cos, sin)), rho),
+        strict=True,
+    )
+)
+by_angles = merge_angles(B_q.subs(passive).expand())
+d.step(
+    "Velocity: A and B",
+    "The loop equations, differentiated.  The rows of A are L2 k, p - c and p - d; B is diagonal, "
+    "because the two legs do not know of each other and a turn about AB moves P at right angles to "
+    "both bars.",
+    {"A": A_p, "B": B_q, r"B(\theta)": by_angles},
+    published=("(2)", "(3)", "(4)"),
+    equal=[
+        (A_p, sp.Matrix.vstack(L2 * k.T, in_space(*CP).T, in_space(*DP).T)),
+        (
+            by_angles,
+            sp.diag(L2 * rho, L1 * L2 * sin(theta4 - theta2), L1 * L2 * sin(theta5 - theta3)),
+        ),
+    ],
+)
+
+L3, L4 = (real(name, positive=True) for name in ("L3", "L4"))
+unequal = [(L1, L3), (L2, L4)]
+other_leg = ((p - d_point).dot(p - d_point) - L2**2).subs(unequal) / 2
+A_other, B_other = velocity_matrices([other_leg], p, q)
+over_d = dict(zip(p, by_d.subs(unequal), strict=True))
+general = sp.Matrix.hstack(A_other, B_other).subs(over_d, simultaneous=True).applyfunc(normal)
+d.step(
+    "Velocity: unequal legs",
+    "With bars L3 and L4 over D only the last rows change.  L1 = L3, L2 = L4 is used from here on: "
+    "for the isosceles triangle over CD, for the one factor L2^2 of A A^T and so for the condition "
+    "number, and for the two hollow spheres of the workspace being of one size.",
+    {r"B_{33}": L3 * L4 * sin(theta5 - theta3)},
+    equal=[
+        (general[:, :3], bar(L4, theta5).T),
+        (general[:, 3:], sp.Matrix([[0, 0, L3 * L4 * sin(theta5 - theta3)]])),
+    ],
+)
+
+# Inverse of A: CP x DP is 2 sigma h e by the circles, without the cancellation of the product
+
+product = CP[0] * DP[1] - CP[1] * DP[0]
+side = sigma * height * chord.distance
+
+
+def across(h: sp.Expr, e: sp.Expr) -> sp.Expr:
+    """CP x DP of the vectors that the circles give, for n at any angle."""
+    n = sp.Matrix([cos(theta4), sin(theta4)])
+    normal_to_n = sp.Matrix([-n[1], n[0]])
+    return sp.Matrix.hstack(h * n + e * normal_to_n, -h * n + e * normal_to_n).det()
+
+
+along_c, along_d = real("along_c"), real("along_d")
+A_inverse = (A_p.adjugate() / (L2 * product)).applyfunc(normal)
+J = A_inverse * sp.diag(L2 * P_r, along_c, along_d)
+driven = {along_c: B_q[1, 1], along_d: B_q[2, 2]}
+det_a = L2**3 * sin(theta5 - theta4)
+det_b = L1**2 * L2**3 * rho * sin(theta4 - theta2) * sin(theta5 - theta3)
+det_j = L1**2 * rho * sin(theta4 - theta2) * sin(theta5 - theta3) / sin(theta5 - theta4)
+d.step(
+    "Velocity: J and the determinants",
+    "J = A^{-1} B.  All determinants factor: det A holds the sine between CP and DP alone, det B "
+    "holds rho and the sine between the bars of each leg.",
+    {r"A^{-1}": A_inverse, r"\det A": det_a, r"\det B": det_b, r"\det J": det_j},
+    equal=[
+        (A_p * J.subs(driven), B_q),
+        (A_p.det().subs(passive), det_a),
+        (B_q.det().subs(passive), det_b),
+        (J.subs(driven).det().subs(passive), det_j),
+        (across(half, height), 2 * half * height),
+    ],
+)
+v = Program(list(f.body))
+sideways = v.let("side", side)
+for symbol, value in driven.items():
+    v.let(str(symbol), value)
+
+
+J_named = J.xreplace({-sp.expand(product): -sideways})
+for name, summary, outputs, notes in (
+    ("jacobian_parallel", "A of A dp = B dq; its rows are L2 k, p - c and p - d.", {"A": A_p}, ()),
+    (
+        "jacobian_serial",
+        "The diagonal of B of A dp = B dq.",
+        {"B": [L2 * P_r, along_c, along_d]},
+        ("Its signs tell the working modes apart, in the order of BRANCHES.",),
+    ),
+    (
+        "jacobian",
+        "Derivative of p with respect to q, A^-1 B.",
+        {"J": J_named},
+        ("Not finite at a parallel singularity.",),
+    ),
+    (
+        "determinant",
+        "Determinant of the Jacobian.",
+        {"det": P_r * along_c * along_d / sideways},
+        ("Not finite at a parallel singularity.",),
+    ),
+    (
+        "singularities",
+        "Factors that vanish exactly on the singular sets: rho, L2 sin(theta4 - theta2) and "
+        "L2 sin(theta5 - theta3), the serial ones; L2^2 sin(theta5 - theta4), the parallel one.",
+        {
+            "factors": [
+                P_r,
+                *(sp.expand(B_q[i, i] / L1) for i in (1, 2)),
+                sideways,
+            ]
+        },
+        (),
+    ),
+    (
+        "condition_number",
+        "Ratio of the largest to the smallest singular value of A.",
+        {"kappa": sp.Max(half, height) / sp.Min(half, height)},
+        ("Infinite at a parallel singularity; it does not depend on theta1.",),
+    ),
+):
+    d.function(
+        name,
+        summary,
+        {"q": q},
+        outputs,
+        program=v,
+        branches=modes,
+        notes=("NaN for an assembly mode that does not exist.", *notes),
+    )
+
+# Inverse kinematics: all working modes
+
+tau, sigma2, sigma3 = (real(f"sigma_{name}") for name in ("axis", "leg_c", "leg_d"))
+SIGN = {+1: "plus", -1: "minus"}
+working = branches((tau, SIGN), (sigma2, SIGN), (sigma3, SIGN))
+d.branches = working.labels
+base2, base3, elbow4, elbow5 = (real(name) for name in ("base2", "base3", "elbow4", "elbow5"))
+
+w = Program()
+r = w.let("r", sqrt(x**2 + z**2), nonnegative=True)
+reach_c = w.let("reach_c", sqrt(y**2 + r**2), nonnegative=True)
+reach_d = w.let("reach_d", sqrt((y - L0) ** 2 + r**2), nonnegative=True)
+triangle_c = two_link_triangle(w, L1, L2, reach_c, elbow4, base2, sigma2, suffix="_c")
+triangle_d = two_link_triangle(w, L1, L2, reach_d, elbow5, base3, sigma3, suffix="_d")
+inside = Program(list(w.body))
+size = L0 + L1 + L2
+on_axis = w.vanishes("on_axis", r, size, "P is on the axis", free=(theta1,))
+at_a = w.vanishes("at_A", reach_c, size, "P is at A", free=(theta2,))
+at_b = w.vanishes("at_B", reach_d, size, "P is at B", free=(theta3,))
+w.vanishes("no_bar", L1, L1 + L2, "the driven bars have no length", free=(theta2, theta3))
+turn = linear_pair(theta1, tau * z, -tau * x)
+bearing_c, bearing_d = linear_pair(theta2, tau * r, y), linear_pair(theta3, tau * r, y - L0)
+legs = (
+    (bearing_c[theta2], triangle_c[base2], at_a),
+    (bearing_d[theta3], triangle_d[base3], at_b),
+)
+driven_angles = [choose(flag, 0, toward - base) for toward, base, flag in legs]
+d.step(
+    "Inverse: the eight working modes",
+    "rho is the distance of P from the axis with either sign, and turns theta1 by half a turn.  In "
+    "the plane, A, C, P and B, D, P are triangles with known sides; each has two mirror images, "
+    "told apart by the sign of the angle between its bars.  So the three signs are those of the "
+    "diagonal of B.  If P is on the axis, theta1 is free and we return 0; if it is at A (which "
+    "takes L1 = L2), so is theta2, and at B theta3.",
+    {
+        r"\theta_1": turn[theta1],
+        r"\theta_2": bearing_c[theta2] - triangle_c[base2],
+        r"\theta_3": bearing_d[theta3] - triangle_d[base3],
+    },
+)
+d.function(
+    "ik",
+    "The driven angles of all eight working modes.",
+    {"x": tuple(p)},
+    {"q": [choose(on_axis, 0, turn[theta1]), *driven_angles]},
+    program=w,
+    branches=working,
+    result="Solutions",
+    source="the working modes of section 2.4",
+    notes=(
+        "BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly "
+        "modes.",
+        "UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.",
+        "SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is "
+        "free; L1 = 0, both are.  0 is returned for theta1, and for the others unless L1 = 0.",
+        "Ill-conditioned near the boundary of the workspace: the angles lose half the digits "
+        "there, the loop still closes.  fk loses them again near a parallel singularity.",
+        "If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.",
+    ),
+)
+d.function(
+    "workspace_contains",
+    "Whether P can be reached: it lies in both hollow spheres.",
+    {"p": tuple(p)},
+    {"inside": sp.true},
+    program=inside,
+    source="section 3.1",
+    boolean=True,
+)
+
+
+def cosine_rule(square: sp.Expr, angle: sp.Expr) -> sp.Expr:
+    return square - L1**2 - L2**2 - 2 * L1 * L2 * cos(angle)
+
+
+def toward(theta: sp.Symbol, along: sp.Expr, passive_angle: sp.Symbol) -> sp.Expr:
+    """The moment of the bars about the pivot, which vanishes along the line to P."""
+    elbow = passive_angle - theta
+    reach = sp.Matrix([L1 + L2 * cos(elbow), L2 * sin(elbow)])
+    off = z * sin(theta1) - x * cos(theta1)
+    return sin(theta) * (along * reach[0] + off * reach[1]) - cos(theta) * (
+        off * reach[0] - along * reach[1]
+    )
+
+
+d.solved += [
+    Solved("ik", theta1, turn, k.dot(p), leg_c),
+    Solved("ik", theta4, triangle_c, cosine_rule(x**2 + y**2 + z**2, theta4 - theta2), leg_c),
+    Solved(
+        "ik", theta5, triangle_d, cosine_rule(x**2 + (y - L0) ** 2 + z**2, theta5 - theta3), leg_d
+    ),
+    Solved("ik", theta2, bearing_c, toward(theta2, y, theta4), leg_c),
+    Solved("ik", theta3, bearing_d, toward(theta3, y - L0, theta5), leg_d),
+]
+off_axis = real("rho")
+in_plane = {x: -off_axis * cos(theta1), z: off_axis * sin(theta1)}
+axis = {x: sp.S.Zero, z: sp.S.Zero}
+d.inverses.append(
+    Inverse(
+        "ik",
+        q,
+        (sp.S.Zero,) * 3,
+        tuple(loop),
+        (
+            Continuum(on_axis, axis, theta1, r"\theta_2, \theta_3 \text{ as for any } \theta_1"),
+            Continuum(
+                at_a,
+                {**axis, y: sp.S.Zero, L2: L1},
+                theta2,
+                r"\theta_4 = \theta_2 + \pi",
+                also=(on_axis,),
+            ),
+            Continuum(
+                at_b, {**axis, y: L0, L2: L1}, theta3, r"\theta_5 = \theta_3 + \pi", also=(on_axis,)
+            ),
+        ),
+        images="fk",
+        stages=(
+            Stage((theta1,), (0,), {}),
+            Stage((theta2,), (1,), in_plane),
+            Stage((theta3,), (2,), in_plane),
+        ),
+    )
+)
+
+# Conditioning, loci, workspace
+
+design.conditioning(d, A_p.subs(passive), theta5 - theta4)
+design.loci(d)
+volumes = design.workspace(d)
+
+# Claims of the paper
+
+state(
+    d,
+    FiveBar(
+        (L0, L1, L2),
+        (theta1, theta2, theta3, theta4, theta5),
+        (c, d_point),
+        (by_c, by_d),
+        k,
+        tuple(p),
+        tuple(loop),
+        A_p.subs(passive),
+        by_angles,
+        in_plane,
+        volumes,
+    ),
+)

@@ -1,0 +1,66 @@
+"""The experiment of section V on the IRB 260: a motion at constant rates."""
+
+import sympy as sp
+from sympy import pi
+
+from closedform.derivation import Derivation, Table
+from closedform.functions import real
+
+
+def experiment(
+    d: Derivation, position: sp.Matrix, velocity: sp.Matrix, rates: sp.Matrix, M: sp.Matrix
+) -> None:
+    """The velocity of the hand over time, for either reading of the rate of motor 3."""
+    time = real("t")
+    omega = sp.Matrix([-30, 10, 5, 0]) * pi / 180
+
+    def moving(speeds: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
+        """Position and velocity at a time, from all angles 0 at constant rates."""
+        along = dict(zip(d.actuated, speeds * time, strict=True))
+        at_rates = dict(zip(rates, speeds, strict=True))
+        return position.subs(along), velocity.subs(at_rates).subs(along)
+
+    p_relative, v_relative = moving(omega)
+    p_grounded, v_grounded = moving(M * omega)
+    d.step(
+        "The experiment of section V",
+        "From theta = 0 with the rates -30, 10, 5 and 0 degrees per second (t in seconds).  These "
+        "are the derivatives in time of the position along the path.",
+        {"v": v_relative},
+        equal=[(v_relative, p_relative.diff(time))],
+    )
+    difference = v_relative - v_grounded
+    start, first, second = (difference.diff(time, k).subs(time, 0) for k in range(3))
+    d.step(
+        "Relative or grounded",
+        "If 5 degrees per second were the rate of a motor 3 on the turret, the joint would turn "
+        "by theta3 = (5 - 10) t, and the velocity be w.  All three components tell the readings "
+        "apart, but not equally soon: at t = 0 only the vertical one differs, threefold; the "
+        "difference of the others grows from 0, that of y with t and that of x with t^2.",
+        {
+            "w": v_grounded,
+            r"(v - w)_{t = 0}": start.T,
+            r"\frac{d}{dt}(v - w)_{t = 0}": first.T,
+            r"\frac{d^2}{dt^2}(v - w)_{t = 0}": second.T,
+        },
+        equal=[
+            (v_grounded, p_grounded.diff(time)),
+            (v_relative[2].subs(time, 0), 3 * v_grounded[2].subs(time, 0)),
+            (start[:2, 0], sp.zeros(2, 1)),
+            (first[0], sp.S.Zero),
+        ],
+    )
+    readings = (("", v_relative), (" if motor 3 is grounded", v_grounded))
+    d.tables.append(
+        Table(
+            "irb260_section_v",
+            "t [s]",
+            time,
+            tuple(sp.Rational(k, 10) for k in range(101)),
+            {
+                f"v{axis}{suffix} [m/s]": value
+                for suffix, values in readings
+                for axis, value in zip("xyz", values, strict=True)
+            },
+        )
+    )

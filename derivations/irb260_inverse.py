@@ -1,0 +1,191 @@
+"""The inverse kinematics of the IRB 260, which the paper leaves out, and its workspace."""
+
+import sympy as sp
+from sympy import atan2, cos, pi, sin, sqrt
+
+from closedform.derivation import Continuum, Derivation, Inverse, Solved
+from closedform.functions import Program, branches, choose, real
+from closedform.lemmas import linear_pair, two_link_triangle
+
+TARGET = (real("px"), real("py"), real("pz"), real("psi"))
+
+
+def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: sp.Matrix) -> None:
+    """All postures of a position and a yaw: turret, elbow, shoulder, hand."""
+    l1, l2, l3, l4, l5, l6 = lengths
+    theta1, theta2, theta3, theta5 = d.actuated
+    px, py, pz, psi = TARGET
+    side, bend = real("sigma_side"), real("sigma_elbow")
+    alpha, elbow = real("alpha"), real("elbow")
+    choices = branches(
+        (side, {+1: "front", -1: "back"}), (bend, {+1: "elbow_up", -1: "elbow_down"})
+    )
+    d.branches = choices.labels
+
+    p = Program()
+    size = l1 + l2 + l3 + l4 + l5 + l6
+    r = p.let("r", sqrt(px**2 + py**2), nonnegative=True)
+    on_axis = p.vanishes("on_axis", r, size, "the hand is on the base axis", free=(theta1,))
+    c1 = p.let("c_turret", choose(on_axis, 1, side * py))
+    s1 = p.let("s_turret", choose(on_axis, 0, -side * px))
+    u = p.let("u", side * r - l1 - l6)
+    h = p.let("h", pz - l2 + l5)
+    reach = p.let("reach", sqrt(u**2 + h**2), nonnegative=True)
+    triangle = two_link_triangle(p, l3, l4, reach, elbow, alpha, bend, scale=size)
+    folded = p.vanishes("folded", reach, size, "the wrist is on the shoulder", free=(theta2,))
+    p.vanishes("no_link", l3 * l4, (l3 + l4) ** 2, "an arm has no length", free=(theta3,))
+    turret = linear_pair(theta1, s1, c1)
+    shoulder = linear_pair(theta2, u, h)
+    hand = linear_pair(theta5, sin(psi) * c1 - cos(psi) * s1, cos(psi) * c1 + sin(psi) * s1)
+    solution = {
+        theta1: turret[theta1],
+        theta2: choose(folded, 0, shoulder[theta2] - triangle[alpha]),
+        theta3: triangle[elbow] - pi / 2,
+        theta5: hand[theta5],
+    }
+    wrist = py * cos(theta1) - px * sin(theta1) - l1 - l6
+    height = pz - l2 + l5
+    along3, across3 = l3 - l4 * sin(theta3), l4 * cos(theta3)
+    d.solved += [
+        Solved("ik", theta1, turret, px * cos(theta1) + py * sin(theta1)),
+        Solved(
+            "ik", theta3, triangle, wrist**2 + height**2 - l3**2 - l4**2 + 2 * l3 * l4 * sin(theta3)
+        ),
+        Solved(
+            "ik",
+            theta2,
+            shoulder,
+            sin(theta2) * (height * along3 + wrist * across3)
+            - cos(theta2) * (wrist * along3 - height * across3),
+        ),
+        Solved("ik", theta5, hand, sin(theta1 + theta5 - psi)),
+    ]
+    d.step(
+        "Inverse: the turret",
+        "The hand is in the plane of the arm, at the distance rho = +-r from the base axis: the "
+        "arm faces it (front, sigma_side = +1) or reaches over the axis (back, sigma_side = -1).  "
+        "On the axis itself theta1 is free; we return 0.",
+        {
+            r"\rho": side * sqrt(px**2 + py**2),
+            r"\theta_1": atan2(-side * px, side * py),
+            r"u": r"\rho - l_1 - l_6",
+            r"h": pz - l2 + l5,
+        },
+    )
+    d.step(
+        "Inverse: the elbow and the shoulder",
+        "Seen from the shoulder the wrist is at u forward and h up.  The two arms and the line "
+        "between these joints form a triangle, in which the angle of the elbow is theta3 + 90 "
+        "degrees: elbow_up (sigma_elbow = +1) is cos(theta3) >= 0, as at home, and elbow_down is "
+        "cos(theta3) <= 0.  If the arms are equal and the wrist is on the shoulder, theta2 is "
+        "free; we return 0.",
+        {
+            r"\theta_3": solution[theta3],
+            r"\alpha": triangle[alpha],
+            r"\theta_2": shoulder[theta2] - alpha,
+        },
+    )
+    d.step(
+        "Inverse: the hand",
+        "What the turret leaves of the yaw, by sine and cosine.",
+        {r"\theta_5": r"\psi - \theta_1"},
+    )
+    d.function(
+        "ik",
+        "All four configurations of a position and a yaw.",
+        {"x": TARGET},
+        {"q": [solution[angle] for angle in d.actuated]},
+        program=p,
+        branches=choices,
+        result="Solutions",
+        source="solved from eq. (13); the paper leaves the inverse out",
+        notes=(
+            "front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= "
+            "0, where rho = y cos(theta1) - x sin(theta1).  elbow_up: cos(theta3) >= 0, as at "
+            "home; elbow_down: cos(theta3) <= 0.",
+            "SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) "
+            "and 0 is returned; equal arms folded with the wrist on the shoulder, theta2 is free "
+            "and 0 is returned; or an arm without length, whose angle is free.",
+            "Ill-conditioned where the arm is straight or folded: the angles lose half the digits "
+            "there, the position does not.",
+        ),
+    )
+    beta = real("beta")
+    d.inverses.append(
+        Inverse(
+            "ik",
+            d.actuated,
+            TARGET,
+            (*position, theta1 + theta5),
+            (
+                Continuum(
+                    on_axis, {px: sp.S.Zero, py: sp.S.Zero}, theta1, r"\theta_1 + \theta_5 = \psi"
+                ),
+                Continuum(
+                    folded,
+                    {
+                        px: -(l1 + l6) * sin(beta),
+                        py: (l1 + l6) * cos(beta),
+                        pz: l2 - l5,
+                        l4: l3,
+                    },
+                    theta2,
+                    r"\theta_3 = \pi/2",
+                    ("front_elbow_up", "front_elbow_down"),
+                ),
+            ),
+            angles=(psi,),
+        )
+    )
+
+
+def workspace(
+    d: Derivation, lengths: tuple[sp.Symbol, ...], position: sp.Matrix, rho: sp.Expr
+) -> None:
+    """The limits of what the hand can reach, which do not depend on its yaw."""
+    l1, l2, l3, l4, l5, l6 = lengths
+    theta3, (px, py, pz, _) = d.actuated[2], TARGET
+    inner, outer = sp.Abs(l3 - l4), l3 + l4
+    square = l3**2 + l4**2 - 2 * l3 * l4 * sin(theta3)
+    d.step(
+        "Workspace",
+        "In the plane of the arm the hand reaches an annulus about the point at rho = l1 + l6 and "
+        "z = l2 - l5, with the arms' difference and sum as radii; all around the base axis, this "
+        "annulus and its mirror image.  At the radii the arm is folded and straight.",
+        {
+            r"\rho_0": l1 + l6,
+            "z_0": l2 - l5,
+            r"(\rho - \rho_0)^2 + (z - z_0)^2": square,
+            "r_{min}": inner,
+            "r_{max}": outer,
+        },
+        equal=[
+            ((rho - l1 - l6) ** 2 + (position[2] - l2 + l5) ** 2, square),
+            (square.subs(theta3, pi / 2), inner**2),
+            (square.subs(theta3, -pi / 2), outer**2),
+        ],
+    )
+    d.function(
+        "workspace_section",
+        "The annulus that the hand can reach in the plane of the arm.",
+        {},
+        {"section": [l1 + l6, l2 - l5, inner, outer]},
+        notes=("Radius and height of the centre, inner and outer radius.",),
+    )
+    p = Program()
+    r = p.let("r", sqrt(px**2 + py**2), nonnegative=True)
+    h = p.let("h", pz - l2 + l5)
+    gaps = []
+    for name, sign in (("front", 1), ("back", -1)):
+        there = p.let(f"reach_{name}", sqrt((sign * r - l1 - l6) ** 2 + h**2), nonnegative=True)
+        gaps.append(sp.Min(l3 + l4 - there, there - inner))
+    d.function(
+        "workspace_margin",
+        "How far a position is inside the workspace, in the plane of the arm; negative outside.",
+        {"p": (px, py, pz)},
+        {"margin": sp.Max(*gaps)},
+        program=p,
+        notes=(
+            "Some configuration reaches the position exactly where the margin is not negative.",
+        ),
+    )

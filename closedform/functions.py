@@ -58,8 +58,8 @@ class Let:
 class Bound:
     """``symbol = value``, where a negative ``value`` means that the target is out of reach.
 
-    Generated code clamps it at zero; with ``positive`` at the least that counts as more than zero,
-    where a zero would lose the side on which an arm is bent.
+    Generated code clamps it at zero; with ``positive`` just above, where a zero would lose the side
+    on which an arm is bent: such a value goes with the square of the angle.
     """
 
     symbol: sp.Symbol

@@ -12,7 +12,7 @@ satisfy the equations, and the equations have no others.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import sympy as sp
 
@@ -26,6 +26,8 @@ class Lemma:
     ``excluded`` solutions of the equations violate the inequality that ``statement`` names.
     ``pairs`` holds the names of the cosine and the sine of an unknown, computed without its angle,
     for the steps that follow; ``body`` are the statements that the lemma added to the program.
+    ``premises`` says what names of earlier statements must stand for; where the inverse is proved,
+    so is that.
     """
 
     name: str
@@ -36,6 +38,7 @@ class Lemma:
     excluded: int = 0
     pairs: Mapping[sp.Symbol, tuple[sp.Symbol, sp.Symbol]] = field(default_factory=dict)
     body: tuple[Statement, ...] = ()
+    premises: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]
@@ -78,8 +81,9 @@ def sine_cosine(
     """
     start = len(program.body)
     h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
-    below = program.bound(f"below{suffix}", h - c, h, "the amplitude is not smaller than c")
-    above = program.bound(f"above{suffix}", h + c, h, "the amplitude is not smaller than -c")
+    size = scale if free else h
+    below = program.bound(f"below{suffix}", h - c, size, "the amplitude is not smaller than c")
+    above = program.bound(f"above{suffix}", h + c, size, "the amplitude is not smaller than -c")
     half = sp.atan2(sp.sqrt(below), sp.sqrt(above))
     pairs = {}
     if free:
@@ -118,7 +122,6 @@ def two_link_triangle(
     *,
     scale: sp.Expr | None = None,
     suffix: str = "",
-    sided: bool = False,
 ) -> Lemma:
     """The triangle of two links of lengths ``first``, ``second`` whose ends are ``reach`` apart.
 
@@ -130,18 +133,13 @@ def two_link_triangle(
 
     The elbow is free where a link has no length, and the base where the reach is zero.  ``scale``
     is the natural scale of the lengths: by default that of the links, more where the reach is a
-    difference of larger lengths.  ``sided`` keeps a stretched elbow bent by 1e-7, so that the side
-    can be read from the answer.
+    difference of larger lengths.
     """
     scale = first + second if scale is None else scale
     S = program.let(f"S{suffix}", first + second + reach, nonnegative=True)
-
-    def bound(name: str, value: sp.Expr, meaning: str) -> sp.Symbol:
-        return program.bound(f"{name}{suffix}", value, scale, meaning, positive=sided)
-
-    A = bound("A", first + second - reach, "nearer than full stretch")
-    B = bound("B", reach + first - second, "farther than the fold")
-    C = bound("C", reach - first + second, "farther than the fold")
+    A = program.bound(f"A{suffix}", first + second - reach, scale, "nearer than full stretch")
+    B = program.bound(f"B{suffix}", reach + first - second, scale, "farther than the fold")
+    C = program.bound(f"C{suffix}", reach - first + second, scale, "farther than the fold")
     rS, rA, rB, rC = (
         program.let(f"r{name}{suffix}", sp.sqrt(value), nonnegative=True)
         for name, value in (("S", S), ("A", A), ("B", B), ("C", C))
@@ -258,7 +256,6 @@ def two_link_arm(
     sigma: sp.Symbol,
     *,
     suffix: str = "",
-    sided: bool = False,
     free: Sequence[sp.Symbol] = (),
 ) -> Lemma:
     """A planar arm with a cranked fore-arm, by the triangle of its elbow.
@@ -269,45 +266,167 @@ def two_link_arm(
         l cos(x) + a sin(y) + b cos(y) = r,   l sin(x) - a cos(y) + b sin(y) = h.
 
     The fore-arm is a link of length sqrt(a^2 + b^2) that lags behind y by atan2(a, b).  Both angles
-    turn together where r = h = 0, and y is free where a link has no length.
+    turn together where r = h = 0, and one of them is free where a link has no length.
     """
+    upper, along, across = lengths
     start = len(program.body)
-    (upper, along, across), (r, h), (x, y) = lengths, target, unknowns
     second = program.let(f"fore{suffix}", sp.sqrt(along**2 + across**2), nonnegative=True)
-    reach = program.let(f"reach{suffix}", sp.sqrt(r**2 + h**2), nonnegative=True)
-    elbow, base = real(f"elbow{suffix}"), real(f"base{suffix}")
+    reach = program.let(
+        f"reach{suffix}", sp.sqrt(target[0] ** 2 + target[1] ** 2), nonnegative=True
+    )
     triangle = two_link_triangle(
-        program, upper, second, reach, elbow, base, sigma, suffix=suffix, sided=sided
+        program, upper, second, reach, real("elbow"), real("base"), sigma, suffix=suffix
     )
     S, A, B, C, rS, rA, rB, rC = (
         real(f"{root}{name}{suffix}", nonnegative=True) for root in ("", "r") for name in "SABC"
     )
-    folded = program.vanishes(
-        f"folded{suffix}", reach, upper + second, "the end is on the shoulder", free
-    )
-    short = program.vanishes(
-        f"short{suffix}", upper * second, (upper + second) ** 2, "a link has no length", free
-    )
-    lost = sp.Or(folded, short)
-    area = program.let(f"area{suffix}", 2 * sigma * (rS * rA) * (rB * rC))
-    at_base = program.let(f"at_base{suffix}", S * B + A * C)
+    folded, short = _degenerate(program, upper, second, reach, suffix, free)
     at_elbow = program.let(f"at_elbow{suffix}", B * C + S * A)
-    c_base = program.let(f"c_base{suffix}", choose(lost, 1, (S * B - A * C) / at_base))
-    s_base = program.let(f"s_base{suffix}", choose(lost, 0, area / at_base))
-    c_elbow = program.let(f"c_elbow{suffix}", choose(short, 1, (B * C - S * A) / at_elbow))
-    s_elbow = program.let(f"s_elbow{suffix}", choose(short, 0, area / at_elbow))
-    c_sight = program.let(f"c_sight{suffix}", choose(folded, 1, r / reach))
-    s_sight = program.let(f"s_sight{suffix}", choose(folded, 0, h / reach))
-    c_lag = program.let(f"c_lag{suffix}", choose(short, 1, across / second))
-    s_lag = program.let(f"s_lag{suffix}", choose(short, 0, along / second))
-    cx = program.let(f"c{x.name}", c_sight * c_base + s_sight * s_base)
-    sx = program.let(f"s{x.name}", s_sight * c_base - c_sight * s_base)
-    c_bend = program.let(f"c_bend{suffix}", c_elbow * c_lag - s_elbow * s_lag)
-    s_bend = program.let(f"s_bend{suffix}", s_elbow * c_lag + c_elbow * s_lag)
-    cy = program.let(f"c{y.name}", cx * c_bend - sx * s_bend)
-    sy = program.let(f"s{y.name}", sx * c_bend + cx * s_bend)
-    direction = choose(folded, 0, sp.atan2(h, r)) - choose(lost, 0, triangle[base])
-    bend = choose(short, 0, triangle[elbow] + sp.atan2(s_lag, c_lag))
+    at_base = program.let(f"at_base{suffix}", S * B + A * C)
+    area = program.let(f"area{suffix}", 2 * sigma * (rS * rA) * (rB * rC))
+    bend = (choose(short, 1, (B * C - S * A) / at_elbow), choose(short, 0, area / at_elbow))
+    lost = sp.Or(folded, short)
+    base = (choose(lost, 1, (S * B - A * C) / at_base), choose(lost, 0, area / at_base))
+    sight = tuple(choose(folded, k, e / reach) for k, e in zip((1, 0), target, strict=True))
+    sight, base, bend = (
+        tuple(program.let(f"{f}_{name}{suffix}", e) for f, e in zip("cs", pair, strict=True))
+        for name, pair in (("sight", sight), ("base", base), ("bend", bend))
+    )
+    direction = (
+        sight[0] * base[0] + sight[1] * base[1],
+        sight[1] * base[0] - sight[0] * base[1],
+    )
+    angles = (
+        choose(folded, 0, sp.atan2(*reversed(target))) - choose(lost, 0, triangle[real("base")]),
+        choose(short, 0, triangle[real("elbow")]),
+    )
+    return _arm(program, lengths, target, unknowns, suffix, start, direction, bend, angles)
+
+
+def two_link_arm_beside(
+    program: Program,
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    second: sp.Symbol,
+    target: tuple[sp.Expr, sp.Expr],
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    sigma: sp.Symbol,
+    squares: tuple[sp.Expr, sp.Expr],
+    *,
+    suffix: str = "",
+    sided: bool = False,
+    free: Sequence[sp.Symbol] = (),
+) -> Lemma:
+    """The two-link arm, where another arm knows better than the target how far it is bent.
+
+    As :func:`two_link_arm`, for a fore-arm of length ``second``.  With the reach R the ``squares``
+    are N = (l + f)^2 - R^2 and M = R^2 - (l - f)^2, so that tan(elbow / 2) = sqrt(N / M).  Taken
+    from the target, N has lost all its digits where the arm is straight, and the elbow half of
+    them; an arm nearby gives them without a difference of nearly equal lengths.  ``sided`` keeps
+    the elbow from being quite straight, so that its side can be read from the answer.
+    """
+    upper, along, across = lengths
+    r, h = target
+    size = (upper + second) ** 2
+    N, M = (
+        program.bound(f"{name}{suffix}", value, size, meaning, positive=sided)
+        for name, value, meaning in (
+            ("N", squares[0], "nearer than full stretch"),
+            ("M", squares[1], "farther than the fold"),
+        )
+    )
+    start = len(program.body)
+    reach = program.let(f"reach{suffix}", sp.sqrt(r**2 + h**2), nonnegative=True)
+    folded, short = _degenerate(program, upper, second, reach, suffix, free)
+    rN, rM = (program.let(f"r{e.name}", sp.sqrt(e), nonnegative=True) for e in (N, M))
+    whole = program.let(f"whole{suffix}", N + M)
+    bend = (
+        program.let(f"c_bend{suffix}", choose(short, 1, (M - N) / whole)),
+        program.let(f"s_bend{suffix}", choose(short, 0, 2 * sigma * rN * rM / whole)),
+    )
+    beyond = (program.let(f"ahead_1{suffix}", upper + second * bend[0]), second * bend[1])
+    out = program.let(f"out{suffix}", r * beyond[0] + h * beyond[1])
+    up = program.let(f"up{suffix}", h * beyond[0] - r * beyond[1])
+    norm = program.let(f"norm{suffix}", sp.sqrt(out**2 + up**2), nonnegative=True)
+    direction = (choose(folded, 1, out / norm), choose(folded, 0, up / norm))
+    angles = (
+        choose(folded, 0, sp.atan2(up, out)),
+        choose(short, 0, 2 * sigma * sp.atan2(rN, rM)),
+    )
+    lemma = _arm(program, lengths, target, unknowns, suffix, start, direction, bend, angles)
+    squared = r**2 + h**2
+    premises = {
+        second: sp.sqrt(along**2 + across**2),
+        N: (upper + second) ** 2 - squared,
+        M: squared - (upper - second) ** 2,
+    }
+    return replace(lemma, premises=premises)
+
+
+def elbow_squares(
+    program: Program,
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    second: sp.Symbol,
+    elbow: tuple[sp.Expr, sp.Expr],
+    *,
+    suffix: str = "",
+) -> tuple[tuple[sp.Symbol, sp.Symbol], sp.Symbol]:
+    """N and M of an arm from cosine and sine of y - x, and the sine of its bend times ``second``.
+
+    N = 2 l (f - f cos(bend)) and M = 2 l (f + f cos(bend)); of f - |..| and f + |..| the smaller
+    one is the square of f sin(bend) over the larger one.
+    """
+    upper, along, across = lengths
+    c, s = elbow
+    straight = program.let(f"straight{suffix}", along * s + across * c)
+    bent = program.let(f"bent{suffix}", across * s - along * c)
+    stretched = straight >= 0
+    large = program.let(
+        f"large{suffix}", second + sp.Piecewise((straight, stretched), (-straight, True))
+    )
+    small = program.let(f"small{suffix}", bent**2 / large)
+    N = program.let(f"N{suffix}", 2 * upper * sp.Piecewise((small, stretched), (large, True)))
+    M = program.let(f"M{suffix}", 2 * upper * sp.Piecewise((large, stretched), (small, True)))
+    return (N, M), bent
+
+
+def _degenerate(
+    program: Program,
+    upper: sp.Expr,
+    second: sp.Expr,
+    reach: sp.Expr,
+    suffix: str,
+    free: Sequence[sp.Symbol],
+) -> tuple[sp.Symbol, sp.Symbol]:
+    """The flags of an arm: its end is on the shoulder, or a link has no length."""
+    size = upper + second
+    return (
+        program.vanishes(f"folded{suffix}", reach, size, "the end is on the shoulder", free),
+        program.vanishes(f"short{suffix}", upper * second, size**2, "a link has no length", free),
+    )
+
+
+def _arm(
+    program: Program,
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    target: tuple[sp.Expr, sp.Expr],
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    suffix: str,
+    start: int,
+    direction: tuple[sp.Expr, sp.Expr],
+    bend: tuple[sp.Expr, sp.Expr],
+    angles: tuple[sp.Expr, sp.Expr],
+) -> Lemma:
+    """The lemma of an arm from the pairs and the angles of its upper arm and of its bend."""
+    (upper, along, across), (r, h), (x, y) = lengths, target, unknowns
+    length = program.let(f"length{suffix}", sp.sqrt(along**2 + across**2), nonnegative=True)
+    bare = program.vanishes(f"bare{suffix}", length, upper + length, "the fore-arm has no length")
+    cx, sx = (program.let(f"{f}{x.name}", e) for f, e in zip("cs", direction, strict=True))
+    lag = (choose(bare, 1, across / length), choose(bare, 0, along / length))
+    lag = tuple(program.let(f"{f}_lag{suffix}", e) for f, e in zip("cs", lag, strict=True))
+    turn = (bend[0] * lag[0] - bend[1] * lag[1], bend[1] * lag[0] + bend[0] * lag[1])
+    turn = tuple(program.let(f"{f}_relative{suffix}", e) for f, e in zip("cs", turn, strict=True))
+    cy = program.let(f"c{y.name}", cx * turn[0] - sx * turn[1])
+    sy = program.let(f"s{y.name}", sx * turn[0] + cx * turn[1])
     return Lemma(
         "two-link arm",
         r"l e^{ix} + (b - ia) e^{iy} = r + ih \;\Rightarrow\; x = \operatorname{atan2}(h, r) - "
@@ -317,7 +436,7 @@ def two_link_arm(
             upper * sp.cos(x) + along * sp.sin(y) + across * sp.cos(y) - r,
             upper * sp.sin(x) - along * sp.cos(y) + across * sp.sin(y) - h,
         ),
-        {x: direction, y: direction + bend},
+        {x: angles[0], y: angles[0] + angles[1] + sp.atan2(lag[1], lag[0])},
         2,
         pairs={x: (cx, sx), y: (cy, sy)},
         body=tuple(program.body[start:]),
@@ -337,8 +456,9 @@ def two_sines(
 
     The part of the equation across u gives sin y; what is left along u gives sin x, so that an
     error of y does no harm where u and v are nearly parallel.  Where they are parallel a
-    combination of the sines is free; the convention is y = 0.  Cosines are kept from zero by 1e-7, so
-    that their sign can be read from the answer.
+    combination of the sines is free; the convention is y = 0.  The directions of u and v are known
+    to a few units in the last place, so that a multiple of the usual tolerance counts as parallel.
+    Cosines are kept from zero, so that their sign can be read from the answer.
     """
     x, y = unknowns
     area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
@@ -348,8 +468,9 @@ def two_sines(
     other = program.let("size_v", sp.sqrt(v[0] ** 2 + v[1] ** 2), nonnegative=True)
     uv = program.let("uv", sigma * (u[0] * v[1] - u[1] * v[0]))
     up = program.let("up", sigma * (u[0] * p[1] - u[1] * p[0]))
-    parallel = program.vanishes("parallel", uv, size * other, "both vectors are parallel", free)
-    cy, sy = _from_sine(program, y, up, uv, size * other, parallel)
+    scale = size * other
+    parallel = program.vanishes("parallel", uv, 64 * scale, "both vectors are parallel", free)
+    cy, sy = _from_sine(program, y, up, uv, scale, parallel)
     along = program.let("along", ((p[0] - sy * v[0]) * u[0] + (p[1] - sy * v[1]) * u[1]) / size)
     cx, sx = _from_sine(program, x, along, size, size, sp.false)
     return Lemma(

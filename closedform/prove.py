@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -175,6 +175,10 @@ def _prove_chained(
     known, equations = _meanings(function, chain), []
     for lemma in chain.lemmas:
         prove_lemma(lemma, Program(list(lemma.body)))
+        for name, meaning in lemma.premises.items():
+            stated = substitute(meaning, known)
+            for found in _cases(known[name]):
+                _require(found - stated, (), f"{where}: what {name} stands for")
         equations += [substitute(e, known) for e in lemma.equations]
     graph = dict(chain.joints)
     system = sp.Matrix([substitute(e, graph) for e in inverse.equations])
@@ -209,6 +213,16 @@ def _meanings(function: Function, chain: Chain) -> dict[sp.Basic, sp.Basic]:
         if isinstance(statement, (Let, Bound)) and id(statement) not in inside:
             known[statement.symbol] = substitute(statement.value, known)
     return known
+
+
+def _cases(expr: sp.Expr) -> Iterator[sp.Expr]:
+    """The values of an expression for every outcome of its choices between sides."""
+    choices = [c for p in expr.atoms(sp.Piecewise) for _, c in p.args if c.is_Relational]
+    if not choices:
+        yield expr
+        return
+    for holds in (sp.true, sp.false):
+        yield from _cases(expr.xreplace({choices[0]: holds}))
 
 
 def _generic(expr: sp.Expr) -> sp.Expr:
@@ -325,18 +339,18 @@ def prove_lemma(
 ) -> None:
     """Prove a lemma for the coefficients it was applied to: symbols, so for all.
 
-    Its solutions satisfy its equations for either sign, and the equations have no others.
-    ``given`` writes dependent coefficients in free parameters.
+    Its solutions satisfy its equations for either sign, its pairs are their cosines and sines, and
+    the equations have no others.  ``given`` writes dependent coefficients in free parameters.
     """
     given = dict(given or {})
     pairs = [value for pair in lemma.pairs.values() for value in pair]
     outputs = (*lemma.solution.values(), *pairs)
-    steps = [s.value for s in program.body if isinstance(s, (Let, Bound))]
+    premises = [Bound(name, meaning, sp.S.One, "") for name, meaning in lemma.premises.items()]
+    body = [*premises, *program.body]
+    steps = [s.value for s in body if isinstance(s, (Let, Bound))]
     free = {s for e in (*outputs, *steps) for s in e.free_symbols}
     sign = next((s for s in free if s.name.startswith("sigma")), None)
-    function = Function(
-        "lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(program.body)
-    )
+    function = Function("lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(body))
     for value in (1, -1) if sign else (1,):
         signs = {sign: value} if sign else {}
         values = function.values(signs)

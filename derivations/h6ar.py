@@ -14,10 +14,14 @@ from closedform.derivations.h6ar_mechanism import (
     arm,
     arm_frames,
     beta,
+    by_half_sums,
     declare,
     design,
     extended,
+    half_gap,
+    half_sums,
     in_space,
+    midpoint,
     named,
     outer_jacobian,
     pair,
@@ -27,23 +31,18 @@ from closedform.derivations.h6ar_mechanism import (
     product,
     psi,
     reach,
-    sigma_elbow,
-    sigma_waist,
     solve_mid_plane,
-    theta2A,
-    theta23A,
     straight,
     target,
+    theta2A,
+    theta23A,
     tip,
-    turned,
     tip_system,
+    turned,
     wrist_frames,
     wrist_given,
     wrist_let,
     wrist_squared,
-    x,
-    y,
-    z,
 )
 from closedform.derivations.papers import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
@@ -74,15 +73,8 @@ d = Derivation(
 )
 m, q = declare(d)
 theta1, theta2R, theta3R, theta2L, theta3L, theta = q
-shoulder_mean, shoulder_half = (theta2R + theta2L) / 2, (theta2R - theta2L) / 2
-fore_mean = shoulder_mean + (theta3R + theta3L) / 2
-fore_half = shoulder_half + (theta3R - theta3L) / 2
-halves = {
-    theta2R: theta2A + alpha,
-    theta2L: theta2A - alpha,
-    theta3R: theta23A + beta - theta2A - alpha,
-    theta3L: theta23A - beta - theta2A + alpha,
-}
+means, halves = half_sums(q), by_half_sums(q)
+shoulder_half, fore_half = means[alpha], means[beta]
 
 # Tips of the fore-arms
 
@@ -105,14 +97,7 @@ d.step(
 # Yaw, roll and the invariant point
 
 apart = (right - left) / 2
-mean = sp.Matrix(
-    [
-        -m.L1 * sin(theta2A) * sin(alpha)
-        + (m.L2 * cos(theta23A) - m.a3 * sin(theta23A)) * sin(beta),
-        m.L1 * cos(theta2A) * sin(alpha)
-        + (m.L2 * sin(theta23A) + m.a3 * cos(theta23A)) * sin(beta),
-    ]
-)
+mean = half_gap(m)
 invariant = arm(m, theta2A, theta23A)
 d.step(
     "Yaw and roll",
@@ -131,11 +116,7 @@ d.step(
     {"(r, h)_I": invariant, "(r, h)_6": ((right + left) / 2).xreplace(halves)},
     published=("(6)", "(7)"),
     equal=[
-        (
-            ((right + left) / 2).xreplace(halves),
-            m.L1 * cos(alpha) * sp.Matrix([cos(theta2A), sin(theta2A)])
-            + cos(beta) * (invariant - m.L1 * sp.Matrix([cos(theta2A), sin(theta2A)])),
-        )
+        (((right + left) / 2).xreplace(halves), midpoint(m)),
     ],
 )
 
@@ -206,8 +187,8 @@ def averages(p: Program) -> tuple[Pair, Pair]:
     upper, fore = (
         Pair(p.let(f"c{n}", side * cos(mean)), p.let(f"s{n}", side * sin(mean)))
         for n, mean, half in (
-            ("2A", shoulder_mean, shoulder_half),
-            ("23A", fore_mean, fore_half),
+            ("2A", means[theta2A], means[alpha]),
+            ("23A", means[theta23A], means[beta]),
         )
         for side in [p.let(f"side{n}", sp.Piecewise((1, cos(half) >= 0), (-1, True)))]
     )
@@ -217,10 +198,8 @@ def averages(p: Program) -> tuple[Pair, Pair]:
 def stand(p: Program) -> tuple[Posture, sp.Matrix]:
     """The posture of the joints: averages, yaw, roll and the wrist."""
     upper, fore = averages(p)
-    joints = {theta2A: shoulder_mean, theta23A: fore_mean, alpha: shoulder_half, beta: fore_half}
-    ahead, above = (
-        p.let(n, e) for n, e in zip(("ahead", "higher"), mean.subs(joints), strict=True)
-    )
+    gap = mean.subs(means, simultaneous=True)
+    ahead, above = (p.let(n, e) for n, e in zip(("ahead", "higher"), gap, strict=True))
     base = p.let("base", sqrt(m.d**2 + ahead**2), nonnegative=True)
     rise = p.let("rise", sqrt(m.d**2 + above**2), nonnegative=True)
     yaw = Pair(p.let("cpsi", m.d / base), p.let("spsi", ahead / base))
@@ -276,7 +255,7 @@ d.function(
 # Velocity
 
 outer = outer_jacobian(m, q, m.d / cos(psi), wrist)
-by_half = sp.Matrix([shoulder_mean, fore_mean, shoulder_half, fore_half]).jacobian(q)
+by_half = sp.Matrix([means[s] for s in (theta2A, theta23A, alpha, beta)]).jacobian(q)
 gap = real("ahead"), real("higher")
 side2A, side23A = real("side2A"), real("side23A")
 inner = sp.zeros(6)
@@ -325,7 +304,6 @@ def factors(here: Posture) -> list[sp.Expr]:
 
 p = Program()
 here, _ = stand(p)
-means = {theta2A: shoulder_mean, theta23A: fore_mean, alpha: shoulder_half, beta: fore_half}
 J = p.matrix("outer", named(outer, here, q).xreplace({wrist: here.wrist})) * p.matrix(
     "inner", inner.subs(means, simultaneous=True)
 )

@@ -8,10 +8,14 @@ from closedform.derivations.h6ar_mechanism import (
     Pair,
     Posture,
     arm,
+    by_half_sums,
     declare,
     design,
     extended,
+    half_gap,
+    half_sums,
     in_space,
+    midpoint,
     named,
     outer_jacobian,
     pair,
@@ -37,7 +41,7 @@ from sympy import Rational, atan2, cos, sin, sqrt, tan
 from closedform.derivation import Chain, Derivation, Inverse
 from closedform.frames import rotation
 from closedform.functions import Program, branches, real
-from closedform.lemmas import two_link_arm
+from closedform.lemmas import elbow_squares, two_link_arm_beside
 
 d = Derivation(
     "h6ar_loop_closed",
@@ -62,11 +66,23 @@ d = Derivation(
 m, q = declare(d)
 theta1, theta2R, theta3R, theta2L, theta3L, theta = q
 theta23R, theta23L = real("theta23R"), real("theta23L")
+lengths = (m.L1, m.L2, m.a3)
+forearm_length = sqrt(m.L2**2 + m.a3**2)
 
 # Where the tips are, seen from the fore-arm of the virtual arm
 
 right, left = arm(m, theta2R, theta2R + theta3R), arm(m, theta2L, theta2L + theta3L)
 middle, apart = (right + left) / 2, (right - left) / 2
+means, halves = half_sums(q), by_half_sums(q)
+midway, gap_half = (e(m).subs(means, simultaneous=True) for e in (midpoint, half_gap))
+d.step(
+    "Middle and distance of the tips",
+    "In half sums A and half differences of the angles of both arms (alpha of the upper arms, beta "
+    "of the fore-arms) the distance of the tips keeps its digits where they are close.",
+    {"(r, h)_I": midpoint(m), "(r, h)_R - (r, h)_I": half_gap(m)},
+    published=("(6)",),
+    equal=[(middle.xreplace(halves), midpoint(m)), (apart.xreplace(halves), half_gap(m))],
+)
 ahead, higher = real("ahead"), real("higher")
 c23, s23 = pair(theta23A)
 across_fore, along_fore = c23 * ahead + s23 * higher, s23 * ahead - c23 * higher
@@ -121,6 +137,25 @@ d.step(
         (line.subs({ahead: given_ahead, higher: given_higher}), wrist_line),
     ],
 )
+reaches = [e.dot(e) for e in (right, left, middle)]
+d.step(
+    "How far the virtual arm is bent",
+    "The square of the reach of the virtual arm is the mean of those of both arms less half the "
+    "distance of the tips squared.  So N = (L1 + f)^2 - R^2 of the virtual arm, whose f is the "
+    "length of a fore-arm, is a sum of terms that are not negative and keeps its digits where the "
+    "arms are straight.",
+    {"R_I^2": (reaches[0] + reaches[1]) / 2 - apart.dot(apart)},
+    equal=[
+        (reaches[2], (reaches[0] + reaches[1]) / 2 - apart.dot(apart)),
+        *(
+            (
+                (m.L1 + forearm_length) ** 2 - R,
+                2 * m.L1 * (forearm_length - m.L2 * sin(elbow) - m.a3 * cos(elbow)),
+            )
+            for R, elbow in zip(reaches[:2], (theta3R, theta3L), strict=True)
+        ),
+    ],
+)
 beyond, width = real("beyond"), real("width")
 half_line = sqrt(m.d**2 + width**2 + beyond**2)
 cosine_roll = m.d / sqrt(m.d**2 + width**2)
@@ -146,13 +181,29 @@ d.step(
 
 def stand(p: Program) -> Posture:
     """The posture of the joints: the middle of the tips, the virtual arm, yaw, roll, wrist."""
-    bend = p.let("bend", straight(m.L2, m.a3, pair(theta2R), pair(theta2R + theta3R)))
-    side = p.let("sigma_side", sp.Piecewise((-1, bend >= 0), (1, True)))
-    point = tuple(p.let(n, e) for n, e in zip(("r_I", "h_I"), middle, strict=True))
-    virtual = two_link_arm(p, (m.L1, m.L2, m.a3), point, (theta2A, theta23A), side)
+    second = p.let("fore", forearm_length, nonnegative=True)
+    squares, bent = {}, {}
+    for name, angle in (("right", theta3R), ("left", theta3L)):
+        squares[name], bent[name] = elbow_squares(
+            p, lengths, second, pair(angle), suffix=f"_{name}"
+        )
+    side = p.let("sigma_side", sp.Piecewise((1, bent["right"] >= 0), (-1, True)))
+    point = tuple(p.let(n, e) for n, e in zip(("r_I", "h_I"), midway, strict=True))
+    p.let("ahead", gap_half[0])
+    p.let("higher", gap_half[1])
+    gap = p.let("gap", ahead**2 + higher**2)
+    mean = [(a + b) / 2 for a, b in zip(squares["right"], squares["left"], strict=True)]
+    virtual = two_link_arm_beside(
+        p,
+        lengths,
+        second,
+        point,
+        (theta2A, theta23A),
+        side,
+        (mean[0] + gap, mean[1] - gap),
+        suffix="_virtual",
+    )
     upper, fore = (Pair(*virtual.pairs[angle]) for angle in (theta2A, theta23A))
-    p.let("ahead", apart[0])
-    p.let("higher", apart[1])
     seen = {cos(theta23A): fore.c, sin(theta23A): fore.s}
     p.let("width", across_fore.xreplace(seen))
     p.let("beyond", along_fore.xreplace(seen))
@@ -203,7 +254,7 @@ d.function(
     "invariant_point",
     "The invariant point, the middle of the tips.",
     {"q": q},
-    {"p": in_space(m, pair(theta1), middle, sp.S.Zero)},
+    {"p": in_space(m, pair(theta1), midway, sp.S.Zero)},
     source="eq. (6)",
 )
 
@@ -263,10 +314,10 @@ p = Program()
 here = stand(p)
 tilted = real("tilted", nonnegative=True)
 by_virtual = p.matrix("virtual", named(point_by.adjugate(), here, q))
-mid_rates = p.matrix("mid", middle.jacobian(q))
+mid_rates = p.matrix("mid", midway.jacobian(q))
 bend = p.let("slack", -m.L1 * straight(m.L2, m.a3, here.upper, here.fore))
 virtual_rates = p.matrix("rate", (by_virtual * mid_rates) / bend)
-gap_rates = p.matrix("gap", apart.jacobian(q))
+gap_rates = p.matrix("gap", gap_half.jacobian(q))
 line_rates = p.matrix(
     "line", named(line_by, here, q) * sp.Matrix.vstack(gap_rates, virtual_rates[1, :])
 )
@@ -318,13 +369,18 @@ p = Program()
 wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
 mid = solve_mid_plane(p, m, q, wrist, half_base)
 upper, fore = mid.posture.upper, mid.posture.fore
-virtual_bend = straight(m.L2, m.a3, upper, fore)
-side = p.let("sigma_right", sp.Piecewise((-1, virtual_bend >= 0), (1, True)))
+second = p.let("fore_arm", forearm_length, nonnegative=True)
+bend = (upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
+bend = tuple(p.let(f"{f}_elbow", e) for f, e in zip("cs", bend, strict=True))
+(N, M), bent = elbow_squares(p, lengths, second, bend)
+side = p.let("sigma_right", sp.Piecewise((1, bent >= 0), (-1, True)))
 opposite = p.let("sigma_other", side * sigma_left)
 by_pairs = {cos(theta23A): fore.c, sin(theta23A): fore.s}
 by_pairs |= {tan(e): sin(e) / cos(e) for e in (psi, phi)}
-point = reach(m, upper, fore, m.L2, m.a3)
-shift = sp.Matrix([given_ahead, given_higher]).xreplace(by_pairs)
+point = p.matrix("point", reach(m, upper, fore, m.L2, m.a3))
+shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pairs))
+gap = p.let("gap", shift.dot(shift))
+cross = p.let("twice", 2 * point.dot(shift))
 arms = []
 for name, sigma, sign, unknowns in (
     ("right", side, 1, (theta2R, theta23R)),
@@ -332,12 +388,14 @@ for name, sigma, sign, unknowns in (
 ):
     end = tuple(p.let(f"{c}_{name}", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
     arms.append(
-        two_link_arm(
+        two_link_arm_beside(
             p,
-            (m.L1, m.L2, m.a3),
+            lengths,
+            second,
             end,
             unknowns,
             sigma,
+            (N - sign * cross - gap, M + sign * cross + gap),
             suffix=f"_{name}",
             sided=name == "right",
             free=unknowns[:1],

@@ -129,6 +129,40 @@ def in_space(m: Dimensions, waist: Pair, planar: sp.Matrix, side: sp.Expr) -> sp
     return sp.Matrix([waist.s * side + waist.c * r, -waist.c * side + waist.s * r, m.d1 + h])
 
 
+def half_sums(q: Joints) -> dict[sp.Symbol, sp.Expr]:
+    """Averages and half differences of the arms' angles, in the joints."""
+    upper, bend = (q.theta2R + q.theta2L) / 2, (q.theta3R + q.theta3L) / 2
+    apart, bent = (q.theta2R - q.theta2L) / 2, (q.theta3R - q.theta3L) / 2
+    return {theta2A: upper, theta23A: upper + bend, alpha: apart, beta: apart + bent}
+
+
+def by_half_sums(q: Joints) -> dict[sp.Symbol, sp.Expr]:
+    """The joints of the arms in averages and half differences."""
+    return {
+        q.theta2R: theta2A + alpha,
+        q.theta2L: theta2A - alpha,
+        q.theta3R: theta23A + beta - theta2A - alpha,
+        q.theta3L: theta23A - beta - theta2A + alpha,
+    }
+
+
+def half_gap(m: Dimensions) -> sp.Matrix:
+    """Half of what the right tip is ahead of the left one and above it."""
+    upper, fore = pair(theta2A), pair(theta23A)
+    return sp.Matrix(
+        [
+            -m.L1 * upper.s * sin(alpha) + (m.L2 * fore.c - m.a3 * fore.s) * sin(beta),
+            m.L1 * upper.c * sin(alpha) + (m.L2 * fore.s + m.a3 * fore.c) * sin(beta),
+        ]
+    )
+
+
+def midpoint(m: Dimensions) -> sp.Matrix:
+    """The middle of the tips in the mid-plane."""
+    shoulder = m.L1 * sp.Matrix(pair(theta2A))
+    return cos(alpha) * shoulder + cos(beta) * (arm(m, theta2A, theta23A) - shoulder)
+
+
 def arm_frames(m: Dimensions, theta1: sp.Expr, theta2: sp.Expr, theta3: sp.Expr, d: sp.Expr):
     """The frames (X, Y, Z)_3 of an arm by Denavit-Hartenberg, as in the paper's Fig. 2."""
     return [

@@ -3,14 +3,14 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 65 add, 81 compare and select, 3 atan2, 24 divide, 84 multiply, 6 sincos, 10 sqrt
-#   pose: 92 add, 78 compare and select, 24 divide, 125 multiply, 6 sincos, 10 sqrt
+#   fk: 77 add, 84 compare and select, 3 atan2, 20 divide, 115 multiply, 6 sincos, 9 sqrt
+#   pose: 104 add, 81 compare and select, 20 divide, 154 multiply, 6 sincos, 9 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
-#   invariant_point: 15 add, 12 divide, 22 multiply, 5 sincos
-#   jacobian: 178 add, 74 compare and select, 44 divide, 260 multiply, 6 sincos, 10 sqrt
-#   determinant: 61 add, 74 compare and select, 25 divide, 99 multiply, 5 sincos, 10 sqrt
-#   singularities: 66 add, 74 compare and select, 24 divide, 89 multiply, 5 sincos, 10 sqrt
-#   ik: 222 add, 291 compare and select, 28 atan2, 39 divide, 233 multiply, 3 sincos, 57 sqrt
+#   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
+#   jacobian: 212 add, 77 compare and select, 52 divide, 295 multiply, 6 sincos, 9 sqrt
+#   determinant: 84 add, 77 compare and select, 21 divide, 150 multiply, 5 sincos, 9 sqrt
+#   singularities: 89 add, 77 compare and select, 20 divide, 140 multiply, 5 sincos, 9 sqrt
+#   ik: 265 add, 285 compare and select, 24 atan2, 59 divide, 305 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 6 add, 26 compare and select, 1 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -98,99 +98,130 @@ _DEFAULT = Parameters()
 def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp):
     s1, c1 = _runtime.sincos(theta1)
     s, c = _runtime.sincos(theta)
-    s2L, c2L = _runtime.sincos(theta2L)
-    s3L, c3L = _runtime.sincos(theta3L)
-    s2R, c2R = _runtime.sincos(theta2R)
-    s3R, c3R = _runtime.sincos(theta3R)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     t1 = lp * s
-    c2L3L = c2L * c3L - s2L * s3L
-    s2L3L = s2L * c3L + c2L * s3L
-    t2 = a3 * c2L3L / 2.0 + (L1 * c2L / 2.0 + L2 * s2L3L / 2.0)
-    c2R3R = c2R * c3R - s2R * s3R
-    s2R3R = s2R * c3R + c2R * s3R
-    t3 = a3 * c2R3R / 2.0 + (L1 * c2R / 2.0 + L2 * s2R3R / 2.0)
-    t4 = t2 - t3
-    r_I = t2 + t3
-    t5 = a3 * s2L3L / 2.0 + (L1 * s2L / 2.0 - L2 * c2L3L / 2.0)
-    t6 = a3 * s2R3R / 2.0 + (L1 * s2R / 2.0 - L2 * c2R3R / 2.0)
-    h_I = t5 + t6
-    reach = np.sqrt(r_I * r_I + h_I * h_I)
+    t2 = c3R_half * c3L_half
+    t3 = s3R_half * s3L_half
+    t4 = t2 + t3
+    t5 = c3R_half * s3L_half
+    t6 = s3R_half * c3L_half
+    t7 = t5 - t6
+    t8 = c2R_half * t4 + s2R_half * t7
+    t9 = s2R_half * t4 - c2R_half * t7
+    t10 = s2L_half * t8 - c2L_half * t9
+    t11 = t2 - t3
+    t12 = t5 + t6
+    t13 = c2R_half * t11 - s2R_half * t12
+    t14 = s2R_half * t11 + c2R_half * t12
+    t15 = c2L_half * t13 - s2L_half * t14
+    t16 = s2L_half * t13 + c2L_half * t14
+    t17 = L2 * t15 - a3 * t16
+    t18 = s2L_half * c2R_half
+    t19 = c2L_half * s2R_half
+    t20 = t18 + t19
+    t21 = L1 * (t18 - t19)
+    t22 = t10 * t17 - t20 * t21
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t7 = L1 + fore
-    folded = reach <= t7 * _runtime.VANISHING
-    c_sight = np.where(folded, 1.0, r_I / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t7 * t7)
-    t8 = folded | short
-    t9 = t7 - reach
-    A = np.maximum(t9, 0.0)
-    t10 = L1 - fore
-    t11 = reach - t10
-    C = np.maximum(t11, 0.0)
-    t12 = A * C
-    S = t7 + reach
-    t13 = t10 + reach
-    B = np.maximum(t13, 0.0)
-    t14 = S * B
-    at_base = t12 + t14
-    c_base = np.where(t8, 1.0, -((t12 - t14) / at_base))
-    s_sight = np.where(folded, 0.0, h_I / reach)
-    bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
-    t15 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t15 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t8, 0.0, area / at_base)
-    ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(short, 1.0, a3 / fore)
-    t16 = A * S
-    t17 = C * B
-    at_elbow = t16 + t17
-    c_elbow = np.where(short, 1.0, -((t16 - t17) / at_elbow))
-    s_lag = np.where(short, 0.0, L2 / fore)
-    s_elbow = np.where(short, 0.0, area / at_elbow)
-    c_bend = c_lag * c_elbow - s_lag * s_elbow
-    stheta2A = c_base * s_sight - c_sight * s_base
-    s_bend = s_lag * c_elbow + c_lag * s_elbow
-    ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    t18 = t5 - t6
-    stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t19 = t4 * ctheta23A + t18 * stheta23A
-    t20 = d * d
-    tilted = np.sqrt(t20 + t19 * t19)
-    sphi = t19 / tilted
+    t23 = L1 + fore
+    t24 = t23 * _runtime.VANISHING
+    bare_virtual = fore <= t24
+    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    t25 = t23 * t23
+    short_virtual = L1 * fore <= t25 * _runtime.VANISHING
+    t26 = s3L_half * c3L_half
+    t27 = t26 + t26
+    t28 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t27 + a3 * t28
+    t29 = 0.0 <= straight_left
+    t30 = L2 * t28 - a3 * t27
+    large_left = fore + np.where(t29, straight_left, -straight_left)
+    small_left = t30 * t30 / large_left
+    t31 = L1 * 2.0
+    t32 = np.where(t29, small_left, large_left) * t31 / 2.0
+    t33 = s3R_half * c3R_half
+    t34 = t33 + t33
+    t35 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t34 + a3 * t35
+    t36 = 0.0 <= straight_right
+    t37 = L2 * t35 - a3 * t34
+    t38 = np.where(t36, straight_right, -straight_right)
+    large_right = fore + t38
+    small_right = t37 * t37 / large_right
+    N_right = np.where(t36, small_right, large_right) * t31
+    t39 = L2 * t16 + a3 * t15
+    t40 = c2L_half * c2R_half
+    t41 = s2L_half * s2R_half
+    t42 = t40 - t41
+    t43 = t39 * t10 + t42 * t21
+    gap = t22 * t22 + t43 * t43
+    t44 = t32 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t44, 0.0)
+    t45 = np.where(t29, large_left, small_left) * t31 / 2.0
+    M_right = np.where(t36, large_right, small_right) * t31
+    t46 = t45 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t46, 0.0)
+    whole_virtual = N_virtual + M_virtual
+    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
+    t47 = 2.0 * np.where(0.0 <= -t37, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t47 * np.sqrt(M_virtual) / whole_virtual)
+    c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
+    t48 = c2L_half * t8 + s2L_half * t9
+    t49 = L1 * (t40 + t41)
+    t50 = t48 * t17 - t20 * t49
+    r_I = t39 * t48 + t42 * t49
+    folded_virtual = np.sqrt(t50 * t50 + r_I * r_I) <= t24
+    ahead_1_virtual = L1 + fore * c_bend_virtual
+    t51 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t50 * t51
+    t52 = ahead_1_virtual * t50 + r_I * t51
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
+    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    t53 = np.where(folded_virtual, 0.0, t52 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t53
+    t54 = c_relative_virtual * t53 - s_relative_virtual * ctheta2A
+    t55 = t22 * ctheta23A - t43 * t54
+    t56 = d * d
+    tilted = np.sqrt(t56 + t55 * t55)
+    t57 = t55 / tilted
     cphi = d / tilted
-    base = np.sqrt(t20 + t4 * t4 + t18 * t18)
-    t21 = (t4 * stheta23A - ctheta23A * t18) / base
-    t22 = base - (gs - al)
-    t23 = gs + al
-    t24 = t23 - base
-    wrist = np.sqrt(np.maximum(t22, 0.0)) * np.sqrt(np.maximum(t24, 0.0))
-    t25 = loff + lp * c + wrist
-    t26 = t21 * t25
-    t27 = t1 * sphi + cphi * t26
+    base = np.sqrt(t56 + gap)
+    spsi = (t22 * t54 + t43 * ctheta23A) / base
+    t58 = base - (gs - al)
+    t59 = gs + al
+    t60 = t59 - base
+    wrist = np.sqrt(np.maximum(t58, 0.0)) * np.sqrt(np.maximum(t60, 0.0))
+    t61 = loff + lp * c + wrist
+    t62 = spsi * t61
+    t63 = t1 * t57 - cphi * t62
     cpsi = tilted / base
-    t28 = L2 + t25 * cpsi
-    t29 = a3 + t1 * cphi - sphi * t26
-    t30 = L1 * ctheta2A + stheta23A * t28 + ctheta23A * t29
-    t31 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t32 = t31 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t33 = t32 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t34 = t33 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t35 = t34 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t36 = t35 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t37 = t36 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t38 = t37 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t39 = -(_runtime.FEASIBILITY * t7)
-    t40 = -(_runtime.FEASIBILITY * t23)
-    t41 = (t39 <= t9) & (t39 <= t13) & (t39 <= t11) & (t40 <= t24)
-    failed = np.logical_not(t38) | np.logical_not(t41 & (t40 <= t22))
-    t42 = _runtime.poison(failed)
-    t43 = d1 + L1 * stheta2A - ctheta23A * t28 + stheta23A * t29
+    t64 = L2 + t61 * cpsi
+    t65 = a3 + t1 * cphi + t57 * t62
+    t66 = L1 * ctheta2A - t54 * t64 + ctheta23A * t65
+    t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t68 = t67 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t69 = t68 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t70 = t69 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t71 = t70 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t72 = t71 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t73 = t72 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t74 = t73 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t75 = -(_runtime.FEASIBILITY * t25)
+    t76 = -(_runtime.FEASIBILITY * t59)
+    t77 = (t75 <= t44) & (t75 <= t46) & (t76 <= t60) & (t76 <= t58)
+    t78 = _runtime.poison(np.logical_not(t74) | np.logical_not(t77))
+    t79 = d1 - L1 * t53 - ctheta23A * t64 - t54 * t65 + t78
     return (
-        s1 * t27 + c1 * t30 + t42,
-        s1 * t30 - c1 * t27 + t42,
-        t43 + t42,
-        _runtime.wrap(-np.arctan2(t21, cpsi)) + t42,
-        _runtime.wrap(np.arctan2(sphi, cphi)) + t42,
-        _runtime.wrap(np.arctan2(s, c)) + t42,
+        s1 * t63 + c1 * t66 + t78,
+        s1 * t66 - c1 * t63 + t78,
+        t79,
+        _runtime.wrap(np.arctan2(spsi, cpsi)) + t78,
+        _runtime.wrap(-np.arctan2(-t57, cphi)) + t78,
+        _runtime.wrap(np.arctan2(s, c)) + t78,
     )
 
 
@@ -223,128 +254,162 @@ def _pose(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp
 ):
     s1, c1 = _runtime.sincos(theta1)
-    s2L, c2L = _runtime.sincos(theta2L)
-    s3L, c3L = _runtime.sincos(theta3L)
-    s2R, c2R = _runtime.sincos(theta2R)
-    s3R, c3R = _runtime.sincos(theta3R)
     s, c = _runtime.sincos(theta)
-    c2L3L = c2L * c3L - s2L * s3L
-    s2L3L = s2L * c3L + c2L * s3L
-    t1 = a3 * c2L3L / 2.0 + (L1 * c2L / 2.0 + L2 * s2L3L / 2.0)
-    c2R3R = c2R * c3R - s2R * s3R
-    s2R3R = s2R * c3R + c2R * s3R
-    t2 = a3 * c2R3R / 2.0 + (L1 * c2R / 2.0 + L2 * s2R3R / 2.0)
-    r_I = t1 + t2
-    t3 = a3 * s2L3L / 2.0 + (L1 * s2L / 2.0 - L2 * c2L3L / 2.0)
-    t4 = a3 * s2R3R / 2.0 + (L1 * s2R / 2.0 - L2 * c2R3R / 2.0)
-    h_I = t3 + t4
-    reach = np.sqrt(r_I * r_I + h_I * h_I)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    t1 = c3R_half * c3L_half
+    t2 = s3R_half * s3L_half
+    t3 = t1 + t2
+    t4 = c3R_half * s3L_half
+    t5 = s3R_half * c3L_half
+    t6 = t4 - t5
+    t7 = c2R_half * t3 + s2R_half * t6
+    t8 = s2R_half * t3 - c2R_half * t6
+    t9 = s2L_half * t7 - c2L_half * t8
+    t10 = t1 - t2
+    t11 = t4 + t5
+    t12 = c2R_half * t10 - s2R_half * t11
+    t13 = s2R_half * t10 + c2R_half * t11
+    t14 = c2L_half * t12 - s2L_half * t13
+    t15 = s2L_half * t12 + c2L_half * t13
+    t16 = L2 * t14 - a3 * t15
+    t17 = s2L_half * c2R_half
+    t18 = c2L_half * s2R_half
+    t19 = t17 + t18
+    t20 = L1 * (t17 - t18)
+    t21 = t9 * t16 - t19 * t20
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t5 = L1 + fore
-    folded = reach <= t5 * _runtime.VANISHING
-    c_sight = np.where(folded, 1.0, r_I / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t5 * t5)
-    t6 = folded | short
-    t7 = t5 - reach
-    A = np.maximum(t7, 0.0)
-    t8 = L1 - fore
-    t9 = reach - t8
-    C = np.maximum(t9, 0.0)
-    t10 = A * C
-    S = t5 + reach
-    t11 = t8 + reach
-    B = np.maximum(t11, 0.0)
-    t12 = S * B
-    at_base = t10 + t12
-    c_base = np.where(t6, 1.0, -((t10 - t12) / at_base))
-    s_sight = np.where(folded, 0.0, h_I / reach)
-    bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
-    t13 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t13 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t6, 0.0, area / at_base)
-    ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(short, 1.0, a3 / fore)
-    t14 = A * S
-    t15 = C * B
-    at_elbow = t14 + t15
-    c_elbow = np.where(short, 1.0, -((t14 - t15) / at_elbow))
-    s_lag = np.where(short, 0.0, L2 / fore)
-    s_elbow = np.where(short, 0.0, area / at_elbow)
-    c_bend = c_lag * c_elbow - s_lag * s_elbow
-    stheta2A = c_base * s_sight - c_sight * s_base
-    s_bend = s_lag * c_elbow + c_lag * s_elbow
-    ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    t16 = c1 * ctheta23A
-    t17 = d * d
-    t18 = t1 - t2
-    t19 = t3 - t4
-    stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t20 = t18 * ctheta23A + t19 * stheta23A
-    tilted = np.sqrt(t17 + t20 * t20)
+    t22 = L1 + fore
+    t23 = t22 * _runtime.VANISHING
+    bare_virtual = fore <= t23
+    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    t24 = t22 * t22
+    short_virtual = L1 * fore <= t24 * _runtime.VANISHING
+    t25 = s3L_half * c3L_half
+    t26 = t25 + t25
+    t27 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t26 + a3 * t27
+    t28 = 0.0 <= straight_left
+    t29 = L2 * t27 - a3 * t26
+    large_left = fore + np.where(t28, straight_left, -straight_left)
+    small_left = t29 * t29 / large_left
+    t30 = L1 * 2.0
+    t31 = np.where(t28, small_left, large_left) * t30 / 2.0
+    t32 = s3R_half * c3R_half
+    t33 = t32 + t32
+    t34 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t33 + a3 * t34
+    t35 = 0.0 <= straight_right
+    t36 = L2 * t34 - a3 * t33
+    t37 = np.where(t35, straight_right, -straight_right)
+    large_right = fore + t37
+    small_right = t36 * t36 / large_right
+    N_right = np.where(t35, small_right, large_right) * t30
+    t38 = L2 * t15 + a3 * t14
+    t39 = c2L_half * c2R_half
+    t40 = s2L_half * s2R_half
+    t41 = t39 - t40
+    t42 = t38 * t9 + t41 * t20
+    gap = t21 * t21 + t42 * t42
+    t43 = t31 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t43, 0.0)
+    t44 = np.where(t28, large_left, small_left) * t30 / 2.0
+    M_right = np.where(t35, large_right, small_right) * t30
+    t45 = t44 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t45, 0.0)
+    whole_virtual = N_virtual + M_virtual
+    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
+    t46 = 2.0 * np.where(0.0 <= -t36, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t46 * np.sqrt(M_virtual) / whole_virtual)
+    c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
+    t47 = c2L_half * t7 + s2L_half * t8
+    t48 = L1 * (t39 + t40)
+    t49 = t47 * t16 - t19 * t48
+    r_I = t38 * t47 + t41 * t48
+    folded_virtual = np.sqrt(t49 * t49 + r_I * r_I) <= t23
+    ahead_1_virtual = L1 + fore * c_bend_virtual
+    t50 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t49 * t50
+    t51 = ahead_1_virtual * t49 + r_I * t50
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
+    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    t52 = np.where(folded_virtual, 0.0, t51 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t52
+    t53 = c_relative_virtual * t52 - s_relative_virtual * ctheta2A
+    t54 = t21 * ctheta23A - t42 * t53
+    t55 = d * d
+    tilted = np.sqrt(t55 + t54 * t54)
+    t56 = t54 / tilted
+    t57 = c * t56
     cphi = d / tilted
-    sphi = t20 / tilted
-    base = np.sqrt(t17 + t18 * t18 + t19 * t19)
-    t21 = (t18 * stheta23A - ctheta23A * t19) / base
-    t22 = sphi * t21
-    hand_11 = c * cphi + s * t22
+    t58 = s * cphi
+    base = np.sqrt(t55 + gap)
+    spsi = (t21 * t53 + t42 * ctheta23A) / base
+    hand_21 = t57 + t58 * spsi
+    t59 = c1 * ctheta23A
+    t60 = c * cphi
+    t61 = s * t56
+    hand_11 = t60 - t61 * spsi
+    t62 = c1 * t53
     cpsi = tilted / base
-    t23 = s * cpsi
-    t24 = c1 * stheta23A
-    t25 = t21 * cphi
-    t26 = c * sphi - s * t25
-    t27 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t28 = t27 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t29 = t28 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t30 = t29 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t31 = t30 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t32 = t31 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t33 = t32 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t34 = t33 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t35 = -(_runtime.FEASIBILITY * t5)
-    t36 = gs + al
-    t37 = -(_runtime.FEASIBILITY * t36)
-    t38 = t36 - base
-    t39 = (t35 <= t7) & (t35 <= t11) & (t35 <= t9) & (t37 <= t38)
-    t40 = base - (gs - al)
-    failed = np.logical_not(t34) | np.logical_not(t39 & (t37 <= t40))
-    t41 = _runtime.poison(failed)
-    hand_22 = cpsi * cphi
-    t42 = cpsi * sphi
+    t63 = s * cpsi
+    t64 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t65 = t64 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t66 = t65 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t67 = t66 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t68 = t67 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t69 = t68 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t70 = t69 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t71 = t70 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t72 = -(_runtime.FEASIBILITY * t24)
+    t73 = gs + al
+    t74 = -(_runtime.FEASIBILITY * t73)
+    t75 = t73 - base
+    t76 = base - (gs - al)
+    t77 = (t72 <= t43) & (t72 <= t45) & (t74 <= t75) & (t74 <= t76)
+    t78 = _runtime.poison(np.logical_not(t71) | np.logical_not(t77))
+    t79 = s1 * hand_21 + t59 * hand_11 + t62 * t63 + t78
+    hand_22 = cphi * cpsi
+    t80 = t56 * cpsi
+    t81 = t61 - t60 * spsi
     hand_33 = c * cpsi
-    hand_23 = s * sphi + c * t25
-    hand_13 = s * cphi - c * t22
-    t43 = t24 * hand_33 + s1 * hand_23 + t16 * hand_13 + t41
-    t44 = lp * s
-    wrist = np.sqrt(np.maximum(t40, 0.0)) * np.sqrt(np.maximum(t38, 0.0))
-    t45 = loff + lp * c + wrist
-    t46 = t44 * sphi + t25 * t45
-    t47 = L2 + cpsi * t45
-    t48 = a3 + t44 * cphi - t22 * t45
-    t49 = L1 * ctheta2A + stheta23A * t47 + ctheta23A * t48
-    t50 = s1 * ctheta23A
-    t51 = s1 * stheta23A
-    t52 = -(c1 * hand_22 + t42 * t50 + t21 * t51) + t41
-    t53 = hand_33 * t51 - c1 * hand_23 + hand_13 * t50 + t41
-    t54 = stheta23A * hand_13 - ctheta23A * hand_33 + t41
-    t55 = d1 + L1 * stheta2A - ctheta23A * t47 + stheta23A * t48
-    t56 = 0.0 + t41
+    hand_13 = t58 + t57 * spsi
+    t82 = s1 * t81 - (t62 * hand_33 - t59 * hand_13) + t78
+    wrist = np.sqrt(np.maximum(t76, 0.0)) * np.sqrt(np.maximum(t75, 0.0))
+    t83 = loff + lp * c + wrist
+    t84 = L2 + cpsi * t83
+    t85 = spsi * t83
+    t86 = a3 + lp * t58 + t56 * t85
+    t87 = L1 * ctheta2A - t53 * t84 + ctheta23A * t86
+    t88 = lp * t61 - cphi * t85
+    t89 = s1 * t53
+    t90 = s1 * ctheta23A
+    t91 = t89 * t63 - (c1 * hand_21 - t90 * hand_11) + t78
+    t92 = -(c1 * hand_22 + t90 * t80 + t89 * spsi) + t78
+    t93 = -(t89 * hand_33 - t90 * hand_13 + c1 * t81) + t78
+    t94 = d1 - L1 * t52 - ctheta23A * t84 - t53 * t86 + t78
+    t95 = 0.0 + t78
     return (
-        t16 * hand_11 - (t23 * t24 - s1 * t26) + t41,
-        s1 * hand_22 - t16 * t42 - t24 * t21 + t41,
-        t43,
-        s1 * t46 + c1 * t49 + t41,
-        hand_11 * t50 - (t23 * t51 + c1 * t26) + t41,
-        t52,
-        t53,
-        s1 * t49 - c1 * t46 + t41,
-        ctheta23A * t23 + stheta23A * hand_11 + t41,
-        ctheta23A * t21 - stheta23A * t42 + t41,
-        t54,
-        t55 + t41,
-        t56,
-        t56,
-        t56,
-        1.0 + t41,
+        t79,
+        s1 * hand_22 - t59 * t80 - t62 * spsi + t78,
+        t82,
+        c1 * t87 + s1 * t88 + t78,
+        t91,
+        t92,
+        t93,
+        s1 * t87 - c1 * t88 + t78,
+        ctheta23A * t63 - t53 * hand_11 + t78,
+        t53 * t80 - ctheta23A * spsi + t78,
+        -(ctheta23A * hand_33 + t53 * hand_13) + t78,
+        t94,
+        t95,
+        t95,
+        t95,
+        1.0 + t78,
     )
 
 
@@ -419,23 +484,33 @@ def arm_tips(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 
 
 def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2, a3, d1):
-    s2L, c2L = _runtime.sincos(theta2L)
-    s2R, c2R = _runtime.sincos(theta2R)
-    s3L, c3L = _runtime.sincos(theta3L)
-    s3R, c3R = _runtime.sincos(theta3R)
     s1, c1 = _runtime.sincos(theta1)
-    s2L3L = s2L * c3L + c2L * s3L
-    t1 = L1 * c2L / 2.0 + L1 * c2R / 2.0 + L2 * s2L3L / 2.0
-    s2R3R = s2R * c3R + c2R * s3R
-    c2L3L = c2L * c3L - s2L * s3L
-    c2R3R = c2R * c3R - s2R * s3R
-    t2 = t1 + L2 * s2R3R / 2.0 + a3 * c2L3L / 2.0 + a3 * c2R3R / 2.0
-    t3 = d1 + L1 * s2L / 2.0 + L1 * s2R / 2.0 - L2 * c2L3L / 2.0
-    t4 = t3 - L2 * c2R3R / 2.0 + a3 * s2L3L / 2.0 + a3 * s2R3R / 2.0
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    t1 = c3L_half * c3R_half
+    t2 = s3L_half * s3R_half
+    t3 = t1 - t2
+    t4 = s3L_half * c3R_half
+    t5 = c3L_half * s3R_half
+    t6 = t4 + t5
+    t7 = c2R_half * t3 - s2R_half * t6
+    t8 = s2R_half * t3 + c2R_half * t6
+    t9 = s2L_half * t7 + c2L_half * t8
+    t10 = c2L_half * t7 - s2L_half * t8
+    t11 = t1 + t2
+    t12 = t4 - t5
+    t13 = c2L_half * (c2R_half * t11 + s2R_half * t12) + s2L_half * (s2R_half * t11 - c2R_half * t12)
+    t14 = c2L_half * c2R_half
+    t15 = s2L_half * s2R_half
+    t16 = L1 * (t14 + t15)
+    t17 = (L2 * t9 + a3 * t10) * t13 + (t14 - t15) * t16
+    t18 = (s2L_half * c2R_half + c2L_half * s2R_half) * t16
     return (
-        t2 * c1,
-        t2 * s1,
-        t4,
+        c1 * t17,
+        s1 * t17,
+        d1 - t13 * (L2 * t10 - a3 * t9) + t18,
     )
 
 
@@ -465,217 +540,290 @@ def _jacobian(
 ):
     s1, c1 = _runtime.sincos(theta1)
     s, c = _runtime.sincos(theta)
-    s2L, c2L = _runtime.sincos(theta2L)
-    s3L, c3L = _runtime.sincos(theta3L)
-    s2R, c2R = _runtime.sincos(theta2R)
-    s3R, c3R = _runtime.sincos(theta3R)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     t1 = lp * s
-    s2L3L = s2L * c3L + c2L * s3L
-    c2L3L = c2L * c3L - s2L * s3L
-    mid_25 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
-    mid_24 = L1 * c2L / 2.0 + mid_25
-    s2R3R = s2R * c3R + c2R * s3R
-    c2R3R = c2R * c3R - s2R * s3R
-    mid_23 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
-    mid_22 = L1 * c2R / 2.0 + mid_23
-    t2 = mid_24 - mid_22
-    r_I = mid_24 + mid_22
-    mid_15 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
-    gap_14 = L1 * s2L / 2.0 - mid_15
-    mid_13 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
-    t3 = L1 * s2R / 2.0 - mid_13
-    h_I = gap_14 + t3
-    reach = np.sqrt(r_I * r_I + h_I * h_I)
+    t2 = c3R_half * c3L_half
+    t3 = s3R_half * s3L_half
+    t4 = t2 + t3
+    t5 = c3R_half * s3L_half
+    t6 = s3R_half * c3L_half
+    t7 = t5 - t6
+    t8 = c2R_half * t4 + s2R_half * t7
+    t9 = s2R_half * t4 - c2R_half * t7
+    t10 = s2L_half * t8 - c2L_half * t9
+    t11 = t2 - t3
+    t12 = t5 + t6
+    t13 = c2R_half * t11 - s2R_half * t12
+    t14 = s2R_half * t11 + c2R_half * t12
+    t15 = c2L_half * t13 - s2L_half * t14
+    t16 = L2 * t15
+    t17 = s2L_half * t13 + c2L_half * t14
+    t18 = a3 * t17
+    t19 = t16 - t18
+    t20 = t10 * t19
+    t21 = s2L_half * c2R_half
+    t22 = c2L_half * s2R_half
+    t23 = t21 + t22
+    t24 = L1 * (t21 - t22)
+    t25 = t23 * t24
+    t26 = t20 - t25
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t4 = L1 + fore
-    folded = reach <= t4 * _runtime.VANISHING
-    c_sight = np.where(folded, 1.0, r_I / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t4 * t4)
-    t5 = folded | short
-    t6 = t4 - reach
-    A = np.maximum(t6, 0.0)
-    t7 = L1 - fore
-    t8 = reach - t7
-    C = np.maximum(t8, 0.0)
-    t9 = A * C
-    S = t4 + reach
-    t10 = reach + t7
-    B = np.maximum(t10, 0.0)
-    t11 = S * B
-    at_base = t9 + t11
-    c_base = np.where(t5, 1.0, -((t9 - t11) / at_base))
-    s_sight = np.where(folded, 0.0, h_I / reach)
-    bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
-    t12 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t12 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t5, 0.0, area / at_base)
-    ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(short, 1.0, a3 / fore)
-    t13 = A * S
-    t14 = C * B
-    at_elbow = t13 + t14
-    c_elbow = np.where(short, 1.0, -((t13 - t14) / at_elbow))
-    s_lag = np.where(short, 0.0, L2 / fore)
-    s_elbow = np.where(short, 0.0, area / at_elbow)
-    c_bend = c_lag * c_elbow - s_lag * s_elbow
-    stheta2A = s_sight * c_base - c_sight * s_base
-    s_bend = s_lag * c_elbow + c_lag * s_elbow
-    ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    t15 = gap_14 - t3
-    stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t16 = t2 * ctheta23A + t15 * stheta23A
-    t17 = d * d
-    t18 = t16 * t16
-    tilted = np.sqrt(t17 + t18)
-    sphi = t16 / tilted
-    t19 = t2 * stheta23A - t15 * ctheta23A
-    base = np.sqrt(t17 + t2 * t2 + t15 * t15)
-    t20 = t19 / base
+    t27 = L1 + fore
+    t28 = t27 * _runtime.VANISHING
+    bare_virtual = fore <= t28
+    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    t29 = t27 * t27
+    short_virtual = L1 * fore <= t29 * _runtime.VANISHING
+    t30 = s3L_half * c3L_half
+    t31 = t30 + t30
+    t32 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t31 + a3 * t32
+    t33 = 0.0 <= straight_left
+    t34 = L2 * t32 - a3 * t31
+    large_left = fore + np.where(t33, straight_left, -straight_left)
+    small_left = t34 * t34 / large_left
+    t35 = L1 * 2.0
+    t36 = np.where(t33, small_left, large_left) * t35 / 2.0
+    t37 = s3R_half * c3R_half
+    t38 = t37 + t37
+    t39 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t38 + a3 * t39
+    t40 = 0.0 <= straight_right
+    t41 = L2 * t39 - a3 * t38
+    t42 = np.where(t40, straight_right, -straight_right)
+    large_right = fore + t42
+    small_right = t41 * t41 / large_right
+    N_right = np.where(t40, small_right, large_right) * t35
+    t43 = L2 * t17
+    t44 = a3 * t15
+    t45 = t43 + t44
+    t46 = t45 * t10
+    t47 = c2L_half * c2R_half
+    t48 = s2L_half * s2R_half
+    t49 = t47 - t48
+    t50 = t49 * t24
+    t51 = t46 + t50
+    gap = t26 * t26 + t51 * t51
+    t52 = t36 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t52, 0.0)
+    t53 = np.where(t33, large_left, small_left) * t35 / 2.0
+    M_right = np.where(t40, large_right, small_right) * t35
+    t54 = t53 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t54, 0.0)
+    whole_virtual = N_virtual + M_virtual
+    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
+    t55 = 2.0 * np.where(0.0 <= -t41, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t55 * np.sqrt(M_virtual) / whole_virtual)
+    c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
+    t56 = c2L_half * t8 + s2L_half * t9
+    t57 = t56 * t19
+    t58 = L1 * (t47 + t48)
+    t59 = t23 * t58
+    t60 = t57 - t59
+    t61 = t45 * t56
+    t62 = t49 * t58
+    r_I = t61 + t62
+    folded_virtual = np.sqrt(t60 * t60 + r_I * r_I) <= t28
+    ahead_1_virtual = L1 + fore * c_bend_virtual
+    t63 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t60 * t63
+    t64 = ahead_1_virtual * t60 + r_I * t63
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t64 * t64)
+    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    t65 = np.where(folded_virtual, 0.0, t64 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t65
+    t66 = c_relative_virtual * t65 - s_relative_virtual * ctheta2A
+    t67 = t26 * ctheta23A - t51 * t66
+    t68 = d * d
+    t69 = t67 * t67
+    tilted = np.sqrt(t68 + t69)
+    t70 = t67 / tilted
     cphi = d / tilted
-    t21 = t20 * cphi
-    t22 = lp * c
-    t23 = base - (gs - al)
-    t24 = gs + al
-    t25 = t24 - base
-    wrist = np.sqrt(np.maximum(t23, 0.0)) * np.sqrt(np.maximum(t25, 0.0))
-    t26 = loff + t22 + wrist
-    t27 = t1 * sphi + t21 * t26
+    beyond = t26 * t66 + t51 * ctheta23A
+    base = np.sqrt(t68 + gap)
+    spsi = beyond / base
+    t71 = lp * c
+    t72 = base - (gs - al)
+    t73 = gs + al
+    t74 = t73 - base
+    wrist = np.sqrt(np.maximum(t72, 0.0)) * np.sqrt(np.maximum(t74, 0.0))
+    t75 = loff + t71 + wrist
+    t76 = spsi * t75
+    t77 = t1 * t70 - cphi * t76
+    t78 = c1 * t77
     outer_32 = L1 * ctheta2A
     cpsi = tilted / base
-    t28 = cpsi * t26
-    t29 = L2 + t28
-    t30 = sphi * t20
-    t31 = t1 * cphi - t30 * t26
-    t32 = a3 + t31
-    outer_33 = stheta23A * t29 + ctheta23A * t32
-    t33 = outer_32 + outer_33
-    t34 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t35 = t34 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t36 = t35 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t37 = t36 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t38 = t37 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t39 = t38 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t40 = t39 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t41 = -(_runtime.FEASIBILITY * t4)
-    t42 = -(_runtime.FEASIBILITY * t24)
-    t43 = (t41 <= t6) & (t41 <= t10) & (t41 <= t8) & (t42 <= t25)
-    failed = np.logical_not(t40 & (0.0 <= lp)) | np.logical_not(t43 & (t42 <= t23))
-    t44 = _runtime.poison(failed)
-    virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t45 = L2 * ctheta23A - a3 * stheta23A
-    t46 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t47 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t48 = L1 * (t46 + t47)
-    rate_12 = (t3 * virtual_11 + mid_22 * t45) / t48
-    t49 = L1 * stheta2A
-    t50 = c1 * t49
-    t51 = (t3 * outer_32 - mid_22 * t49) / t48
-    t52 = t3 * ctheta23A - mid_22 * stheta23A + t19 * t51
-    t53 = 1.0 / (d * (1.0 + t18 / t17))
-    inner_52 = t52 * t53
-    t54 = stheta23A * cpsi
-    t55 = t54 - ctheta23A * t30
-    t56 = s1 * t21 + c1 * t55
-    t57 = d * (gs - d / (cphi * cpsi))
-    t58 = sphi * t57
-    t59 = cpsi * (cphi * cphi) * wrist
-    t60 = ctheta23A * t27
-    t61 = s1 * t31 + t56 * t58 / t59 - c1 * t60
-    t62 = mid_22 * ctheta23A + t3 * stheta23A - t16 * t51
-    t63 = tilted * tilted
-    t64 = 1.0 + t19 * t19 / t63
-    turn_12 = 1.0 / (tilted * t64)
-    t65 = t16 * t19 / (t64 * (tilted * t63))
-    t66 = t62 * turn_12 - t52 * t65
-    t67 = t20 * t57
-    t68 = cphi * (cpsi * cpsi) * wrist
-    t69 = cphi * t28
-    t70 = t20 * t26
-    t71 = sphi * t28
-    t72 = stheta23A * t70 + ctheta23A * t71
-    t73 = t56 * t67 / t68 + s1 * t69 - c1 * t72
-    t74 = ctheta23A * t29 - stheta23A * t32
-    outer_13 = c1 * t74
-    t75 = rate_12 * t50 - inner_52 * t61 - t66 * t73 + t51 * outer_13
-    t76 = (mid_13 * virtual_11 - mid_23 * t45) / t48
-    rate_23 = (mid_13 * outer_32 + mid_23 * t49) / t48
-    line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t19 * rate_23
-    t77 = t53 * line_13
-    t78 = mid_23 * ctheta23A - mid_13 * stheta23A + t16 * rate_23
-    t79 = turn_12 * t78 + t65 * line_13
-    t80 = t50 * t76 - t77 * t61 + t79 * t73 + rate_23 * outer_13
-    rate_14 = (gap_14 * virtual_11 + mid_24 * t45) / t48
-    t81 = (gap_14 * outer_32 - mid_24 * t49) / t48
-    line_14 = gap_14 * ctheta23A - mid_24 * stheta23A - t19 * t81
-    t82 = t53 * line_14
-    line_24 = mid_24 * ctheta23A + gap_14 * stheta23A + t16 * t81
-    inner_44 = turn_12 * line_24 - t65 * line_14
-    t83 = t50 * rate_14 + t82 * t61 + inner_44 * t73 + t81 * outer_13
-    t84 = (mid_15 * virtual_11 - mid_25 * t45) / t48
-    rate_25 = (mid_15 * outer_32 + mid_25 * t49) / t48
-    t85 = mid_15 * ctheta23A + mid_25 * stheta23A - t19 * rate_25
-    inner_55 = t53 * t85
-    line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t16 * rate_25
-    inner_45 = turn_12 * line_25 + t65 * t85
-    t86 = t50 * t84 + inner_55 * t61 - inner_45 * t73 + rate_25 * outer_13
-    t87 = t1 * t30 + t22 * cphi
-    t88 = ctheta23A * t87 - t1 * t54
-    t89 = t1 * t21 - t22 * sphi
-    t90 = s1 * t49
-    t91 = c1 * t21 - s1 * t55
-    t92 = c1 * t31 + t58 * t91 / t59 + s1 * t60
-    outer_24 = t67 * t91 / t68 + c1 * t69 + s1 * t72
-    t93 = rate_12 * t90 + inner_52 * t92 + t66 * outer_24
-    outer_23 = s1 * t74
-    t94 = t76 * t90 + t77 * t92 - t79 * outer_24 + rate_23 * outer_23
-    t95 = rate_14 * t90 - t82 * t92 - inner_44 * outer_24
-    t96 = t84 * t90 - inner_55 * t92 + inner_45 * outer_24
-    t97 = 0.0 + t44
-    t98 = ctheta23A * cpsi
-    t99 = t98 + stheta23A * t30
-    t100 = stheta23A * t27 + t58 * t99 / t59
-    outer_34 = t67 * t99 / t68 - ctheta23A * t70 + stheta23A * t71
-    t101 = outer_32 * rate_12 - inner_52 * t100 - t66 * outer_34
-    t102 = rate_23 * outer_33 - (outer_32 * t76 - t77 * t100 + t79 * outer_34)
-    t103 = outer_32 * rate_14 + t82 * t100 + inner_44 * outer_34
-    t104 = outer_32 * t84 + inner_55 * t100 - inner_45 * outer_34
+    t79 = t75 * cpsi
+    t80 = L2 + t79
+    t81 = t1 * cphi + t70 * t76
+    t82 = a3 + t81
+    t83 = t66 * t80 - ctheta23A * t82
+    t84 = outer_32 - t83
+    t85 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t86 = t85 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t87 = t86 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t88 = t87 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t89 = t88 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t90 = t89 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t91 = t90 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t92 = -(_runtime.FEASIBILITY * t29)
+    t93 = -(_runtime.FEASIBILITY * t73)
+    t94 = (t92 <= t52) & (t92 <= t54) & (t93 <= t74) & (t93 <= t72)
+    failed = np.logical_not(t91 & (0.0 <= lp)) | np.logical_not(t94)
+    t95 = _runtime.poison(failed)
+    t96 = L1 * t65
+    t97 = c1 * t96
+    t98 = L2 * t66 - a3 * ctheta23A
+    t99 = t46 / 2.0
+    t100 = t16 / 2.0 - t18 / 2.0
+    t101 = t56 * t100
+    mid_13 = t99 + t101
+    t102 = t50 / 2.0
+    t103 = t59 / 2.0
+    t104 = t102 - t103
+    mid_12 = mid_13 + t104
+    t105 = L2 * ctheta23A + a3 * t66
+    t106 = t43 / 2.0 + t44 / 2.0
+    t107 = t56 * t106
+    t108 = t20 / 2.0
+    mid_23 = t107 - t108
+    t109 = t25 / 2.0
+    t110 = t62 / 2.0
+    t111 = t109 + t110
+    mid_22 = mid_23 + t111
+    t112 = L2 * (ctheta2A * ctheta23A + t65 * t66) - a3 * (t65 * ctheta23A - ctheta2A * t66)
+    t113 = L1 * t112
+    t114 = (t98 * mid_12 + t105 * mid_22) / t113
+    t115 = cphi * spsi
+    t116 = t70 * spsi
+    t117 = t66 * cpsi - ctheta23A * t116
+    t118 = s1 * t115 + c1 * t117
+    t119 = d * (gs - d / (cphi * cpsi))
+    t120 = t70 * t119
+    t121 = cphi * cphi * wrist * cpsi
+    outer_15 = s1 * t81 - t118 * t120 / t121 - ctheta23A * t78
+    t122 = 1.0 / (d * (1.0 + t69 / t68))
+    t123 = t10 * t106
+    t124 = t57 / 2.0
+    gap_13 = t123 + t124
+    gap_12 = gap_13 + t104
+    t125 = t61 / 2.0
+    t126 = t10 * t100
+    gap_23 = t125 - t126
+    gap_22 = gap_23 + t111
+    rate_22 = (outer_32 * mid_12 - t96 * mid_22) / t113
+    line_12 = ctheta23A * gap_12 - t66 * gap_22 - beyond * rate_22
+    t127 = t122 * line_12
+    t128 = spsi * t119
+    t129 = cphi * wrist * (cpsi * cpsi)
+    t130 = t70 * t79
+    t131 = t66 * t76 + ctheta23A * t130
+    t132 = cphi * t79
+    t133 = t118 * t128 / t129 - c1 * t131 + s1 * t132
+    t134 = tilted * tilted
+    t135 = 1.0 + beyond * beyond / t134
+    turn_12 = 1.0 / (tilted * t135)
+    t136 = t66 * gap_12 + ctheta23A * gap_22 + t67 * rate_22
+    t137 = t67 * beyond / (t135 * (tilted * t134))
+    t138 = turn_12 * t136 - t137 * line_12
+    t139 = ctheta23A * t80 + t66 * t82
+    outer_13 = c1 * t139
+    t140 = t97 * t114 - outer_15 * t127 + t133 * t138 + rate_22 * outer_13
+    t141 = (mid_13 * t98 + mid_23 * t105) / t113
+    rate_23 = (mid_13 * outer_32 - mid_23 * t96) / t113
+    line_13 = gap_13 * ctheta23A - gap_23 * t66 - beyond * rate_23
+    t142 = t122 * line_13
+    t143 = gap_23 * ctheta23A + gap_13 * t66 + t67 * rate_23
+    t144 = turn_12 * t143 - line_13 * t137
+    t145 = t97 * t141 - t142 * outer_15 + t144 * t133 + rate_23 * outer_13
+    t146 = t99 - t101
+    t147 = t102 + t103
+    t148 = t146 + t147
+    mid_25 = t107 + t108
+    t149 = t109 - t110
+    t150 = mid_25 - t149
+    t151 = (t98 * t148 - t105 * t150) / t113
+    gap_15 = t123 - t124
+    gap_14 = gap_15 + t147
+    t152 = t125 + t126
+    t153 = t152 - t149
+    t154 = (outer_32 * t148 + t96 * t150) / t113
+    line_14 = ctheta23A * gap_14 + t66 * t153 + beyond * t154
+    t155 = t122 * line_14
+    t156 = turn_12 * (t66 * gap_14 - ctheta23A * t153 - t67 * t154)
+    t157 = t156 - t137 * line_14
+    t158 = t97 * t151 + outer_15 * t155 - t133 * t157 + t154 * outer_13
+    t159 = (t146 * t98 - mid_25 * t105) / t113
+    t160 = (t146 * outer_32 + mid_25 * t96) / t113
+    line_15 = gap_15 * ctheta23A + t152 * t66 + beyond * t160
+    t161 = t122 * line_15
+    t162 = turn_12 * (t152 * ctheta23A - gap_15 * t66 + t67 * t160)
+    inner_45 = t162 + line_15 * t137
+    t163 = t97 * t159 + t161 * outer_15 + inner_45 * t133
+    t164 = t71 * t70 + t1 * t115
+    t165 = t71 * cphi - t1 * t116
+    t166 = t1 * cpsi
+    t167 = ctheta23A * t165 + t66 * t166
+    t168 = s1 * t77
+    t169 = s1 * t96
+    t170 = c1 * t115 - s1 * t117
+    t171 = c1 * t81 - t120 * t170 / t121 + ctheta23A * t168
+    outer_24 = t128 * t170 / t129 + s1 * t131 + c1 * t132
+    outer_23 = s1 * t139
+    t172 = t169 * t114 + t171 * t127 - outer_24 * t138 + rate_22 * outer_23
+    t173 = t141 * t169 + t142 * t171 - t144 * outer_24 + rate_23 * outer_23
+    t174 = t169 * t151 - t171 * t155 + outer_24 * t157 + t154 * outer_23
+    t175 = t159 * t169 - t161 * t171 - inner_45 * outer_24
+    t176 = 0.0 + t95
+    t177 = ctheta23A * cpsi + t66 * t116
+    outer_35 = t66 * t77 - t120 * t177 / t121
+    t178 = ctheta23A * t76 - t128 * t177 / t129 - t66 * t130
+    t179 = outer_32 * t114 - outer_35 * t127 - t178 * t138
+    t180 = outer_32 * t141 - t142 * outer_35 - t144 * t178
+    t181 = outer_32 * t151 + outer_35 * t155 + t178 * t157
+    t182 = outer_32 * t159 + t161 * outer_35 - inner_45 * t178
     return (
-        c1 * t27 - s1 * t33 + t44,
-        -t75 + t44,
-        t80 + t44,
-        -t83 + t44,
-        t86 + t44,
-        c1 * t88 - s1 * t89 + t44,
-        s1 * t27 + c1 * t33 + t44,
-        -(t93 + t51 * outer_23) + t44,
-        t94 + t44,
-        -(t95 + t81 * outer_23) + t44,
-        t96 + rate_25 * outer_23 + t44,
-        c1 * t89 + s1 * t88 + t44,
-        t97,
-        t101 - t51 * outer_33 + t44,
-        t102 + t44,
-        t103 - t81 * outer_33 + t44,
-        rate_25 * outer_33 - t104 + t44,
-        stheta23A * t87 + t1 * t98 + t44,
-        t97,
-        -t66 + t44,
-        -t79 + t44,
-        inner_44 + t44,
-        inner_45 + t44,
-        t97,
-        t97,
-        inner_52 + t44,
-        -t77 + t44,
-        -t82 + t44,
-        inner_55 + t44,
-        t97,
-        t97,
-        t97,
-        t97,
-        t97,
-        t97,
-        1.0 + t44,
+        t78 - s1 * t84 + t95,
+        t140 + t95,
+        t145 + t95,
+        -t158 + t95,
+        -(t163 + t160 * outer_13) + t95,
+        s1 * t164 + c1 * t167 + t95,
+        t168 + c1 * t84 + t95,
+        t172 + t95,
+        t173 + t95,
+        -t174 + t95,
+        -(t175 + t160 * outer_23) + t95,
+        s1 * t167 - c1 * t164 + t95,
+        t176,
+        t179 - rate_22 * t83 + t95,
+        t180 - rate_23 * t83 + t95,
+        t154 * t83 - t181 + t95,
+        t160 * t83 - t182 + t95,
+        ctheta23A * t166 - t66 * t165 + t95,
+        t176,
+        -t138 + t95,
+        -t144 + t95,
+        -t157 + t95,
+        inner_45 + t95,
+        t176,
+        t176,
+        -t127 + t95,
+        -t142 + t95,
+        -t155 + t95,
+        -t161 + t95,
+        t176,
+        t176,
+        t176,
+        t176,
+        t176,
+        t176,
+        1.0 + t95,
     )
 
 
@@ -708,91 +856,134 @@ def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 def _determinant(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2R, c2R = _runtime.sincos(theta2R)
-    s3R, c3R = _runtime.sincos(theta3R)
-    s2L, c2L = _runtime.sincos(theta2L)
-    s3L, c3L = _runtime.sincos(theta3L)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s, c = _runtime.sincos(theta)
-    s2R3R = s2R * c3R + c2R * s3R
-    c2R3R = c2R * c3R - s2R * s3R
-    bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
-    s2L3L = s2L * c3L + c2L * s3L
-    c2L3L = c2L * c3L - s2L * s3L
-    t1 = L2 * (s2L * s2L3L + c2L * c2L3L) + a3 * (s2L * c2L3L - c2L * s2L3L)
-    t2 = a3 * c2L3L / 2.0 + (L1 * c2L / 2.0 + L2 * s2L3L / 2.0)
-    t3 = a3 * c2R3R / 2.0 + (L1 * c2R / 2.0 + L2 * s2R3R / 2.0)
-    r_I = t2 + t3
-    t4 = a3 * s2L3L / 2.0 + (L1 * s2L / 2.0 - L2 * c2L3L / 2.0)
-    t5 = a3 * s2R3R / 2.0 + (L1 * s2R / 2.0 - L2 * c2R3R / 2.0)
-    h_I = t4 + t5
-    reach = np.sqrt(r_I * r_I + h_I * h_I)
+    t1 = s2L_half * c2L_half
+    t2 = t1 + t1
+    t3 = c3L_half * c3L_half - s3L_half * s3L_half
+    t4 = s3L_half * c3L_half
+    t5 = t4 + t4
+    t6 = c2L_half * c2L_half - s2L_half * s2L_half
+    s2L3L = t3 * t2 + t5 * t6
+    c2L3L = t3 * t6 - t5 * t2
+    t7 = L2 * (t2 * s2L3L + t6 * c2L3L) + a3 * (t2 * c2L3L - t6 * s2L3L)
+    t8 = s2R_half * c2R_half
+    t9 = t8 + t8
+    t10 = c3R_half * c3R_half - s3R_half * s3R_half
+    t11 = s3R_half * c3R_half
+    t12 = t11 + t11
+    t13 = c2R_half * c2R_half - s2R_half * s2R_half
+    s2R3R = t10 * t9 + t12 * t13
+    c2R3R = t10 * t13 - t12 * t9
+    t14 = L2 * (t9 * s2R3R + t13 * c2R3R) + a3 * (t9 * c2R3R - t13 * s2R3R)
+    t15 = c3R_half * c3L_half
+    t16 = s3R_half * s3L_half
+    t17 = t15 + t16
+    t18 = c3R_half * s3L_half
+    t19 = s3R_half * c3L_half
+    t20 = t18 - t19
+    t21 = c2R_half * t17 + s2R_half * t20
+    t22 = s2R_half * t17 - c2R_half * t20
+    t23 = c2L_half * t21 + s2L_half * t22
+    t24 = t15 - t16
+    t25 = t18 + t19
+    t26 = c2R_half * t24 - s2R_half * t25
+    t27 = s2R_half * t24 + c2R_half * t25
+    t28 = c2L_half * t26 - s2L_half * t27
+    t29 = s2L_half * t26 + c2L_half * t27
+    t30 = L2 * t28 - a3 * t29
+    t31 = s2L_half * c2R_half
+    t32 = c2L_half * s2R_half
+    t33 = t31 + t32
+    t34 = c2L_half * c2R_half
+    t35 = s2L_half * s2R_half
+    t36 = L1 * (t34 + t35)
+    t37 = t23 * t30 - t33 * t36
+    t38 = L2 * t29 + a3 * t28
+    t39 = t34 - t35
+    r_I = t38 * t23 + t39 * t36
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t6 = L1 + fore
-    folded = reach <= t6 * _runtime.VANISHING
-    c_sight = np.where(folded, 1.0, r_I / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t6 * t6)
-    t7 = folded | short
-    t8 = t6 - reach
-    A = np.maximum(t8, 0.0)
-    t9 = L1 - fore
-    t10 = reach - t9
-    C = np.maximum(t10, 0.0)
-    t11 = A * C
-    S = t6 + reach
-    t12 = t9 + reach
-    B = np.maximum(t12, 0.0)
-    t13 = S * B
-    at_base = t11 + t13
-    c_base = np.where(t7, 1.0, -((t11 - t13) / at_base))
-    s_sight = np.where(folded, 0.0, h_I / reach)
-    t14 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t14 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t7, 0.0, area / at_base)
-    ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(short, 1.0, a3 / fore)
-    t15 = A * S
-    t16 = C * B
-    at_elbow = t15 + t16
-    c_elbow = np.where(short, 1.0, -((t15 - t16) / at_elbow))
-    s_lag = np.where(short, 0.0, L2 / fore)
-    s_elbow = np.where(short, 0.0, area / at_elbow)
-    c_bend = c_lag * c_elbow - s_lag * s_elbow
-    stheta2A = c_base * s_sight - c_sight * s_base
-    s_bend = s_lag * c_elbow + c_lag * s_elbow
-    ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t17 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t18 = d * d
-    t19 = t2 - t3
-    t20 = t4 - t5
-    t21 = t19 * ctheta23A + stheta23A * t20
-    tilted = np.sqrt(t18 + t21 * t21)
-    base = np.sqrt(t18 + t19 * t19 + t20 * t20)
-    t22 = base - (gs - al)
-    t23 = gs + al
-    t24 = t23 - base
-    wrist = np.sqrt(np.maximum(t22, 0.0)) * np.sqrt(np.maximum(t24, 0.0))
-    t25 = loff + lp * c + wrist
-    t26 = L2 + tilted / base * t25
-    t27 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    t28 = t25 * ((t19 * stheta23A - ctheta23A * t20) / base)
-    t29 = a3 + lp * s * (d / tilted) - t28 * (t21 / tilted)
-    t30 = d * bend * (L1 * L1) * t1 * (t17 * t26 + t27 * t29)
-    t31 = L1 * ctheta2A + ctheta23A * t29 + stheta23A * t26
-    t32 = 4.0 * tilted * (base * base) * (L2 * t17 + a3 * t27)
-    t33 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t34 = t33 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t35 = t34 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t36 = t35 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t37 = t36 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t38 = t37 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t39 = t38 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t40 = -(_runtime.FEASIBILITY * t6)
-    t41 = -(_runtime.FEASIBILITY * t23)
-    t42 = (t40 <= t8) & (t40 <= t12) & (t40 <= t10) & (t41 <= t24)
-    failed = np.logical_not(t39 & (0.0 <= lp)) | np.logical_not(t42 & (t41 <= t22))
+    t40 = L1 + fore
+    t41 = t40 * _runtime.VANISHING
+    folded_virtual = np.sqrt(t37 * t37 + r_I * r_I) <= t41
+    t42 = t40 * t40
+    short_virtual = L1 * fore <= t42 * _runtime.VANISHING
+    straight_left = L2 * t5 + a3 * t3
+    t43 = 0.0 <= straight_left
+    t44 = L2 * t3 - a3 * t5
+    large_left = fore + np.where(t43, straight_left, -straight_left)
+    small_left = t44 * t44 / large_left
+    t45 = L1 * 2.0
+    t46 = np.where(t43, small_left, large_left) * t45 / 2.0
+    straight_right = L2 * t12 + a3 * t10
+    t47 = 0.0 <= straight_right
+    t48 = L2 * t10 - a3 * t12
+    t49 = np.where(t47, straight_right, -straight_right)
+    large_right = fore + t49
+    small_right = t48 * t48 / large_right
+    N_right = np.where(t47, small_right, large_right) * t45
+    t50 = s2L_half * t21 - c2L_half * t22
+    t51 = L1 * (t31 - t32)
+    t52 = t50 * t30 - t33 * t51
+    t53 = t38 * t50 + t39 * t51
+    gap = t52 * t52 + t53 * t53
+    t54 = t46 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t54, 0.0)
+    t55 = np.where(t43, large_left, small_left) * t45 / 2.0
+    M_right = np.where(t47, large_right, small_right) * t45
+    t56 = t55 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t56, 0.0)
+    whole_virtual = N_virtual + M_virtual
+    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    ahead_1_virtual = L1 + fore * c_bend_virtual
+    t57 = 2.0 * np.where(0.0 <= -t48, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t57 * np.sqrt(M_virtual) / whole_virtual)
+    t58 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t37 * t58
+    t59 = ahead_1_virtual * t37 + r_I * t58
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t59 * t59)
+    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    bare_virtual = fore <= t41
+    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
+    c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
+    s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    t60 = np.where(folded_virtual, 0.0, t59 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t60
+    t61 = c_relative_virtual * t60 - s_relative_virtual * ctheta2A
+    t62 = ctheta2A * ctheta23A + t60 * t61
+    t63 = d * d
+    t64 = t52 * ctheta23A - t53 * t61
+    tilted = np.sqrt(t63 + t64 * t64)
+    base = np.sqrt(t63 + gap)
+    t65 = base - (gs - al)
+    t66 = gs + al
+    t67 = t66 - base
+    wrist = np.sqrt(np.maximum(t65, 0.0)) * np.sqrt(np.maximum(t67, 0.0))
+    t68 = loff + lp * c + wrist
+    t69 = L2 + tilted / base * t68
+    t70 = t60 * ctheta23A - ctheta2A * t61
+    t71 = t64 / tilted * t68 * ((t52 * t61 + t53 * ctheta23A) / base)
+    t72 = a3 + lp * s * (d / tilted) + t71
+    t73 = d * (L1 * L1) * t7 * t14 * (t62 * t69 - t70 * t72)
+    t74 = t73 * (L1 * ctheta2A + ctheta23A * t72 - t61 * t69)
+    t75 = 4.0 * tilted * (L2 * t62 - a3 * t70) * (base * base)
+    t76 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t77 = t76 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t78 = t77 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t79 = t78 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t80 = t79 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t81 = t80 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t82 = t81 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t83 = -(_runtime.FEASIBILITY * t42)
+    t84 = -(_runtime.FEASIBILITY * t66)
+    t85 = (t83 <= t54) & (t83 <= t56) & (t84 <= t67) & (t84 <= t65)
+    failed = np.logical_not(t82 & (0.0 <= lp)) | np.logical_not(t85)
     return (
-        t30 * t31 / t32 + _runtime.poison(failed),
+        t74 / t75 + _runtime.poison(failed),
     )
 
 
@@ -823,95 +1014,138 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 def _singularities(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2L, c2L = _runtime.sincos(theta2L)
-    s3L, c3L = _runtime.sincos(theta3L)
-    s2R, c2R = _runtime.sincos(theta2R)
-    s3R, c3R = _runtime.sincos(theta3R)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     s, c = _runtime.sincos(theta)
-    c2L3L = c2L * c3L - s2L * s3L
-    s2L3L = s2L * c3L + c2L * s3L
-    t1 = a3 * c2L3L / 2.0 + (L1 * c2L / 2.0 + L2 * s2L3L / 2.0)
-    c2R3R = c2R * c3R - s2R * s3R
-    s2R3R = s2R * c3R + c2R * s3R
-    t2 = a3 * c2R3R / 2.0 + (L1 * c2R / 2.0 + L2 * s2R3R / 2.0)
-    r_I = t1 + t2
-    t3 = a3 * s2L3L / 2.0 + (L1 * s2L / 2.0 - L2 * c2L3L / 2.0)
-    t4 = a3 * s2R3R / 2.0 + (L1 * s2R / 2.0 - L2 * c2R3R / 2.0)
-    h_I = t3 + t4
-    reach = np.sqrt(r_I * r_I + h_I * h_I)
+    t1 = c3R_half * c3L_half
+    t2 = s3R_half * s3L_half
+    t3 = t1 + t2
+    t4 = c3R_half * s3L_half
+    t5 = s3R_half * c3L_half
+    t6 = t4 - t5
+    t7 = c2R_half * t3 + s2R_half * t6
+    t8 = s2R_half * t3 - c2R_half * t6
+    t9 = c2L_half * t7 + s2L_half * t8
+    t10 = t1 - t2
+    t11 = t4 + t5
+    t12 = c2R_half * t10 - s2R_half * t11
+    t13 = s2R_half * t10 + c2R_half * t11
+    t14 = c2L_half * t12 - s2L_half * t13
+    t15 = s2L_half * t12 + c2L_half * t13
+    t16 = L2 * t14 - a3 * t15
+    t17 = s2L_half * c2R_half
+    t18 = c2L_half * s2R_half
+    t19 = t17 + t18
+    t20 = c2L_half * c2R_half
+    t21 = s2L_half * s2R_half
+    t22 = L1 * (t20 + t21)
+    t23 = t9 * t16 - t19 * t22
+    t24 = L2 * t15 + a3 * t14
+    t25 = t20 - t21
+    r_I = t24 * t9 + t25 * t22
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t5 = L1 + fore
-    folded = reach <= t5 * _runtime.VANISHING
-    c_sight = np.where(folded, 1.0, r_I / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t5 * t5)
-    t6 = folded | short
-    t7 = t5 - reach
-    A = np.maximum(t7, 0.0)
-    t8 = L1 - fore
-    t9 = reach - t8
-    C = np.maximum(t9, 0.0)
-    t10 = A * C
-    S = t5 + reach
-    t11 = t8 + reach
-    B = np.maximum(t11, 0.0)
-    t12 = S * B
-    at_base = t10 + t12
-    c_base = np.where(t6, 1.0, -((t10 - t12) / at_base))
-    s_sight = np.where(folded, 0.0, h_I / reach)
-    bend = L2 * (s2R * s2R3R + c2R * c2R3R) + a3 * (s2R * c2R3R - c2R * s2R3R)
-    t13 = np.where(0.0 <= bend, -1.0, 1.0) * 2.0 * np.sqrt(S)
-    area = t13 * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base = np.where(t6, 0.0, area / at_base)
-    ctheta2A = c_sight * c_base + s_sight * s_base
-    c_lag = np.where(short, 1.0, a3 / fore)
-    t14 = A * S
-    t15 = C * B
-    at_elbow = t14 + t15
-    c_elbow = np.where(short, 1.0, -((t14 - t15) / at_elbow))
-    s_lag = np.where(short, 0.0, L2 / fore)
-    s_elbow = np.where(short, 0.0, area / at_elbow)
-    c_bend = c_lag * c_elbow - s_lag * s_elbow
-    stheta2A = c_base * s_sight - c_sight * s_base
-    s_bend = s_lag * c_elbow + c_lag * s_elbow
-    ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    t16 = d * d
-    t17 = t1 - t2
-    t18 = t3 - t4
-    stheta23A = c_bend * stheta2A + ctheta2A * s_bend
-    t19 = t17 * ctheta23A + t18 * stheta23A
-    tilted = np.sqrt(t16 + t19 * t19)
-    base = np.sqrt(t16 + t17 * t17 + t18 * t18)
-    t20 = (t17 * stheta23A - ctheta23A * t18) / base * (t19 / tilted)
-    t21 = base - (gs - al)
-    t22 = gs + al
-    t23 = t22 - base
-    wrist = np.sqrt(np.maximum(t21, 0.0)) * np.sqrt(np.maximum(t23, 0.0))
-    t24 = loff + lp * c + wrist
-    t25 = a3 + lp * s * (d / tilted) - t20 * t24
-    t26 = L2 + t24 * (tilted / base)
-    t27 = L1 * ctheta2A + ctheta23A * t25 + stheta23A * t26
-    t28 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t29 = t28 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t30 = t29 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t31 = t30 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t32 = t31 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t33 = t32 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t34 = t33 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t35 = -(_runtime.FEASIBILITY * t5)
-    t36 = -(_runtime.FEASIBILITY * t22)
-    t37 = (t35 <= t7) & (t35 <= t11) & (t35 <= t9) & (t36 <= t23)
-    failed = np.logical_not(t34 & (0.0 <= lp)) | np.logical_not(t37 & (t36 <= t21))
-    t38 = _runtime.poison(failed)
-    t39 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t40 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    t41 = L2 * (s2L * s2L3L + c2L * c2L3L) + a3 * (s2L * c2L3L - c2L * s2L3L)
+    t26 = L1 + fore
+    t27 = t26 * _runtime.VANISHING
+    folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t27
+    t28 = t26 * t26
+    short_virtual = L1 * fore <= t28 * _runtime.VANISHING
+    t29 = s3L_half * c3L_half
+    t30 = t29 + t29
+    t31 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t30 + a3 * t31
+    t32 = 0.0 <= straight_left
+    t33 = L2 * t31 - a3 * t30
+    large_left = fore + np.where(t32, straight_left, -straight_left)
+    small_left = t33 * t33 / large_left
+    t34 = L1 * 2.0
+    t35 = np.where(t32, small_left, large_left) * t34 / 2.0
+    t36 = s3R_half * c3R_half
+    t37 = t36 + t36
+    t38 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t37 + a3 * t38
+    t39 = 0.0 <= straight_right
+    t40 = L2 * t38 - a3 * t37
+    t41 = np.where(t39, straight_right, -straight_right)
+    large_right = fore + t41
+    small_right = t40 * t40 / large_right
+    N_right = np.where(t39, small_right, large_right) * t34
+    t42 = s2L_half * t7 - c2L_half * t8
+    t43 = L1 * (t17 - t18)
+    t44 = t42 * t16 - t19 * t43
+    t45 = t24 * t42 + t25 * t43
+    gap = t44 * t44 + t45 * t45
+    t46 = t35 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t46, 0.0)
+    t47 = np.where(t32, large_left, small_left) * t34 / 2.0
+    M_right = np.where(t39, large_right, small_right) * t34
+    t48 = t47 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t48, 0.0)
+    whole_virtual = N_virtual + M_virtual
+    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    ahead_1_virtual = L1 + fore * c_bend_virtual
+    t49 = 2.0 * np.where(0.0 <= -t40, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t49 * np.sqrt(M_virtual) / whole_virtual)
+    t50 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t23 * t50
+    t51 = ahead_1_virtual * t23 + r_I * t50
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
+    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    bare_virtual = fore <= t27
+    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
+    c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
+    s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    t52 = np.where(folded_virtual, 0.0, t51 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t52
+    t53 = d * d
+    t54 = c_relative_virtual * t52 - s_relative_virtual * ctheta2A
+    t55 = t44 * ctheta23A - t45 * t54
+    tilted = np.sqrt(t53 + t55 * t55)
+    base = np.sqrt(t53 + gap)
+    t56 = t55 / tilted * ((t44 * t54 + t45 * ctheta23A) / base)
+    t57 = base - (gs - al)
+    t58 = gs + al
+    t59 = t58 - base
+    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
+    t60 = loff + lp * c + wrist
+    t61 = a3 + lp * s * (d / tilted) + t56 * t60
+    t62 = L2 + t60 * (tilted / base)
+    t63 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t64 = t63 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t65 = t64 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t66 = t65 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t67 = t66 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t68 = t67 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t69 = t68 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t70 = -(_runtime.FEASIBILITY * t28)
+    t71 = -(_runtime.FEASIBILITY * t58)
+    t72 = (t70 <= t46) & (t70 <= t48) & (t71 <= t59) & (t71 <= t57)
+    failed = np.logical_not(t69 & (0.0 <= lp)) | np.logical_not(t72)
+    t73 = _runtime.poison(failed)
+    t74 = L1 * ctheta2A + ctheta23A * t61 - t54 * t62 + t73
+    t75 = ctheta2A * ctheta23A + t52 * t54
+    t76 = t52 * ctheta23A - ctheta2A * t54
+    t77 = s2R_half * c2R_half
+    t78 = t77 + t77
+    t79 = c2R_half * c2R_half - s2R_half * s2R_half
+    s2R3R = t38 * t78 + t37 * t79
+    c2R3R = t38 * t79 - t37 * t78
+    t80 = L2 * (t78 * s2R3R + t79 * c2R3R) + a3 * (t78 * c2R3R - t79 * s2R3R)
+    t81 = s2L_half * c2L_half
+    t82 = t81 + t81
+    t83 = c2L_half * c2L_half - s2L_half * s2L_half
+    s2L3L = t31 * t82 + t30 * t83
+    c2L3L = t31 * t83 - t30 * t82
+    t84 = L2 * (t82 * s2L3L + t83 * c2L3L) + a3 * (t82 * c2L3L - t83 * s2L3L)
     return (
-        t27 + t38,
-        t26 * t39 + t25 * t40 + t38,
-        bend + t38,
-        t41 + t38,
-        L2 * t39 + a3 * t40 + t38,
-        wrist + t38,
+        t74,
+        t75 * t62 - t76 * t61 + t73,
+        t80 + t73,
+        t84 + t73,
+        L2 * t75 - a3 * t76 + t73,
+        wrist + t73,
     )
 
 
@@ -944,495 +1178,571 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     s_pitch, c_pitch = _runtime.sincos(pitch)
     s_psi, c_psi = _runtime.sincos(psi)
     h = np.sqrt(x * x + y * y)
-    nowhere = h <= _runtime.VANISHING * (L1 + L2)
-    t1 = np.arctan2(x, y)
-    t2 = lp * s_pitch
-    t3 = c_phi * c_psi
-    t4 = d - (gs - al) * t3
-    t5 = gs + al
-    t6 = t5 * t3 - d
-    t7 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t6, 0.0))
-    t8 = loff + lp * c_pitch + t7 / t3
-    t9 = s_psi * t8
-    t10 = s_phi * t2 - c_phi * t9
-    t11 = h + t10
-    below = np.maximum(t11, 0.0)
-    t12 = np.sqrt(below)
-    t13 = h - t10
-    above = np.maximum(t13, 0.0)
-    t14 = np.sqrt(above)
-    t15 = 2.0 * np.arctan2(t12, t14)
-    t16 = _runtime.wrap(-np.where(nowhere, 0.0, t1 - t15))
-    t17 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t18 = t17 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t19 = t18 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
-    t20 = t19 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
-    t21 = t20 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t22 = t21 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t23 = t22 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    invalid = np.logical_not(t23 & (0.0 <= loff) & (0.0 <= lp))
-    t24 = -(_runtime.FEASIBILITY * (d + t5))
-    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t6)
-    t26 = -(_runtime.FEASIBILITY * h)
-    t27 = t25 & (t24 <= t4) & (t26 <= t11) & (t26 <= t13)
-    L_2W = L2 + c_psi * t8
-    a_3W = a3 + c_phi * t2 + s_phi * t9
+    t1 = L1 + L2
+    nowhere = h <= t1 * _runtime.VANISHING
+    t2 = np.arctan2(x, y)
+    t3 = lp * s_pitch
+    t4 = c_phi * c_psi
+    t5 = d - (gs - al) * t4
+    t6 = gs + al
+    t7 = t6 * t4 - d
+    t8 = np.sqrt(np.maximum(t5, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    t9 = loff + lp * c_pitch + t8 / t4
+    t10 = s_psi * t9
+    t11 = s_phi * t3 - c_phi * t10
+    t12 = h + t11
+    below = np.maximum(t12, 0.0)
+    t13 = np.sqrt(below)
+    t14 = h - t11
+    above = np.maximum(t14, 0.0)
+    t15 = np.sqrt(above)
+    t16 = 2.0 * np.arctan2(t13, t15)
+    t17 = _runtime.wrap(-np.where(nowhere, 0.0, t2 - t16))
+    t18 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t19 = t18 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t20 = t19 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
+    t21 = t20 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
+    t22 = t21 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t23 = t22 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t24 = t23 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    invalid = np.logical_not(t24 & (0.0 <= loff) & (0.0 <= lp))
+    t25 = -(_runtime.FEASIBILITY * (d + t6))
+    t26 = (-_runtime.FEASIBILITY <= c_phi) & (t25 <= t7)
+    t27 = -(_runtime.FEASIBILITY * t1)
+    t28 = t26 & (t25 <= t5) & (t27 <= t12) & (t27 <= t14)
+    L_2W = L2 + c_psi * t9
+    a_3W = a3 + c_phi * t3 + s_phi * t10
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t28 = L1 + fore
-    t29 = -(_runtime.FEASIBILITY * t28)
-    t30 = z - d1
-    t31 = t30 * t30
+    t29 = L1 + fore
+    t30 = -(_runtime.FEASIBILITY * t29)
+    t31 = z - d1
+    t32 = t31 * t31
     total = below + above
-    t32 = (below - above) / total
-    t33 = y * t32
-    s_turn = 2.0 * t12 * t14 / total
-    t34 = x * s_turn
-    t35 = x * np.where(nowhere, 1.0, -((t33 - t34) / h))
-    t36 = x * t32
-    t37 = y * s_turn
-    outward = t35 + y * np.where(nowhere, 0.0, (t36 + t37) / h)
-    reach = np.sqrt(t31 + outward * outward)
-    t38 = t28 - reach
-    t39 = L1 - fore
-    t40 = reach + t39
-    t41 = reach - t39
-    t42 = t27 & (t29 <= t38) & (t29 <= t40) & (t29 <= t41)
-    fore_right = np.sqrt(L2 * L2 + a3 * a3)
-    t43 = L1 + fore_right
-    t44 = -(_runtime.FEASIBILITY * t43)
-    t45 = _runtime.VANISHING * t28
-    folded = reach <= t45
+    t33 = (below - above) / total
+    t34 = y * t33
+    s_turn = 2.0 * t13 * t15 / total
+    t35 = x * s_turn
+    t36 = x * np.where(nowhere, 1.0, -((t34 - t35) / h))
+    t37 = x * t33
+    t38 = y * s_turn
+    outward = t36 + y * np.where(nowhere, 0.0, (t37 + t38) / h)
+    reach = np.sqrt(t32 + outward * outward)
+    t39 = t29 - reach
+    t40 = L1 - fore
+    t41 = reach + t40
+    t42 = reach - t40
+    t43 = t28 & (t30 <= t39) & (t30 <= t41) & (t30 <= t42)
+    fore_arm = np.sqrt(L2 * L2 + a3 * a3)
+    t44 = L1 + fore_arm
+    t45 = t44 * t44
+    t46 = -(_runtime.FEASIBILITY * t45)
+    t47 = L1 * 2.0
+    t48 = _runtime.VANISHING * t29
+    folded = reach <= t48
+    s_sight = np.where(folded, 0.0, t31 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t29 * t29)
+    t49 = folded | short
+    A = np.maximum(t39, 0.0)
+    C = np.maximum(t42, 0.0)
+    t50 = A * C
+    S = t29 + reach
+    B = np.maximum(t41, 0.0)
+    t51 = S * B
+    at_base = t50 + t51
+    c_base = np.where(t49, 1.0, -((t50 - t51) / at_base))
+    t52 = s_sight * c_base
     c_sight = np.where(folded, 1.0, outward / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t28 * t28)
-    t46 = folded | short
-    A = np.maximum(t38, 0.0)
-    C = np.maximum(t41, 0.0)
-    t47 = A * C
-    S = t28 + reach
-    B = np.maximum(t40, 0.0)
-    t48 = S * B
-    at_base = t47 + t48
-    c_base = np.where(t46, 1.0, -((t47 - t48) / at_base))
-    t49 = c_sight * c_base
-    s_sight = np.where(folded, 0.0, t30 / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = np.where(t46, 0.0, area_front_elbow_down_alike / at_base)
-    t50 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t49 - t50
-    c_lag = np.where(short, 1.0, a_3W / fore)
-    t51 = A * S
-    t52 = C * B
-    at_elbow = t51 + t52
-    c_elbow = np.where(short, 1.0, -((t51 - t52) / at_elbow))
-    t53 = c_lag * c_elbow
-    s_lag = np.where(short, 0.0, L_2W / fore)
-    s_elbow_front_elbow_down_alike = np.where(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t54 = s_lag * s_elbow_front_elbow_down_alike
-    c_bend = t53 + t54
-    t55 = s_sight * c_base
-    t56 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t55 + t56
-    t57 = s_lag * c_elbow
-    t58 = c_lag * s_elbow_front_elbow_down_alike
-    s_bend = t57 - t58
-    ctheta23A = ctheta2A * c_bend - stheta2A * s_bend
-    stheta23A = stheta2A * c_bend + ctheta2A * s_bend
-    t59 = s_psi * ctheta23A / t3 + s_phi * stheta23A / c_phi
-    t60 = d * t59
-    t61 = a3 * stheta23A + (L1 * stheta2A - L2 * ctheta23A)
-    t62 = t60 - t61
-    t63 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t3
-    t64 = d * t63
-    t65 = a3 * ctheta23A + (L1 * ctheta2A + L2 * stheta23A)
-    t66 = t64 - t65
-    reach_right = np.sqrt(t62 * t62 + t66 * t66)
-    t67 = t43 - reach_right
-    t68 = L1 - fore_right
-    t69 = t68 + reach_right
-    t70 = reach_right - t68
-    t71 = t42 & (t44 <= t67) & (t44 <= t69) & (t44 <= t70)
-    h_left = t60 + t61
-    r_left = t64 + t65
-    reach_left = np.sqrt(h_left * h_left + r_left * r_left)
-    t72 = t43 - reach_left
-    t73 = t68 + reach_left
-    t74 = reach_left - t68
-    t75 = t71 & (t44 <= t72) & (t44 <= t73) & (t44 <= t74)
-    unreachable = np.logical_not(t75)
-    t76 = _runtime.poison(invalid | unreachable)
-    t77 = t16 + t76
-    t78 = _runtime.VANISHING * t43
-    folded_right = reach_right <= t78
-    t79 = np.where(folded_right, 0.0, np.arctan2(-t62, -t66))
-    short_right = L1 * fore_right <= _runtime.VANISHING * (t43 * t43)
-    t80 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t81 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t82 = 2.0 * np.where(0.0 <= t80 + t81, -1.0, 1.0)
-    rA_right = np.sqrt(np.maximum(t67, t78))
-    rC_right = np.sqrt(np.maximum(t70, t78))
-    rS_right = np.sqrt(t43 + reach_right)
-    rB_right = np.sqrt(np.maximum(t69, t78))
-    t83 = np.arctan2(rA_right * rC_right, rS_right * rB_right)
-    t84 = np.where(folded_right | short_right, 0.0, t82 * t83)
-    t85 = _runtime.wrap(t79 - t84) + t76
-    t86 = np.arctan2(np.where(short_right, 0.0, L2 / fore_right), np.where(short_right, 1.0, a3 / fore_right))
-    t87 = np.arctan2(rA_right * rS_right, rC_right * rB_right)
-    t88 = _runtime.wrap(np.where(short_right, 0.0, t86 + t82 * t87))
-    t89 = t88 + t76
-    folded_left = reach_left <= t78
-    t90 = np.where(folded_left, 0.0, np.arctan2(h_left, r_left))
-    rA_left = np.sqrt(np.maximum(t72, 0.0))
-    rC_left = np.sqrt(np.maximum(t74, 0.0))
-    rS_left = np.sqrt(t43 + reach_left)
-    rB_left = np.sqrt(np.maximum(t73, 0.0))
-    t91 = np.arctan2(rA_left * rC_left, rS_left * rB_left)
-    t92 = np.where(folded_left | short_right, 0.0, t82 * t91)
-    t93 = np.arctan2(rA_left * rS_left, rC_left * rB_left)
-    t94 = t82 * t93
-    t95 = _runtime.wrap(np.where(short_right, 0.0, t86 + t94))
-    t96 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    t97 = t96 + t76
-    t98 = _runtime.wrap(np.where(short_right, 0.0, t86 - t94))
-    ctheta2A_front_elbow_down_alike = t49 + t50
-    c_bend_front_elbow_down_alike = t53 - t54
-    t99 = ctheta2A_front_elbow_down_alike * c_bend_front_elbow_down_alike
-    stheta2A_front_elbow_down_alike = t55 - t56
-    s_bend_front_elbow_down_alike = t57 + t58
-    t100 = stheta2A_front_elbow_down_alike * s_bend_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t99 - t100
-    t101 = s_psi * ctheta23A_front_elbow_down_alike / t3
-    t102 = stheta2A_front_elbow_down_alike * c_bend_front_elbow_down_alike
-    t103 = ctheta2A_front_elbow_down_alike * s_bend_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t102 + t103
-    t104 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t105 = d * (t101 + t104)
-    t106 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    t107 = a3 * stheta23A_front_elbow_down_alike + t106
-    t108 = t105 - t107
-    t109 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t110 = s_psi * stheta23A_front_elbow_down_alike / t3
-    t111 = d * (t109 - t110)
-    t112 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    t113 = a3 * ctheta23A_front_elbow_down_alike + t112
-    t114 = t111 - t113
-    reach_right_front_elbow_down_alike = np.sqrt(t108 * t108 + t114 * t114)
-    t115 = t43 - reach_right_front_elbow_down_alike
-    t116 = t68 + reach_right_front_elbow_down_alike
-    t117 = reach_right_front_elbow_down_alike - t68
-    t118 = t42 & (t44 <= t115) & (t44 <= t116) & (t44 <= t117)
-    h_left_front_elbow_down_alike = t105 + t107
-    t119 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = t111 + t113
-    t120 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    reach_left_front_elbow_down_alike = np.sqrt(t119 + t120)
-    t121 = t43 - reach_left_front_elbow_down_alike
-    t122 = t68 + reach_left_front_elbow_down_alike
-    t123 = reach_left_front_elbow_down_alike - t68
-    t124 = t118 & (t44 <= t121) & (t44 <= t122) & (t44 <= t123)
-    unreachable_2 = np.logical_not(t124)
-    t125 = _runtime.poison(invalid | unreachable_2)
-    t126 = t16 + t125
-    folded_right_front_elbow_down_alike = reach_right_front_elbow_down_alike <= t78
-    t127 = np.where(folded_right_front_elbow_down_alike, 0.0, np.arctan2(-t108, -t114))
-    t128 = folded_right_front_elbow_down_alike | short_right
-    t129 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t130 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t131 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t132 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t133 = 0.0 <= L2 * (t129 + t130) + a3 * (t131 - t132)
-    t134 = 2.0 * np.where(t133, -1.0, 1.0)
-    rA_right_front_elbow_down_alike = np.sqrt(np.maximum(t115, t78))
-    rC_right_front_elbow_down_alike = np.sqrt(np.maximum(t117, t78))
-    t135 = rA_right_front_elbow_down_alike * rC_right_front_elbow_down_alike
-    rS_right_front_elbow_down_alike = np.sqrt(t43 + reach_right_front_elbow_down_alike)
-    rB_right_front_elbow_down_alike = np.sqrt(np.maximum(t116, t78))
-    t136 = rS_right_front_elbow_down_alike * rB_right_front_elbow_down_alike
-    t137 = np.where(t128, 0.0, t134 * np.arctan2(t135, t136))
-    t138 = _runtime.wrap(t127 - t137) + t125
-    t139 = rA_right_front_elbow_down_alike * rS_right_front_elbow_down_alike
-    t140 = rC_right_front_elbow_down_alike * rB_right_front_elbow_down_alike
-    t141 = np.where(short_right, 0.0, t86 + t134 * np.arctan2(t139, t140))
-    t142 = _runtime.wrap(t141) + t125
-    folded_left_front_elbow_down_alike = reach_left_front_elbow_down_alike <= t78
-    t143 = np.arctan2(h_left_front_elbow_down_alike, r_left_front_elbow_down_alike)
-    t144 = np.where(folded_left_front_elbow_down_alike, 0.0, t143)
-    t145 = folded_left_front_elbow_down_alike | short_right
-    rA_left_front_elbow_down_alike = np.sqrt(np.maximum(t121, 0.0))
-    rC_left_front_elbow_down_alike = np.sqrt(np.maximum(t123, 0.0))
-    t146 = rA_left_front_elbow_down_alike * rC_left_front_elbow_down_alike
-    rS_left_front_elbow_down_alike = np.sqrt(t43 + reach_left_front_elbow_down_alike)
-    rB_left_front_elbow_down_alike = np.sqrt(np.maximum(t122, 0.0))
-    t147 = rS_left_front_elbow_down_alike * rB_left_front_elbow_down_alike
-    t148 = np.where(t145, 0.0, t134 * np.arctan2(t146, t147))
-    t149 = rA_left_front_elbow_down_alike * rS_left_front_elbow_down_alike
-    t150 = rC_left_front_elbow_down_alike * rB_left_front_elbow_down_alike
-    t151 = t134 * np.arctan2(t149, t150)
-    t152 = _runtime.wrap(np.where(short_right, 0.0, t86 + t151))
-    t153 = t96 + t125
-    t154 = _runtime.wrap(np.where(short_right, 0.0, t86 - t151))
-    t155 = _runtime.wrap(-np.where(nowhere, 0.0, t1 + t15))
-    t156 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
-    outward_rear_elbow_up_alike = t156 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
-    t157 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t31 + t157)
-    t158 = t28 - reach_rear_elbow_up_alike
-    t159 = reach_rear_elbow_up_alike + t39
-    t160 = reach_rear_elbow_up_alike - t39
-    t161 = t27 & (t29 <= t158) & (t29 <= t159) & (t29 <= t160)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t45
-    t162 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t162)
-    t163 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t158, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t160, 0.0)
-    t164 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
-    S_rear_elbow_up_alike = t28 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t159, 0.0)
-    t165 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t164 + t165
-    t166 = -((t164 - t165) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = np.where(t163, 1.0, t166)
-    t167 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t30 / reach_rear_elbow_up_alike)
-    t168 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t168 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t169 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = np.where(t163, 0.0, t169)
-    t170 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t167 + t170
-    t171 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t172 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t171 + t172
-    t173 = -((t171 - t172) / at_elbow_rear_elbow_up_alike)
-    c_elbow_rear_elbow_up_alike = np.where(short, 1.0, t173)
-    t174 = c_lag * c_elbow_rear_elbow_up_alike
-    t175 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_elbow_rear_elbow_up_alike = np.where(short, 0.0, t175)
-    t176 = s_lag * s_elbow_rear_elbow_up_alike
-    c_bend_rear_elbow_up_alike = t174 - t176
-    t177 = ctheta2A_rear_elbow_up_alike * c_bend_rear_elbow_up_alike
-    t178 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t179 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t178 - t179
-    t180 = s_lag * c_elbow_rear_elbow_up_alike
-    t181 = c_lag * s_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = t180 + t181
-    t182 = stheta2A_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t177 - t182
-    t183 = stheta2A_rear_elbow_up_alike * c_bend_rear_elbow_up_alike
-    t184 = ctheta2A_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t183 + t184
-    t185 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t186 = s_psi * ctheta23A_rear_elbow_up_alike / t3 + t185
-    t187 = d * t186
-    t188 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    t189 = a3 * stheta23A_rear_elbow_up_alike + t188
-    t190 = t187 - t189
-    t191 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t192 = t191 - s_psi * stheta23A_rear_elbow_up_alike / t3
-    t193 = d * t192
-    t194 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    t195 = a3 * ctheta23A_rear_elbow_up_alike + t194
-    t196 = t193 - t195
-    reach_right_rear_elbow_up_alike = np.sqrt(t190 * t190 + t196 * t196)
-    t197 = t43 - reach_right_rear_elbow_up_alike
-    t198 = t68 + reach_right_rear_elbow_up_alike
-    t199 = reach_right_rear_elbow_up_alike - t68
-    t200 = t161 & (t44 <= t197) & (t44 <= t198) & (t44 <= t199)
-    h_left_rear_elbow_up_alike = t187 + t189
-    t201 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = t193 + t195
-    t202 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    reach_left_rear_elbow_up_alike = np.sqrt(t201 + t202)
-    t203 = t43 - reach_left_rear_elbow_up_alike
-    t204 = t68 + reach_left_rear_elbow_up_alike
-    t205 = reach_left_rear_elbow_up_alike - t68
-    t206 = t200 & (t44 <= t203) & (t44 <= t204) & (t44 <= t205)
-    unreachable_3 = np.logical_not(t206)
-    t207 = _runtime.poison(invalid | unreachable_3)
-    t208 = t155 + t207
-    folded_right_rear_elbow_up_alike = reach_right_rear_elbow_up_alike <= t78
-    t209 = np.where(folded_right_rear_elbow_up_alike, 0.0, np.arctan2(-t190, -t196))
-    t210 = folded_right_rear_elbow_up_alike | short_right
-    t211 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t212 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t213 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t214 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t215 = 0.0 <= L2 * (t211 + t212) + a3 * (t213 - t214)
-    t216 = 2.0 * np.where(t215, -1.0, 1.0)
-    rA_right_rear_elbow_up_alike = np.sqrt(np.maximum(t197, t78))
-    rC_right_rear_elbow_up_alike = np.sqrt(np.maximum(t199, t78))
-    t217 = rA_right_rear_elbow_up_alike * rC_right_rear_elbow_up_alike
-    rS_right_rear_elbow_up_alike = np.sqrt(t43 + reach_right_rear_elbow_up_alike)
-    rB_right_rear_elbow_up_alike = np.sqrt(np.maximum(t198, t78))
-    t218 = rS_right_rear_elbow_up_alike * rB_right_rear_elbow_up_alike
-    t219 = np.where(t210, 0.0, t216 * np.arctan2(t217, t218))
-    t220 = _runtime.wrap(t209 - t219) + t207
-    t221 = rA_right_rear_elbow_up_alike * rS_right_rear_elbow_up_alike
-    t222 = rC_right_rear_elbow_up_alike * rB_right_rear_elbow_up_alike
-    t223 = np.where(short_right, 0.0, t86 + t216 * np.arctan2(t221, t222))
-    t224 = _runtime.wrap(t223) + t207
-    folded_left_rear_elbow_up_alike = reach_left_rear_elbow_up_alike <= t78
-    t225 = np.arctan2(h_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike)
-    t226 = np.where(folded_left_rear_elbow_up_alike, 0.0, t225)
-    t227 = folded_left_rear_elbow_up_alike | short_right
-    rA_left_rear_elbow_up_alike = np.sqrt(np.maximum(t203, 0.0))
-    rC_left_rear_elbow_up_alike = np.sqrt(np.maximum(t205, 0.0))
-    t228 = rA_left_rear_elbow_up_alike * rC_left_rear_elbow_up_alike
-    rS_left_rear_elbow_up_alike = np.sqrt(t43 + reach_left_rear_elbow_up_alike)
-    rB_left_rear_elbow_up_alike = np.sqrt(np.maximum(t204, 0.0))
-    t229 = rS_left_rear_elbow_up_alike * rB_left_rear_elbow_up_alike
-    t230 = np.where(t227, 0.0, t216 * np.arctan2(t228, t229))
-    t231 = rA_left_rear_elbow_up_alike * rS_left_rear_elbow_up_alike
-    t232 = rC_left_rear_elbow_up_alike * rB_left_rear_elbow_up_alike
-    t233 = t216 * np.arctan2(t231, t232)
-    t234 = _runtime.wrap(np.where(short_right, 0.0, t86 + t233))
-    t235 = t96 + t207
-    t236 = _runtime.wrap(np.where(short_right, 0.0, t86 - t233))
-    ctheta2A_rear_elbow_down_alike = t167 - t170
-    c_bend_rear_elbow_down_alike = t174 + t176
-    t237 = ctheta2A_rear_elbow_down_alike * c_bend_rear_elbow_down_alike
-    stheta2A_rear_elbow_down_alike = t178 + t179
-    s_bend_rear_elbow_down_alike = t180 - t181
-    t238 = stheta2A_rear_elbow_down_alike * s_bend_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t237 - t238
-    t239 = stheta2A_rear_elbow_down_alike * c_bend_rear_elbow_down_alike
-    t240 = ctheta2A_rear_elbow_down_alike * s_bend_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t239 + t240
-    t241 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t242 = s_psi * ctheta23A_rear_elbow_down_alike / t3 + t241
-    t243 = d * t242
-    t244 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    t245 = a3 * stheta23A_rear_elbow_down_alike + t244
-    t246 = t243 - t245
-    t247 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t248 = t247 - s_psi * stheta23A_rear_elbow_down_alike / t3
-    t249 = d * t248
-    t250 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    t251 = a3 * ctheta23A_rear_elbow_down_alike + t250
-    t252 = t249 - t251
-    reach_right_rear_elbow_down_alike = np.sqrt(t246 * t246 + t252 * t252)
-    t253 = t43 - reach_right_rear_elbow_down_alike
-    t254 = t68 + reach_right_rear_elbow_down_alike
-    t255 = reach_right_rear_elbow_down_alike - t68
-    t256 = t161 & (t44 <= t253) & (t44 <= t254) & (t44 <= t255)
-    h_left_rear_elbow_down_alike = t243 + t245
-    t257 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = t249 + t251
-    t258 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    reach_left_rear_elbow_down_alike = np.sqrt(t257 + t258)
-    t259 = t43 - reach_left_rear_elbow_down_alike
-    t260 = t68 + reach_left_rear_elbow_down_alike
-    t261 = reach_left_rear_elbow_down_alike - t68
-    t262 = t256 & (t44 <= t259) & (t44 <= t260) & (t44 <= t261)
-    unreachable_4 = np.logical_not(t262)
-    t263 = _runtime.poison(invalid | unreachable_4)
-    t264 = t155 + t263
-    folded_right_rear_elbow_down_alike = reach_right_rear_elbow_down_alike <= t78
-    t265 = np.where(folded_right_rear_elbow_down_alike, 0.0, np.arctan2(-t246, -t252))
-    t266 = folded_right_rear_elbow_down_alike | short_right
-    t267 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t268 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t269 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t270 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t271 = 0.0 <= L2 * (t267 + t268) + a3 * (t269 - t270)
-    t272 = 2.0 * np.where(t271, -1.0, 1.0)
-    rA_right_rear_elbow_down_alike = np.sqrt(np.maximum(t253, t78))
-    rC_right_rear_elbow_down_alike = np.sqrt(np.maximum(t255, t78))
-    t273 = rA_right_rear_elbow_down_alike * rC_right_rear_elbow_down_alike
-    rS_right_rear_elbow_down_alike = np.sqrt(t43 + reach_right_rear_elbow_down_alike)
-    rB_right_rear_elbow_down_alike = np.sqrt(np.maximum(t254, t78))
-    t274 = rS_right_rear_elbow_down_alike * rB_right_rear_elbow_down_alike
-    t275 = np.where(t266, 0.0, t272 * np.arctan2(t273, t274))
-    t276 = _runtime.wrap(t265 - t275) + t263
-    t277 = rA_right_rear_elbow_down_alike * rS_right_rear_elbow_down_alike
-    t278 = rC_right_rear_elbow_down_alike * rB_right_rear_elbow_down_alike
-    t279 = np.where(short_right, 0.0, t86 + t272 * np.arctan2(t277, t278))
-    t280 = _runtime.wrap(t279) + t263
-    folded_left_rear_elbow_down_alike = reach_left_rear_elbow_down_alike <= t78
-    t281 = np.arctan2(h_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike)
-    t282 = np.where(folded_left_rear_elbow_down_alike, 0.0, t281)
-    t283 = folded_left_rear_elbow_down_alike | short_right
-    rA_left_rear_elbow_down_alike = np.sqrt(np.maximum(t259, 0.0))
-    rC_left_rear_elbow_down_alike = np.sqrt(np.maximum(t261, 0.0))
-    t284 = rA_left_rear_elbow_down_alike * rC_left_rear_elbow_down_alike
-    rS_left_rear_elbow_down_alike = np.sqrt(t43 + reach_left_rear_elbow_down_alike)
-    rB_left_rear_elbow_down_alike = np.sqrt(np.maximum(t260, 0.0))
-    t285 = rS_left_rear_elbow_down_alike * rB_left_rear_elbow_down_alike
-    t286 = np.where(t283, 0.0, t272 * np.arctan2(t284, t285))
-    t287 = rA_left_rear_elbow_down_alike * rS_left_rear_elbow_down_alike
-    t288 = rC_left_rear_elbow_down_alike * rB_left_rear_elbow_down_alike
-    t289 = t272 * np.arctan2(t287, t288)
-    t290 = _runtime.wrap(np.where(short_right, 0.0, t86 + t289))
-    t291 = t96 + t263
-    t292 = _runtime.wrap(np.where(short_right, 0.0, t86 - t289))
-    t293 = nowhere | folded | short
-    t294 = t293 | folded_right | short_right | folded_left
-    t295 = _runtime.status(invalid, unreachable, t294)
-    t296 = t293 | folded_right_front_elbow_down_alike | short_right
-    t297 = _runtime.status(invalid, unreachable_2, t296 | folded_left_front_elbow_down_alike)
-    t298 = nowhere | folded_rear_elbow_up_alike | short
-    t299 = t298 | folded_right_rear_elbow_up_alike | short_right
-    t300 = _runtime.status(invalid, unreachable_3, t299 | folded_left_rear_elbow_up_alike)
-    t301 = t298 | folded_right_rear_elbow_down_alike | short_right
-    t302 = _runtime.status(invalid, unreachable_4, t301 | folded_left_rear_elbow_down_alike)
+    s_base_front_elbow_down_alike = np.where(t49, 0.0, area_front_elbow_down_alike / at_base)
+    t53 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t52 + t53
+    t54 = c_sight * c_base
+    t55 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t54 - t55
+    bare = fore <= t48
+    c_lag = np.where(bare, 1.0, a_3W / fore)
+    t56 = A * S
+    t57 = C * B
+    at_elbow = t56 + t57
+    c_bend = np.where(short, 1.0, -((t56 - t57) / at_elbow))
+    t58 = c_lag * c_bend
+    s_lag = np.where(bare, 0.0, L_2W / fore)
+    s_bend_front_elbow_down_alike = np.where(short, 0.0, area_front_elbow_down_alike / at_elbow)
+    t59 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t58 + t59
+    t60 = s_lag * c_bend
+    t61 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t60 - t61
+    ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
+    stheta23A = c_relative * stheta2A + ctheta2A * s_relative
+    t62 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t63 = L2 * t62 - a3 * c_elbow
+    t64 = 0.0 <= -t63
+    t65 = L2 * c_elbow + a3 * t62
+    large = fore_arm + np.where(t64, -t63, t63)
+    small = t65 * t65 / large
+    N = t47 * np.where(t64, small, large)
+    t66 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t67 = d * t66
+    t68 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
+    t69 = d * t68
+    gap = t67 * t67 + t69 * t69
+    point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
+    point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
+    t70 = 2.0 * t67 * point_11 + 2.0 * t69 * point_21
+    t71 = gap - t70
+    t72 = N - t71
+    M = t47 * np.where(t64, large, small)
+    t73 = M + t71
+    t74 = gap + t70
+    t75 = N - t74
+    t76 = t43 & (t46 <= t72) & (t46 <= t73) & (t46 <= t75)
+    t77 = M + t74
+    unreachable = np.logical_not(t76 & (t46 <= t77))
+    t78 = _runtime.poison(invalid | unreachable)
+    t79 = t17 + t78
+    t80 = t69 - point_21
+    t81 = t67 - point_11
+    t82 = _runtime.VANISHING * t44
+    folded_right = np.sqrt(t80 * t80 + t81 * t81) <= t82
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t45
+    t83 = 2.0 * np.where(0.0 <= -t65, 1.0, -1.0)
+    t84 = _runtime.VANISHING * (_runtime.VANISHING * (t45 * 16.0))
+    N_right = np.maximum(t72, t84)
+    rN_right = np.sqrt(N_right)
+    M_right = np.maximum(t73, t84)
+    rM_right = np.sqrt(M_right)
+    whole_right = N_right + M_right
+    s_bend_right = np.where(short_right, 0.0, t83 * rN_right * rM_right / whole_right)
+    t85 = fore_arm * s_bend_right
+    c_bend_right = np.where(short_right, 1.0, -((N_right - M_right) / whole_right))
+    ahead_1_right = L1 + fore_arm * c_bend_right
+    t86 = np.arctan2(t81 * t85 - t80 * ahead_1_right, -(t81 * ahead_1_right + t80 * t85))
+    t87 = _runtime.wrap(np.where(folded_right, 0.0, t86))
+    t88 = t87 + t78
+    bare_right = fore_arm <= t82
+    t89 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
+    t90 = np.where(short_right, 0.0, t83 * np.arctan2(rN_right, rM_right))
+    t91 = _runtime.wrap(t89 + t90) + t78
+    h_left = t69 + point_21
+    r_left = t67 + point_11
+    folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t82
+    N_left = np.maximum(t75, 0.0)
+    M_left = np.maximum(t77, 0.0)
+    whole_left = N_left + M_left
+    c_bend_left = np.where(short_right, 1.0, -((N_left - M_left) / whole_left))
+    ahead_1_left = L1 + fore_arm * c_bend_left
+    t92 = h_left * ahead_1_left
+    rN_left = np.sqrt(N_left)
+    rM_left = np.sqrt(M_left)
+    s_bend_left = np.where(short_right, 0.0, t83 * rN_left * rM_left / whole_left)
+    t93 = fore_arm * s_bend_left
+    t94 = r_left * t93
+    t95 = r_left * ahead_1_left
+    t96 = h_left * t93
+    t97 = np.where(folded_left, 0.0, np.arctan2(t92 - t94, t95 + t96))
+    t98 = np.where(short_right, 0.0, t83 * np.arctan2(rN_left, rM_left))
+    t99 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
+    t100 = t99 + t78
+    t101 = np.where(folded_left, 0.0, np.arctan2(t92 + t94, t95 - t96))
+    stheta2A_front_elbow_down_alike = t52 - t53
+    ctheta2A_front_elbow_down_alike = t54 + t55
+    c_relative_front_elbow_down_alike = t58 - t59
+    t102 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t60 + t61
+    t103 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t102 - t103
+    t104 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t105 = c_relative_front_elbow_down_alike * stheta2A_front_elbow_down_alike
+    t106 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t105 + t106
+    t107 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t108 = t104 - t107
+    t109 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t110 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t109 + t110
+    t111 = L2 * t108 - a3 * c_elbow_front_elbow_down_alike
+    t112 = 0.0 <= -t111
+    t113 = L2 * c_elbow_front_elbow_down_alike + a3 * t108
+    large_front_elbow_down_alike = fore_arm + np.where(t112, -t111, t111)
+    small_front_elbow_down_alike = t113 * t113 / large_front_elbow_down_alike
+    t114 = np.where(t112, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    N_front_elbow_down_alike = t47 * t114
+    t115 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t116 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t117 = d * (t115 - t116)
+    t118 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t119 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t120 = d * (t118 + t119)
+    gap_front_elbow_down_alike = t117 * t117 + t120 * t120
+    t121 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t121 + a3 * ctheta23A_front_elbow_down_alike
+    t122 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t122 + a3 * stheta23A_front_elbow_down_alike
+    t123 = 2.0 * t117 * point_11_front_elbow_down_alike + 2.0 * t120 * point_21_front_elbow_down_alike
+    t124 = gap_front_elbow_down_alike - t123
+    t125 = N_front_elbow_down_alike - t124
+    t126 = np.where(t112, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    M_front_elbow_down_alike = t47 * t126
+    t127 = M_front_elbow_down_alike + t124
+    t128 = gap_front_elbow_down_alike + t123
+    t129 = N_front_elbow_down_alike - t128
+    t130 = t43 & (t46 <= t125) & (t46 <= t127) & (t46 <= t129)
+    t131 = M_front_elbow_down_alike + t128
+    unreachable_2 = np.logical_not(t130 & (t46 <= t131))
+    t132 = _runtime.poison(invalid | unreachable_2)
+    t133 = t17 + t132
+    t134 = t120 - point_21_front_elbow_down_alike
+    t135 = t117 - point_11_front_elbow_down_alike
+    folded_right_front_elbow_down_alike = np.sqrt(t134 * t134 + t135 * t135) <= t82
+    t136 = 2.0 * np.where(0.0 <= -t113, 1.0, -1.0)
+    N_right_front_elbow_down_alike = np.maximum(t125, t84)
+    rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
+    M_right_front_elbow_down_alike = np.maximum(t127, t84)
+    rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
+    t137 = t136 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    whole_right_front_elbow_down_alike = N_right_front_elbow_down_alike + M_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t137 / whole_right_front_elbow_down_alike)
+    t138 = fore_arm * s_bend_right_front_elbow_down_alike
+    t139 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
+    c_bend_right_front_elbow_down_alike = np.where(short_right, 1.0, -(t139 / whole_right_front_elbow_down_alike))
+    t140 = fore_arm * c_bend_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = L1 + t140
+    up_right_front_elbow_down_alike = t135 * t138 - t134 * ahead_1_right_front_elbow_down_alike
+    t141 = t135 * ahead_1_right_front_elbow_down_alike + t134 * t138
+    t142 = np.arctan2(up_right_front_elbow_down_alike, -t141)
+    t143 = np.where(folded_right_front_elbow_down_alike, 0.0, t142)
+    t144 = _runtime.wrap(t143) + t132
+    t145 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t146 = t89 + np.where(short_right, 0.0, t136 * t145)
+    t147 = _runtime.wrap(t146) + t132
+    h_left_front_elbow_down_alike = t120 + point_21_front_elbow_down_alike
+    t148 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = t117 + point_11_front_elbow_down_alike
+    t149 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    folded_left_front_elbow_down_alike = np.sqrt(t148 + t149) <= t82
+    N_left_front_elbow_down_alike = np.maximum(t129, 0.0)
+    M_left_front_elbow_down_alike = np.maximum(t131, 0.0)
+    t150 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
+    whole_left_front_elbow_down_alike = N_left_front_elbow_down_alike + M_left_front_elbow_down_alike
+    c_bend_left_front_elbow_down_alike = np.where(short_right, 1.0, -(t150 / whole_left_front_elbow_down_alike))
+    t151 = fore_arm * c_bend_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = L1 + t151
+    t152 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
+    rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
+    t153 = t136 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t153 / whole_left_front_elbow_down_alike)
+    t154 = fore_arm * s_bend_left_front_elbow_down_alike
+    t155 = r_left_front_elbow_down_alike * t154
+    t156 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t157 = h_left_front_elbow_down_alike * t154
+    t158 = np.where(folded_left_front_elbow_down_alike, 0.0, np.arctan2(t152 - t155, t156 + t157))
+    t159 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t160 = np.where(short_right, 0.0, t136 * t159)
+    t161 = t99 + t132
+    t162 = np.where(folded_left_front_elbow_down_alike, 0.0, np.arctan2(t152 + t155, t156 - t157))
+    t163 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t16))
+    t164 = x * np.where(nowhere, 1.0, -((t34 + t35) / h))
+    outward_rear_elbow_up_alike = t164 + y * np.where(nowhere, 0.0, (t37 - t38) / h)
+    t165 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t32 + t165)
+    t166 = t29 - reach_rear_elbow_up_alike
+    t167 = reach_rear_elbow_up_alike + t40
+    t168 = reach_rear_elbow_up_alike - t40
+    t169 = t28 & (t30 <= t166) & (t30 <= t167) & (t30 <= t168)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t48
+    s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t31 / reach_rear_elbow_up_alike)
+    t170 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t166, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t168, 0.0)
+    t171 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    S_rear_elbow_up_alike = t29 + reach_rear_elbow_up_alike
+    B_rear_elbow_up_alike = np.maximum(t167, 0.0)
+    t172 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t171 + t172
+    t173 = -((t171 - t172) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = np.where(t170, 1.0, t173)
+    t174 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t175 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t175)
+    t176 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t176 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t177 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = np.where(t170, 0.0, t177)
+    t178 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t174 - t178
+    t179 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t180 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t179 + t180
+    t181 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t182 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t181 + t182
+    t183 = -((t181 - t182) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t183)
+    t184 = c_lag * c_bend_rear_elbow_up_alike
+    t185 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t185)
+    t186 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t184 - t186
+    t187 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t188 = s_lag * c_bend_rear_elbow_up_alike
+    t189 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t188 + t189
+    t190 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t187 - t190
+    t191 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t192 = c_relative_rear_elbow_up_alike * stheta2A_rear_elbow_up_alike
+    t193 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t192 + t193
+    t194 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t195 = t191 - t194
+    t196 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t197 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t196 + t197
+    t198 = L2 * t195 - a3 * c_elbow_rear_elbow_up_alike
+    t199 = 0.0 <= -t198
+    t200 = L2 * c_elbow_rear_elbow_up_alike + a3 * t195
+    large_rear_elbow_up_alike = fore_arm + np.where(t199, -t198, t198)
+    small_rear_elbow_up_alike = t200 * t200 / large_rear_elbow_up_alike
+    t201 = np.where(t199, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    N_rear_elbow_up_alike = t47 * t201
+    t202 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t203 = t202 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t204 = d * t203
+    t205 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t206 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t205
+    t207 = d * t206
+    gap_rear_elbow_up_alike = t204 * t204 + t207 * t207
+    t208 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t208 + a3 * ctheta23A_rear_elbow_up_alike
+    t209 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t209 + a3 * stheta23A_rear_elbow_up_alike
+    t210 = 2.0 * t204 * point_11_rear_elbow_up_alike + 2.0 * t207 * point_21_rear_elbow_up_alike
+    t211 = gap_rear_elbow_up_alike - t210
+    t212 = N_rear_elbow_up_alike - t211
+    t213 = np.where(t199, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    M_rear_elbow_up_alike = t47 * t213
+    t214 = M_rear_elbow_up_alike + t211
+    t215 = gap_rear_elbow_up_alike + t210
+    t216 = N_rear_elbow_up_alike - t215
+    t217 = t169 & (t46 <= t212) & (t46 <= t214) & (t46 <= t216)
+    t218 = M_rear_elbow_up_alike + t215
+    unreachable_3 = np.logical_not(t217 & (t46 <= t218))
+    t219 = _runtime.poison(invalid | unreachable_3)
+    t220 = t163 + t219
+    t221 = t207 - point_21_rear_elbow_up_alike
+    t222 = t204 - point_11_rear_elbow_up_alike
+    folded_right_rear_elbow_up_alike = np.sqrt(t221 * t221 + t222 * t222) <= t82
+    t223 = 2.0 * np.where(0.0 <= -t200, 1.0, -1.0)
+    N_right_rear_elbow_up_alike = np.maximum(t212, t84)
+    rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
+    M_right_rear_elbow_up_alike = np.maximum(t214, t84)
+    rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
+    t224 = t223 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    whole_right_rear_elbow_up_alike = N_right_rear_elbow_up_alike + M_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t224 / whole_right_rear_elbow_up_alike)
+    t225 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t226 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
+    c_bend_right_rear_elbow_up_alike = np.where(short_right, 1.0, -(t226 / whole_right_rear_elbow_up_alike))
+    ahead_1_right_rear_elbow_up_alike = L1 + fore_arm * c_bend_right_rear_elbow_up_alike
+    up_right_rear_elbow_up_alike = t222 * t225 - t221 * ahead_1_right_rear_elbow_up_alike
+    t227 = t222 * ahead_1_right_rear_elbow_up_alike + t221 * t225
+    t228 = np.arctan2(up_right_rear_elbow_up_alike, -t227)
+    t229 = np.where(folded_right_rear_elbow_up_alike, 0.0, t228)
+    t230 = _runtime.wrap(t229) + t219
+    t231 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t232 = t89 + np.where(short_right, 0.0, t223 * t231)
+    t233 = _runtime.wrap(t232) + t219
+    h_left_rear_elbow_up_alike = t207 + point_21_rear_elbow_up_alike
+    t234 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = t204 + point_11_rear_elbow_up_alike
+    t235 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    folded_left_rear_elbow_up_alike = np.sqrt(t234 + t235) <= t82
+    N_left_rear_elbow_up_alike = np.maximum(t216, 0.0)
+    M_left_rear_elbow_up_alike = np.maximum(t218, 0.0)
+    t236 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
+    whole_left_rear_elbow_up_alike = N_left_rear_elbow_up_alike + M_left_rear_elbow_up_alike
+    c_bend_left_rear_elbow_up_alike = np.where(short_right, 1.0, -(t236 / whole_left_rear_elbow_up_alike))
+    ahead_1_left_rear_elbow_up_alike = L1 + fore_arm * c_bend_left_rear_elbow_up_alike
+    t237 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
+    rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
+    t238 = t223 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t238 / whole_left_rear_elbow_up_alike)
+    t239 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t240 = r_left_rear_elbow_up_alike * t239
+    t241 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t242 = h_left_rear_elbow_up_alike * t239
+    t243 = np.where(folded_left_rear_elbow_up_alike, 0.0, np.arctan2(t237 - t240, t241 + t242))
+    t244 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t245 = np.where(short_right, 0.0, t223 * t244)
+    t246 = t99 + t219
+    t247 = np.where(folded_left_rear_elbow_up_alike, 0.0, np.arctan2(t237 + t240, t241 - t242))
+    stheta2A_rear_elbow_down_alike = t174 + t178
+    ctheta2A_rear_elbow_down_alike = t179 - t180
+    c_relative_rear_elbow_down_alike = t184 + t186
+    t248 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t188 - t189
+    t249 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t248 - t249
+    t250 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t251 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t252 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t251 + t252
+    t253 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t254 = t250 - t253
+    t255 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t256 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t255 + t256
+    t257 = L2 * t254 - a3 * c_elbow_rear_elbow_down_alike
+    t258 = 0.0 <= -t257
+    t259 = L2 * c_elbow_rear_elbow_down_alike + a3 * t254
+    large_rear_elbow_down_alike = fore_arm + np.where(t258, -t257, t257)
+    small_rear_elbow_down_alike = t259 * t259 / large_rear_elbow_down_alike
+    t260 = np.where(t258, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    N_rear_elbow_down_alike = t47 * t260
+    t261 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t262 = t261 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t263 = d * t262
+    t264 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t265 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t264
+    t266 = d * t265
+    gap_rear_elbow_down_alike = t263 * t263 + t266 * t266
+    t267 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t267 + a3 * ctheta23A_rear_elbow_down_alike
+    t268 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t268 + a3 * stheta23A_rear_elbow_down_alike
+    t269 = 2.0 * t263 * point_11_rear_elbow_down_alike + 2.0 * t266 * point_21_rear_elbow_down_alike
+    t270 = gap_rear_elbow_down_alike - t269
+    t271 = N_rear_elbow_down_alike - t270
+    t272 = np.where(t258, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    M_rear_elbow_down_alike = t47 * t272
+    t273 = M_rear_elbow_down_alike + t270
+    t274 = gap_rear_elbow_down_alike + t269
+    t275 = N_rear_elbow_down_alike - t274
+    t276 = t169 & (t46 <= t271) & (t46 <= t273) & (t46 <= t275)
+    t277 = M_rear_elbow_down_alike + t274
+    unreachable_4 = np.logical_not(t276 & (t46 <= t277))
+    t278 = _runtime.poison(invalid | unreachable_4)
+    t279 = t163 + t278
+    t280 = t266 - point_21_rear_elbow_down_alike
+    t281 = t263 - point_11_rear_elbow_down_alike
+    folded_right_rear_elbow_down_alike = np.sqrt(t280 * t280 + t281 * t281) <= t82
+    t282 = 2.0 * np.where(0.0 <= -t259, 1.0, -1.0)
+    N_right_rear_elbow_down_alike = np.maximum(t271, t84)
+    rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
+    M_right_rear_elbow_down_alike = np.maximum(t273, t84)
+    rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
+    t283 = t282 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    whole_right_rear_elbow_down_alike = N_right_rear_elbow_down_alike + M_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t283 / whole_right_rear_elbow_down_alike)
+    t284 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t285 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
+    c_bend_right_rear_elbow_down_alike = np.where(short_right, 1.0, -(t285 / whole_right_rear_elbow_down_alike))
+    t286 = fore_arm * c_bend_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = L1 + t286
+    up_right_rear_elbow_down_alike = t281 * t284 - t280 * ahead_1_right_rear_elbow_down_alike
+    t287 = t281 * ahead_1_right_rear_elbow_down_alike + t280 * t284
+    t288 = np.arctan2(up_right_rear_elbow_down_alike, -t287)
+    t289 = np.where(folded_right_rear_elbow_down_alike, 0.0, t288)
+    t290 = _runtime.wrap(t289) + t278
+    t291 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t292 = t89 + np.where(short_right, 0.0, t282 * t291)
+    t293 = _runtime.wrap(t292) + t278
+    h_left_rear_elbow_down_alike = t266 + point_21_rear_elbow_down_alike
+    t294 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = t263 + point_11_rear_elbow_down_alike
+    t295 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    folded_left_rear_elbow_down_alike = np.sqrt(t294 + t295) <= t82
+    N_left_rear_elbow_down_alike = np.maximum(t275, 0.0)
+    M_left_rear_elbow_down_alike = np.maximum(t277, 0.0)
+    t296 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
+    whole_left_rear_elbow_down_alike = N_left_rear_elbow_down_alike + M_left_rear_elbow_down_alike
+    c_bend_left_rear_elbow_down_alike = np.where(short_right, 1.0, -(t296 / whole_left_rear_elbow_down_alike))
+    ahead_1_left_rear_elbow_down_alike = L1 + fore_arm * c_bend_left_rear_elbow_down_alike
+    t297 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
+    rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
+    t298 = t282 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t298 / whole_left_rear_elbow_down_alike)
+    t299 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t300 = r_left_rear_elbow_down_alike * t299
+    t301 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t302 = h_left_rear_elbow_down_alike * t299
+    t303 = np.where(folded_left_rear_elbow_down_alike, 0.0, np.arctan2(t297 - t300, t301 + t302))
+    t304 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t305 = np.where(short_right, 0.0, t282 * t304)
+    t306 = t99 + t278
+    t307 = np.where(folded_left_rear_elbow_down_alike, 0.0, np.arctan2(t297 + t300, t301 - t302))
+    t308 = nowhere | folded | short
+    t309 = t308 | folded_right | short_right | folded_left
+    t310 = _runtime.status(invalid, unreachable, t309)
+    t311 = t308 | folded_right_front_elbow_down_alike | short_right
+    t312 = _runtime.status(invalid, unreachable_2, t311 | folded_left_front_elbow_down_alike)
+    t313 = nowhere | folded_rear_elbow_up_alike | short
+    t314 = t313 | folded_right_rear_elbow_up_alike | short_right
+    t315 = _runtime.status(invalid, unreachable_3, t314 | folded_left_rear_elbow_up_alike)
+    t316 = t313 | folded_right_rear_elbow_down_alike | short_right
+    t317 = _runtime.status(invalid, unreachable_4, t316 | folded_left_rear_elbow_down_alike)
     return (
-        t77,
-        t85,
-        t89,
-        _runtime.wrap(t90 - t92) + t76,
-        t95 + t76,
-        t97,
-        t77,
-        t85,
-        t89,
-        _runtime.wrap(t90 + t92) + t76,
-        t98 + t76,
-        t97,
-        t126,
-        t138,
-        t142,
-        _runtime.wrap(t144 - t148) + t125,
-        t152 + t125,
-        t153,
-        t126,
-        t138,
-        t142,
-        _runtime.wrap(t144 + t148) + t125,
-        t154 + t125,
-        t153,
-        t208,
+        t79,
+        t88,
+        t91,
+        _runtime.wrap(t97) + t78,
+        _runtime.wrap(t89 + t98) + t78,
+        t100,
+        t79,
+        t88,
+        t91,
+        _runtime.wrap(t101) + t78,
+        _runtime.wrap(t89 - t98) + t78,
+        t100,
+        t133,
+        t144,
+        t147,
+        _runtime.wrap(t158) + t132,
+        _runtime.wrap(t89 + t160) + t132,
+        t161,
+        t133,
+        t144,
+        t147,
+        _runtime.wrap(t162) + t132,
+        _runtime.wrap(t89 - t160) + t132,
+        t161,
         t220,
-        t224,
-        _runtime.wrap(t226 - t230) + t207,
-        t234 + t207,
-        t235,
-        t208,
+        t230,
+        t233,
+        _runtime.wrap(t243) + t219,
+        _runtime.wrap(t89 + t245) + t219,
+        t246,
         t220,
-        t224,
-        _runtime.wrap(t226 + t230) + t207,
-        t236 + t207,
-        t235,
-        t264,
-        t276,
-        t280,
-        _runtime.wrap(t282 - t286) + t263,
-        t290 + t263,
-        t291,
-        t264,
-        t276,
-        t280,
-        _runtime.wrap(t282 + t286) + t263,
-        t292 + t263,
-        t291,
-        t295,
-        t295,
-        t297,
-        t297,
-        t300,
-        t300,
-        t302,
-        t302,
+        t230,
+        t233,
+        _runtime.wrap(t247) + t219,
+        _runtime.wrap(t89 - t245) + t219,
+        t246,
+        t279,
+        t290,
+        t293,
+        _runtime.wrap(t303) + t278,
+        _runtime.wrap(t89 + t305) + t278,
+        t306,
+        t279,
+        t290,
+        t293,
+        _runtime.wrap(t307) + t278,
+        _runtime.wrap(t89 - t305) + t278,
+        t306,
+        t310,
+        t310,
+        t312,
+        t312,
+        t315,
+        t315,
+        t317,
+        t317,
     )
 
 

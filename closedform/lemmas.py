@@ -311,6 +311,7 @@ def two_link_arm_beside(
     unknowns: tuple[sp.Symbol, sp.Symbol],
     sigma: sp.Symbol,
     squares: tuple[sp.Expr, sp.Expr],
+    scale: sp.Expr,
     *,
     suffix: str = "",
     sided: bool = False,
@@ -321,14 +322,15 @@ def two_link_arm_beside(
     As :func:`two_link_arm`, for a fore-arm of length ``second``.  With the reach R the ``squares``
     are N = (l + f)^2 - R^2 and M = R^2 - (l - f)^2, so that tan(elbow / 2) = sqrt(N / M).  Taken
     from the target, N has lost all its digits where the arm is straight, and the elbow half of
-    them; an arm nearby gives them without a difference of nearly equal lengths.  ``sided`` keeps
+    them; an arm nearby gives them without a difference of nearly equal lengths.  ``scale`` is that
+    of the distance between both, which decides how far the target may be missed.  ``sided`` keeps
     the elbow from being quite straight, so that its side can be read from the answer.
     """
     upper, along, across = lengths
     r, h = target
-    size = (upper + second) ** 2
+    area = (upper + second) * scale
     N, M = (
-        program.bound(f"{name}{suffix}", value, size, meaning, positive=sided)
+        program.bound(f"{name}{suffix}", value, area, meaning, positive=sided)
         for name, value, meaning in (
             ("N", squares[0], "nearer than full stretch"),
             ("M", squares[1], "farther than the fold"),
@@ -449,6 +451,7 @@ def two_sines(
     u: tuple[sp.Expr, sp.Expr],
     v: tuple[sp.Expr, sp.Expr],
     p: tuple[sp.Expr, sp.Expr],
+    scale: sp.Expr,
     *,
     free: Sequence[sp.Symbol] = (),
 ) -> Lemma:
@@ -458,7 +461,8 @@ def two_sines(
     error of y does no harm where u and v are nearly parallel.  Where they are parallel a
     combination of the sines is free; the convention is y = 0.  The directions of u and v are known
     to a few units in the last place, so that a multiple of the usual tolerance counts as parallel.
-    Cosines are kept from zero, so that their sign can be read from the answer.
+    Cosines are kept from zero, so that their sign can be read from the answer.  ``scale`` is the
+    natural scale of p, which decides how far the equation may be missed.
     """
     x, y = unknowns
     area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
@@ -468,11 +472,12 @@ def two_sines(
     other = program.let("size_v", sp.sqrt(v[0] ** 2 + v[1] ** 2), nonnegative=True)
     uv = program.let("uv", sigma * (u[0] * v[1] - u[1] * v[0]))
     up = program.let("up", sigma * (u[0] * p[1] - u[1] * p[0]))
-    scale = size * other
-    parallel = program.vanishes("parallel", uv, 64 * scale, "both vectors are parallel", free)
-    cy, sy = _from_sine(program, y, up, uv, scale, parallel)
+    parallel = program.vanishes(
+        "parallel", uv, 64 * size * other, "both vectors are parallel", free
+    )
+    cy, sy = _from_sine(program, y, up, uv, size * scale, parallel)
     along = program.let("along", ((p[0] - sy * v[0]) * u[0] + (p[1] - sy * v[1]) * u[1]) / size)
-    cx, sx = _from_sine(program, x, along, size, size, sp.false)
+    cx, sx = _from_sine(program, x, along, size, scale, sp.false)
     return Lemma(
         "two sines",
         r"u\sin x + v\sin y = p,\ \cos x \ge 0,\ \cos y \ge 0 \;\Rightarrow\; "

@@ -348,7 +348,7 @@ ahead = p.let("ahead", m.d * sin(psi) / cos(psi))
 above = p.let("higher", m.d * sin(phi) / cos(phi))
 u = (p.let("u1", -m.L1 * sA), p.let("u2", m.L1 * cA))
 v = (p.let("v1", m.L2 * cB - m.a3 * sB), p.let("v2", m.L2 * sB + m.a3 * cB))
-half = two_sines(p, (alpha, beta), u, v, (ahead, above), free=(theta3R, theta3L))
+half = two_sines(p, (alpha, beta), u, v, (ahead, above), m.d, free=(theta3R, theta3L))
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
 joints = {theta1: theta1, theta2R: halves[theta2R], theta3R: halves[theta3R]}

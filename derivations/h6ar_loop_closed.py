@@ -201,6 +201,7 @@ def stand(p: Program) -> Posture:
         (theta2A, theta23A),
         side,
         (mean[0] + gap, mean[1] - gap),
+        m.d,
         suffix="_virtual",
     )
     upper, fore = (Pair(*virtual.pairs[angle]) for angle in (theta2A, theta23A))
@@ -396,6 +397,7 @@ for name, sigma, sign, unknowns in (
             unknowns,
             sigma,
             (N - sign * cross - gap, M + sign * cross + gap),
+            m.d,
             suffix=f"_{name}",
             sided=name == "right",
             free=unknowns[:1],

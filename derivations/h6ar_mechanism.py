@@ -238,8 +238,12 @@ def wrist_length(m: Dimensions, level: sp.Expr) -> sp.Expr:
 
 
 def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
-    """l_W and half the base line d / level, where ``level`` is the cosine it is tilted by."""
-    size = m.al + m.gs + m.d
+    """l_W and half the base line d / level, where ``level`` is the cosine it is tilted by.
+
+    The scale of the bounds is at most half of that in ``wrist_let``, times ``level``: what counts
+    as within reach here does so there.
+    """
+    size = m.d / 2
     program.bound("upright", cos(phi), sp.S.One, "the roll is less than a right angle")
     near = (m.al + m.gs) * level - m.d
     near = program.bound("near", near, size, "the wrist links are long enough")

@@ -4,15 +4,15 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 77 add, 84 compare and select, 3 atan2, 20 divide, 115 multiply, 6 sincos, 9 sqrt
- *   pose: 104 add, 81 compare and select, 20 divide, 154 multiply, 6 sincos, 9 sqrt
+ *   fk: 77 add, 84 compare and select, 3 atan2, 20 divide, 116 multiply, 6 sincos, 9 sqrt
+ *   pose: 104 add, 81 compare and select, 20 divide, 155 multiply, 6 sincos, 9 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
- *   jacobian: 212 add, 77 compare and select, 52 divide, 295 multiply, 6 sincos, 9 sqrt
- *   determinant: 84 add, 77 compare and select, 21 divide, 150 multiply, 5 sincos, 9 sqrt
- *   singularities: 89 add, 77 compare and select, 20 divide, 140 multiply, 5 sincos, 9 sqrt
- *   ik: 265 add, 285 compare and select, 24 atan2, 59 divide, 305 multiply, 3 sincos, 41 sqrt
- *   wrist_length: 6 add, 26 compare and select, 1 divide, 5 multiply, 2 sincos, 2 sqrt
+ *   jacobian: 212 add, 77 compare and select, 52 divide, 296 multiply, 6 sincos, 9 sqrt
+ *   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
+ *   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
+ *   ik: 264 add, 285 compare and select, 24 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+ *   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
  *   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt

@@ -10,8 +10,8 @@
 #   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 191 add, 223 compare and select, 18 atan2, 43 divide, 235 multiply, 3 sincos, 40 sqrt
-#   wrist_length: 6 add, 26 compare and select, 1 divide, 4 multiply, 2 sincos, 2 sqrt
+#   ik: 190 add, 223 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
+#   wrist_length: 5 add, 26 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
 #   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -816,86 +816,86 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t2 = np.arctan2(x, y)
     t3 = lp * s_pitch
     t4 = d - c_psi * (gs - al)
-    t5 = gs + al
-    t6 = t5 * c_psi - d
-    t7 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t6, 0.0))
-    t8 = loff + t7 / c_psi + lp * c_pitch
-    t9 = s_psi * t8
-    t10 = s_phi * t3 - c_phi * t9
-    t11 = h + t10
-    below = np.maximum(t11, 0.0)
-    t12 = np.sqrt(below)
-    t13 = h - t10
-    above = np.maximum(t13, 0.0)
-    t14 = np.sqrt(above)
-    t15 = 2.0 * np.arctan2(t12, t14)
-    t16 = _runtime.wrap(-np.where(nowhere, 0.0, t2 - t15))
-    t17 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t18 = t17 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t19 = t18 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
-    t20 = t19 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
-    t21 = t20 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t22 = t21 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t23 = t22 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    invalid = np.logical_not(t23 & (0.0 <= loff) & (0.0 <= lp))
-    t24 = -(_runtime.FEASIBILITY * (d + t5))
-    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t6)
-    t26 = -(_runtime.FEASIBILITY * t1)
-    t27 = t25 & (t24 <= t4) & (t26 <= t11) & (t26 <= t13)
-    L_2W = L2 + c_psi * t8
-    a_3W = a3 + c_phi * t3 + s_phi * t9
+    t5 = (gs + al) * c_psi - d
+    t6 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t5, 0.0))
+    t7 = loff + t6 / c_psi + lp * c_pitch
+    t8 = s_psi * t7
+    t9 = s_phi * t3 - c_phi * t8
+    t10 = h + t9
+    below = np.maximum(t10, 0.0)
+    t11 = np.sqrt(below)
+    t12 = h - t9
+    above = np.maximum(t12, 0.0)
+    t13 = np.sqrt(above)
+    t14 = 2.0 * np.arctan2(t11, t13)
+    t15 = _runtime.wrap(-np.where(nowhere, 0.0, t2 - t14))
+    t16 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t17 = t16 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t18 = t17 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
+    t19 = t18 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
+    t20 = t19 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t21 = t20 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t22 = t21 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    invalid = np.logical_not(t22 & (0.0 <= loff) & (0.0 <= lp))
+    t23 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t5)
+    t25 = -(_runtime.FEASIBILITY * t1)
+    t26 = t24 & (t23 <= t4) & (t25 <= t10) & (t25 <= t12)
+    L_2W = L2 + c_psi * t7
+    a_3W = a3 + c_phi * t3 + s_phi * t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t28 = L1 + fore
-    t29 = -(_runtime.FEASIBILITY * t28)
-    t30 = z - d1
-    t31 = t30 * t30
+    t27 = L1 + fore
+    t28 = -(_runtime.FEASIBILITY * t27)
+    t29 = z - d1
+    t30 = t29 * t29
     total = below + above
-    t32 = (below - above) / total
-    t33 = y * t32
-    s_turn = 2.0 * t12 * t14 / total
-    t34 = x * s_turn
-    t35 = x * np.where(nowhere, 1.0, -((t33 - t34) / h))
-    t36 = x * t32
-    t37 = y * s_turn
-    outward = t35 + y * np.where(nowhere, 0.0, (t36 + t37) / h)
-    reach = np.sqrt(t31 + outward * outward)
-    t38 = t28 - reach
-    t39 = L1 - fore
-    t40 = reach + t39
-    t41 = reach - t39
-    t42 = t27 & (t29 <= t38) & (t29 <= t40) & (t29 <= t41)
-    t43 = _runtime.VANISHING * t28
-    folded = reach <= t43
-    s_sight = np.where(folded, 0.0, t30 / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t28 * t28)
-    t44 = folded | short
-    A = np.maximum(t38, 0.0)
-    C = np.maximum(t41, 0.0)
-    t45 = A * C
-    S = t28 + reach
-    B = np.maximum(t40, 0.0)
-    t46 = S * B
-    at_base = t45 + t46
-    c_base = np.where(t44, 1.0, -((t45 - t46) / at_base))
-    t47 = s_sight * c_base
+    t31 = (below - above) / total
+    t32 = y * t31
+    s_turn = 2.0 * t11 * t13 / total
+    t33 = x * s_turn
+    t34 = x * np.where(nowhere, 1.0, -((t32 - t33) / h))
+    t35 = x * t31
+    t36 = y * s_turn
+    outward = t34 + y * np.where(nowhere, 0.0, (t35 + t36) / h)
+    reach = np.sqrt(t30 + outward * outward)
+    t37 = t27 - reach
+    t38 = L1 - fore
+    t39 = reach + t38
+    t40 = reach - t38
+    t41 = t26 & (t28 <= t37) & (t28 <= t39) & (t28 <= t40)
+    t42 = _runtime.VANISHING * t27
+    folded = reach <= t42
+    s_sight = np.where(folded, 0.0, t29 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t27 * t27)
+    t43 = folded | short
+    A = np.maximum(t37, 0.0)
+    C = np.maximum(t40, 0.0)
+    t44 = A * C
+    S = t27 + reach
+    B = np.maximum(t39, 0.0)
+    t45 = S * B
+    at_base = t44 + t45
+    c_base = np.where(t43, 1.0, -((t44 - t45) / at_base))
+    t46 = s_sight * c_base
     c_sight = np.where(folded, 1.0, outward / reach)
     rS = np.sqrt(S)
     rA = np.sqrt(A)
-    t48 = rS * rA
+    t47 = rS * rA
     rB = np.sqrt(B)
     rC = np.sqrt(C)
-    t49 = rB * rC
-    area_front_elbow_down = 2.0 * t48 * t49
-    s_base_front_elbow_down = np.where(t44, 0.0, area_front_elbow_down / at_base)
-    t50 = c_sight * s_base_front_elbow_down
-    stheta2A = t47 + t50
-    t51 = L1 * stheta2A
-    t52 = c_sight * c_base
-    t53 = s_sight * s_base_front_elbow_down
-    ctheta2A = t52 - t53
+    t48 = rB * rC
+    area_front_elbow_down = 2.0 * t47 * t48
+    s_base_front_elbow_down = np.where(t43, 0.0, area_front_elbow_down / at_base)
+    t49 = c_sight * s_base_front_elbow_down
+    stheta2A = t46 + t49
+    t50 = L1 * stheta2A
+    t51 = c_sight * c_base
+    t52 = s_sight * s_base_front_elbow_down
+    ctheta2A = t51 - t52
     u2 = L1 * ctheta2A
-    size_u = np.sqrt(t51 * t51 + u2 * u2)
-    bare = fore <= t43
+    size_u = np.sqrt(t50 * t50 + u2 * u2)
+    t53 = -(_runtime.FEASIBILITY * (d * size_u))
+    bare = fore <= t42
     c_lag = np.where(bare, 1.0, a_3W / fore)
     t54 = A * S
     t55 = C * B
@@ -909,80 +909,80 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t58 = s_lag * c_bend
     t59 = c_lag * s_bend_front_elbow_down
     s_relative = t58 - t59
-    ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    v1 = L2 * ctheta23A - a3 * stheta23A
+    ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     v2 = L2 * stheta23A + a3 * ctheta23A
-    t60 = size_u * np.sqrt(v1 * v1 + v2 * v2)
-    t61 = -(_runtime.FEASIBILITY * t60)
-    t62 = t51 * v2 + u2 * v1
-    sigma_uv = np.where(0.0 <= -t62, 1.0, -1.0)
+    v1 = L2 * ctheta23A - a3 * stheta23A
+    t60 = t50 * v2 + u2 * v1
+    sigma_uv = np.where(0.0 <= -t60, 1.0, -1.0)
     ahead = d * s_psi / c_psi
     higher = d * s_phi / c_phi
-    t63 = sigma_uv * (ahead * u2 + higher * t51)
-    t64 = t62 * sigma_uv
-    t65 = t63 - t64
-    t66 = -(t64 + t63)
-    t67 = -(_runtime.FEASIBILITY * size_u)
-    parallel = -t64 <= _runtime.VANISHING * (64.0 * t60)
-    t68 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t60))
-    below_beta = np.maximum(t65, t68)
-    above_beta = np.maximum(t66, t68)
+    t61 = sigma_uv * (ahead * u2 + higher * t50)
+    t62 = t60 * sigma_uv
+    t63 = t61 - t62
+    t64 = -(t62 + t61)
+    t65 = -(d * _runtime.FEASIBILITY)
+    t66 = _runtime.VANISHING * (64.0 * size_u * np.sqrt(v1 * v1 + v2 * v2))
+    parallel = -t62 <= t66
+    t67 = d * 16.0
+    t68 = _runtime.VANISHING * (_runtime.VANISHING * (t67 * size_u))
+    below_beta = np.maximum(t63, t68)
+    above_beta = np.maximum(t64, t68)
     total_beta = below_beta + above_beta
     t69 = np.where(parallel, 0.0, (below_beta - above_beta) / total_beta)
-    t70 = t51 * (ahead + v1 * t69) - u2 * (higher + v2 * t69)
+    t70 = t50 * (ahead + v1 * t69) - u2 * (higher + v2 * t69)
     t71 = t70 / size_u
     t72 = size_u + t71
-    t73 = t42 & (t61 <= t65) & (t61 <= t66) & (t67 <= t72)
+    t73 = t41 & (t53 <= t63) & (t53 <= t64) & (t65 <= t72)
     t74 = size_u - t71
-    unreachable = np.logical_not(t73 & (t67 <= t74))
+    unreachable = np.logical_not(t73 & (t65 <= t74))
     t75 = _runtime.poison(invalid | unreachable)
-    t76 = np.where(folded, 0.0, np.arctan2(t30, outward))
-    t77 = np.where(t44, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
+    t76 = np.where(folded, 0.0, np.arctan2(t29, outward))
+    t77 = np.where(t43, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
     t78 = t76 + t77
-    t79 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * size_u))
+    t79 = _runtime.VANISHING * (_runtime.VANISHING * t67)
     below_alpha = np.maximum(t72, t79)
     above_alpha = np.maximum(t74, t79)
     total_alpha = below_alpha + above_alpha
     t80 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     t81 = np.arctan2((below_alpha - above_alpha) / total_alpha, t80 / total_alpha)
     t82 = np.arctan2(s_lag, c_lag)
-    t83 = np.where(short, 0.0, 2.0 * np.arctan2(t48, t49))
+    t83 = np.where(short, 0.0, 2.0 * np.arctan2(t47, t48))
     t84 = t82 - t83
     t85 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     t86 = np.arctan2(t69, np.where(parallel, 1.0, t85 / total_beta))
     t87 = t81 - t86
     t88 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    stheta2A_front_elbow_down = t47 - t50
+    stheta2A_front_elbow_down = t46 - t49
     t89 = L1 * stheta2A_front_elbow_down
-    ctheta2A_front_elbow_down = t52 + t53
+    ctheta2A_front_elbow_down = t51 + t52
     u2_front_elbow_down = L1 * ctheta2A_front_elbow_down
     t90 = t89 * t89 + u2_front_elbow_down * u2_front_elbow_down
     size_u_front_elbow_down = np.sqrt(t90)
+    t91 = _runtime.FEASIBILITY * (d * size_u_front_elbow_down)
     c_relative_front_elbow_down = t56 - t57
-    t91 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
+    t92 = stheta2A_front_elbow_down * c_relative_front_elbow_down
     s_relative_front_elbow_down = t58 + t59
-    t92 = stheta2A_front_elbow_down * s_relative_front_elbow_down
-    ctheta23A_front_elbow_down = t91 - t92
-    t93 = stheta2A_front_elbow_down * c_relative_front_elbow_down
-    t94 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
-    stheta23A_front_elbow_down = t93 + t94
-    v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down
+    t93 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
+    stheta23A_front_elbow_down = t92 + t93
+    t94 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
+    t95 = stheta2A_front_elbow_down * s_relative_front_elbow_down
+    ctheta23A_front_elbow_down = t94 - t95
     v2_front_elbow_down = L2 * stheta23A_front_elbow_down + a3 * ctheta23A_front_elbow_down
-    t95 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
-    t96 = size_u_front_elbow_down * np.sqrt(t95)
-    t97 = -(_runtime.FEASIBILITY * t96)
-    t98 = t89 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
-    sigma_uv_front_elbow_down = np.where(0.0 <= -t98, 1.0, -1.0)
-    t99 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t89)
-    t100 = t98 * sigma_uv_front_elbow_down
-    t101 = t99 - t100
-    t102 = -(t100 + t99)
-    t103 = _runtime.FEASIBILITY * size_u_front_elbow_down
-    parallel_front_elbow_down = -t100 <= _runtime.VANISHING * (64.0 * t96)
-    t104 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t96))
-    below_beta_front_elbow_down = np.maximum(t101, t104)
-    above_beta_front_elbow_down = np.maximum(t102, t104)
+    v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down
+    t96 = t89 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
+    sigma_uv_front_elbow_down = np.where(0.0 <= -t96, 1.0, -1.0)
+    t97 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t89)
+    t98 = t96 * sigma_uv_front_elbow_down
+    t99 = t97 - t98
+    t100 = -(t98 + t97)
+    t101 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
+    t102 = 64.0 * size_u_front_elbow_down * np.sqrt(t101)
+    parallel_front_elbow_down = -t98 <= _runtime.VANISHING * t102
+    t103 = _runtime.VANISHING * (t67 * size_u_front_elbow_down)
+    t104 = _runtime.VANISHING * t103
+    below_beta_front_elbow_down = np.maximum(t99, t104)
+    above_beta_front_elbow_down = np.maximum(t100, t104)
     t105 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
     t106 = np.where(parallel_front_elbow_down, 0.0, t105 / total_beta_front_elbow_down)
@@ -990,212 +990,206 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t108 = t89 * (ahead + v1_front_elbow_down * t106) - t107
     t109 = t108 / size_u_front_elbow_down
     t110 = size_u_front_elbow_down + t109
-    t111 = t42 & (t97 <= t101) & (t97 <= t102) & (-t103 <= t110)
+    t111 = t41 & (-t91 <= t99) & (-t91 <= t100) & (t65 <= t110)
     t112 = size_u_front_elbow_down - t109
-    unreachable_2 = np.logical_not(t111 & (-t103 <= t112))
+    unreachable_2 = np.logical_not(t111 & (t65 <= t112))
     t113 = _runtime.poison(invalid | unreachable_2)
     t114 = t76 - t77
-    t115 = _runtime.VANISHING * (16.0 * size_u_front_elbow_down)
-    t116 = _runtime.VANISHING * t115
-    below_alpha_front_elbow_down = np.maximum(t110, t116)
-    above_alpha_front_elbow_down = np.maximum(t112, t116)
-    t117 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    below_alpha_front_elbow_down = np.maximum(t110, t79)
+    above_alpha_front_elbow_down = np.maximum(t112, t79)
+    t115 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t118 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
-    t119 = np.arctan2(t117 / total_alpha_front_elbow_down, t118 / total_alpha_front_elbow_down)
-    t120 = t82 + t83
-    t121 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    cbeta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t121 / total_beta_front_elbow_down)
-    t122 = t119 - np.arctan2(t106, cbeta_front_elbow_down)
-    t123 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
-    t124 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
-    outward_rear_elbow_up = t124 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
-    t125 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t31 + t125)
-    t126 = t28 - reach_rear_elbow_up
-    t127 = reach_rear_elbow_up + t39
-    t128 = reach_rear_elbow_up - t39
-    t129 = t27 & (t29 <= t126) & (t29 <= t127) & (t29 <= t128)
-    folded_rear_elbow_up = reach_rear_elbow_up <= t43
-    s_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 0.0, t30 / reach_rear_elbow_up)
-    t130 = folded_rear_elbow_up | short
-    A_rear_elbow_up = np.maximum(t126, 0.0)
-    C_rear_elbow_up = np.maximum(t128, 0.0)
-    t131 = A_rear_elbow_up * C_rear_elbow_up
-    S_rear_elbow_up = t28 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t127, 0.0)
-    t132 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t131 + t132
-    c_base_rear_elbow_up = np.where(t130, 1.0, -((t131 - t132) / at_base_rear_elbow_up))
-    t133 = s_sight_rear_elbow_up * c_base_rear_elbow_up
+    t116 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t117 = np.arctan2(t115 / total_alpha_front_elbow_down, t116 / total_alpha_front_elbow_down)
+    t118 = t82 + t83
+    t119 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    cbeta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t119 / total_beta_front_elbow_down)
+    t120 = t117 - np.arctan2(t106, cbeta_front_elbow_down)
+    t121 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t14))
+    t122 = x * np.where(nowhere, 1.0, -((t32 + t33) / h))
+    outward_rear_elbow_up = t122 + y * np.where(nowhere, 0.0, (t35 - t36) / h)
+    t123 = outward_rear_elbow_up * outward_rear_elbow_up
+    reach_rear_elbow_up = np.sqrt(t30 + t123)
+    t124 = t27 - reach_rear_elbow_up
+    t125 = reach_rear_elbow_up + t38
+    t126 = reach_rear_elbow_up - t38
+    t127 = t26 & (t28 <= t124) & (t28 <= t125) & (t28 <= t126)
+    folded_rear_elbow_up = reach_rear_elbow_up <= t42
+    s_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 0.0, t29 / reach_rear_elbow_up)
+    t128 = folded_rear_elbow_up | short
+    A_rear_elbow_up = np.maximum(t124, 0.0)
+    C_rear_elbow_up = np.maximum(t126, 0.0)
+    t129 = A_rear_elbow_up * C_rear_elbow_up
+    S_rear_elbow_up = t27 + reach_rear_elbow_up
+    B_rear_elbow_up = np.maximum(t125, 0.0)
+    t130 = S_rear_elbow_up * B_rear_elbow_up
+    at_base_rear_elbow_up = t129 + t130
+    c_base_rear_elbow_up = np.where(t128, 1.0, -((t129 - t130) / at_base_rear_elbow_up))
+    t131 = s_sight_rear_elbow_up * c_base_rear_elbow_up
     c_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
     rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
     rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t134 = rS_rear_elbow_up * rA_rear_elbow_up
+    t132 = rS_rear_elbow_up * rA_rear_elbow_up
     rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
     rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t135 = rB_rear_elbow_up * rC_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t134 * t135
-    s_base_rear_elbow_up = np.where(t130, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t136 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t133 - t136
-    t137 = L1 * stheta2A_rear_elbow_up
-    t138 = c_sight_rear_elbow_up * c_base_rear_elbow_up
-    t139 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t138 + t139
+    t133 = rB_rear_elbow_up * rC_rear_elbow_up
+    area_rear_elbow_up = 2.0 * t132 * t133
+    s_base_rear_elbow_up = np.where(t128, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
+    t134 = c_sight_rear_elbow_up * s_base_rear_elbow_up
+    stheta2A_rear_elbow_up = t131 - t134
+    t135 = L1 * stheta2A_rear_elbow_up
+    t136 = c_sight_rear_elbow_up * c_base_rear_elbow_up
+    t137 = s_sight_rear_elbow_up * s_base_rear_elbow_up
+    ctheta2A_rear_elbow_up = t136 + t137
     u2_rear_elbow_up = L1 * ctheta2A_rear_elbow_up
-    t140 = t137 * t137 + u2_rear_elbow_up * u2_rear_elbow_up
-    size_u_rear_elbow_up = np.sqrt(t140)
-    t141 = A_rear_elbow_up * S_rear_elbow_up
-    t142 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t141 + t142
-    c_bend_rear_elbow_up = np.where(short, 1.0, -((t141 - t142) / at_elbow_rear_elbow_up))
-    t143 = c_lag * c_bend_rear_elbow_up
+    t138 = t135 * t135 + u2_rear_elbow_up * u2_rear_elbow_up
+    size_u_rear_elbow_up = np.sqrt(t138)
+    t139 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_up)
+    t140 = A_rear_elbow_up * S_rear_elbow_up
+    t141 = C_rear_elbow_up * B_rear_elbow_up
+    at_elbow_rear_elbow_up = t140 + t141
+    c_bend_rear_elbow_up = np.where(short, 1.0, -((t140 - t141) / at_elbow_rear_elbow_up))
+    t142 = c_lag * c_bend_rear_elbow_up
     s_bend_rear_elbow_up = np.where(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t144 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t143 - t144
-    t145 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t146 = s_lag * c_bend_rear_elbow_up
-    t147 = c_lag * s_bend_rear_elbow_up
-    s_relative_rear_elbow_up = t146 + t147
-    t148 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    ctheta23A_rear_elbow_up = t145 - t148
-    t149 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t150 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    stheta23A_rear_elbow_up = t149 + t150
-    v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up
+    t143 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t142 - t143
+    t144 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t145 = s_lag * c_bend_rear_elbow_up
+    t146 = c_lag * s_bend_rear_elbow_up
+    s_relative_rear_elbow_up = t145 + t146
+    t147 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    stheta23A_rear_elbow_up = t144 + t147
+    t148 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t149 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    ctheta23A_rear_elbow_up = t148 - t149
     v2_rear_elbow_up = L2 * stheta23A_rear_elbow_up + a3 * ctheta23A_rear_elbow_up
-    t151 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
-    t152 = size_u_rear_elbow_up * np.sqrt(t151)
-    t153 = -(_runtime.FEASIBILITY * t152)
-    t154 = t137 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
-    sigma_uv_rear_elbow_up = np.where(0.0 <= -t154, 1.0, -1.0)
-    t155 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t137)
-    t156 = t154 * sigma_uv_rear_elbow_up
-    t157 = t155 - t156
-    t158 = -(t156 + t155)
-    t159 = -(_runtime.FEASIBILITY * size_u_rear_elbow_up)
-    parallel_rear_elbow_up = -t156 <= _runtime.VANISHING * (64.0 * t152)
-    t160 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t152))
-    below_beta_rear_elbow_up = np.maximum(t157, t160)
-    above_beta_rear_elbow_up = np.maximum(t158, t160)
-    t161 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up
+    t150 = t135 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
+    sigma_uv_rear_elbow_up = np.where(0.0 <= -t150, 1.0, -1.0)
+    t151 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t135)
+    t152 = t150 * sigma_uv_rear_elbow_up
+    t153 = t151 - t152
+    t154 = -(t152 + t151)
+    t155 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
+    t156 = _runtime.VANISHING * (64.0 * size_u_rear_elbow_up * np.sqrt(t155))
+    parallel_rear_elbow_up = -t152 <= t156
+    t157 = _runtime.VANISHING * (t67 * size_u_rear_elbow_up)
+    t158 = _runtime.VANISHING * t157
+    below_beta_rear_elbow_up = np.maximum(t153, t158)
+    above_beta_rear_elbow_up = np.maximum(t154, t158)
+    t159 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t162 = np.where(parallel_rear_elbow_up, 0.0, t161 / total_beta_rear_elbow_up)
-    t163 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t162)
-    t164 = t137 * (ahead + v1_rear_elbow_up * t162) - t163
-    t165 = t164 / size_u_rear_elbow_up
-    t166 = size_u_rear_elbow_up + t165
-    t167 = t129 & (t153 <= t157) & (t153 <= t158) & (t159 <= t166)
-    t168 = size_u_rear_elbow_up - t165
-    unreachable_3 = np.logical_not(t167 & (t159 <= t168))
-    t169 = _runtime.poison(invalid | unreachable_3)
-    t170 = np.where(folded_rear_elbow_up, 0.0, np.arctan2(t30, outward_rear_elbow_up))
-    t171 = np.arctan2(rA_rear_elbow_up * rC_rear_elbow_up, rS_rear_elbow_up * rB_rear_elbow_up)
-    t172 = np.where(t130, 0.0, 2.0 * t171)
-    t173 = t170 - t172
-    t174 = _runtime.VANISHING * (16.0 * size_u_rear_elbow_up)
-    t175 = _runtime.VANISHING * t174
-    below_alpha_rear_elbow_up = np.maximum(t166, t175)
-    above_alpha_rear_elbow_up = np.maximum(t168, t175)
-    t176 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t160 = np.where(parallel_rear_elbow_up, 0.0, t159 / total_beta_rear_elbow_up)
+    t161 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t160)
+    t162 = t135 * (ahead + v1_rear_elbow_up * t160) - t161
+    t163 = t162 / size_u_rear_elbow_up
+    t164 = size_u_rear_elbow_up + t163
+    t165 = t127 & (-t139 <= t153) & (-t139 <= t154) & (t65 <= t164)
+    t166 = size_u_rear_elbow_up - t163
+    unreachable_3 = np.logical_not(t165 & (t65 <= t166))
+    t167 = _runtime.poison(invalid | unreachable_3)
+    t168 = np.where(folded_rear_elbow_up, 0.0, np.arctan2(t29, outward_rear_elbow_up))
+    t169 = np.arctan2(rA_rear_elbow_up * rC_rear_elbow_up, rS_rear_elbow_up * rB_rear_elbow_up)
+    t170 = np.where(t128, 0.0, 2.0 * t169)
+    t171 = t168 - t170
+    below_alpha_rear_elbow_up = np.maximum(t164, t79)
+    above_alpha_rear_elbow_up = np.maximum(t166, t79)
+    t172 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t177 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    t178 = np.arctan2(t176 / total_alpha_rear_elbow_up, t177 / total_alpha_rear_elbow_up)
-    t179 = np.where(short, 0.0, 2.0 * np.arctan2(t134, t135))
-    t180 = t82 + t179
-    t181 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    cbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, t181 / total_beta_rear_elbow_up)
-    t182 = t178 - np.arctan2(t162, cbeta_rear_elbow_up)
-    stheta2A_rear_elbow_down = t133 + t136
-    t183 = L1 * stheta2A_rear_elbow_down
-    ctheta2A_rear_elbow_down = t138 - t139
+    t173 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t174 = np.arctan2(t172 / total_alpha_rear_elbow_up, t173 / total_alpha_rear_elbow_up)
+    t175 = np.where(short, 0.0, 2.0 * np.arctan2(t132, t133))
+    t176 = t82 + t175
+    t177 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    cbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, t177 / total_beta_rear_elbow_up)
+    t178 = t174 - np.arctan2(t160, cbeta_rear_elbow_up)
+    stheta2A_rear_elbow_down = t131 + t134
+    t179 = L1 * stheta2A_rear_elbow_down
+    ctheta2A_rear_elbow_down = t136 - t137
     u2_rear_elbow_down = L1 * ctheta2A_rear_elbow_down
-    t184 = t183 * t183 + u2_rear_elbow_down * u2_rear_elbow_down
-    size_u_rear_elbow_down = np.sqrt(t184)
-    c_relative_rear_elbow_down = t143 + t144
-    t185 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    s_relative_rear_elbow_down = t146 - t147
-    t186 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    ctheta23A_rear_elbow_down = t185 - t186
-    t187 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    t188 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    stheta23A_rear_elbow_down = t187 + t188
-    v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down
+    t180 = t179 * t179 + u2_rear_elbow_down * u2_rear_elbow_down
+    size_u_rear_elbow_down = np.sqrt(t180)
+    t181 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_down)
+    c_relative_rear_elbow_down = t142 + t143
+    t182 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    s_relative_rear_elbow_down = t145 - t146
+    t183 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    stheta23A_rear_elbow_down = t182 + t183
+    t184 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    t185 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    ctheta23A_rear_elbow_down = t184 - t185
     v2_rear_elbow_down = L2 * stheta23A_rear_elbow_down + a3 * ctheta23A_rear_elbow_down
-    t189 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
-    t190 = size_u_rear_elbow_down * np.sqrt(t189)
-    t191 = -(_runtime.FEASIBILITY * t190)
-    t192 = t183 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
-    sigma_uv_rear_elbow_down = np.where(0.0 <= -t192, 1.0, -1.0)
-    t193 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t183)
-    t194 = t192 * sigma_uv_rear_elbow_down
-    t195 = t193 - t194
-    t196 = -(t194 + t193)
-    t197 = _runtime.FEASIBILITY * size_u_rear_elbow_down
-    parallel_rear_elbow_down = -t194 <= _runtime.VANISHING * (64.0 * t190)
-    t198 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t190))
-    below_beta_rear_elbow_down = np.maximum(t195, t198)
-    above_beta_rear_elbow_down = np.maximum(t196, t198)
-    t199 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down
+    t186 = t179 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
+    sigma_uv_rear_elbow_down = np.where(0.0 <= -t186, 1.0, -1.0)
+    t187 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t179)
+    t188 = t186 * sigma_uv_rear_elbow_down
+    t189 = t187 - t188
+    t190 = -(t188 + t187)
+    t191 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
+    t192 = 64.0 * size_u_rear_elbow_down * np.sqrt(t191)
+    parallel_rear_elbow_down = -t188 <= _runtime.VANISHING * t192
+    t193 = _runtime.VANISHING * (t67 * size_u_rear_elbow_down)
+    t194 = _runtime.VANISHING * t193
+    below_beta_rear_elbow_down = np.maximum(t189, t194)
+    above_beta_rear_elbow_down = np.maximum(t190, t194)
+    t195 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t200 = np.where(parallel_rear_elbow_down, 0.0, t199 / total_beta_rear_elbow_down)
-    t201 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t200)
-    t202 = t183 * (ahead + v1_rear_elbow_down * t200) - t201
-    t203 = t202 / size_u_rear_elbow_down
-    t204 = size_u_rear_elbow_down + t203
-    t205 = t129 & (t191 <= t195) & (t191 <= t196) & (-t197 <= t204)
-    t206 = size_u_rear_elbow_down - t203
-    unreachable_4 = np.logical_not(t205 & (-t197 <= t206))
-    t207 = _runtime.poison(invalid | unreachable_4)
-    t208 = t170 + t172
-    t209 = _runtime.VANISHING * (16.0 * size_u_rear_elbow_down)
-    t210 = _runtime.VANISHING * t209
-    below_alpha_rear_elbow_down = np.maximum(t204, t210)
-    above_alpha_rear_elbow_down = np.maximum(t206, t210)
-    t211 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t196 = np.where(parallel_rear_elbow_down, 0.0, t195 / total_beta_rear_elbow_down)
+    t197 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t196)
+    t198 = t179 * (ahead + v1_rear_elbow_down * t196) - t197
+    t199 = t198 / size_u_rear_elbow_down
+    t200 = size_u_rear_elbow_down + t199
+    t201 = t127 & (-t181 <= t189) & (-t181 <= t190) & (t65 <= t200)
+    t202 = size_u_rear_elbow_down - t199
+    unreachable_4 = np.logical_not(t201 & (t65 <= t202))
+    t203 = _runtime.poison(invalid | unreachable_4)
+    t204 = t168 + t170
+    below_alpha_rear_elbow_down = np.maximum(t200, t79)
+    above_alpha_rear_elbow_down = np.maximum(t202, t79)
+    t205 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t212 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    t213 = np.arctan2(t211 / total_alpha_rear_elbow_down, t212 / total_alpha_rear_elbow_down)
-    t214 = t82 - t179
-    t215 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    cbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t215 / total_beta_rear_elbow_down)
-    t216 = t213 - np.arctan2(t200, cbeta_rear_elbow_down)
-    t217 = nowhere | folded | short
-    t218 = _runtime.status(invalid, unreachable, t217 | parallel)
-    t219 = _runtime.status(invalid, unreachable_2, t217 | parallel_front_elbow_down)
-    t220 = nowhere | folded_rear_elbow_up | short
-    t221 = _runtime.status(invalid, unreachable_3, t220 | parallel_rear_elbow_up)
-    t222 = _runtime.status(invalid, unreachable_4, t220 | parallel_rear_elbow_down)
+    t206 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t207 = np.arctan2(t205 / total_alpha_rear_elbow_down, t206 / total_alpha_rear_elbow_down)
+    t208 = t82 - t175
+    t209 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    cbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t209 / total_beta_rear_elbow_down)
+    t210 = t207 - np.arctan2(t196, cbeta_rear_elbow_down)
+    t211 = nowhere | folded | short
+    t212 = _runtime.status(invalid, unreachable, t211 | parallel)
+    t213 = _runtime.status(invalid, unreachable_2, t211 | parallel_front_elbow_down)
+    t214 = nowhere | folded_rear_elbow_up | short
+    t215 = _runtime.status(invalid, unreachable_3, t214 | parallel_rear_elbow_up)
+    t216 = _runtime.status(invalid, unreachable_4, t214 | parallel_rear_elbow_down)
     return (
-        t16 + t75,
+        t15 + t75,
         _runtime.wrap(t78 - t81) + t75,
         _runtime.wrap(t84 + t87) + t75,
         _runtime.wrap(t81 + t78) + t75,
         _runtime.wrap(t84 - t87) + t75,
         t88 + t75,
-        t16 + t113,
-        _runtime.wrap(t114 - t119) + t113,
-        _runtime.wrap(t120 + t122) + t113,
-        _runtime.wrap(t119 + t114) + t113,
-        _runtime.wrap(t120 - t122) + t113,
+        t15 + t113,
+        _runtime.wrap(t114 - t117) + t113,
+        _runtime.wrap(t118 + t120) + t113,
+        _runtime.wrap(t117 + t114) + t113,
+        _runtime.wrap(t118 - t120) + t113,
         t88 + t113,
-        t123 + t169,
-        _runtime.wrap(t173 - t178) + t169,
-        _runtime.wrap(t180 + t182) + t169,
-        _runtime.wrap(t178 + t173) + t169,
-        _runtime.wrap(t180 - t182) + t169,
-        t88 + t169,
-        t123 + t207,
-        _runtime.wrap(t208 - t213) + t207,
-        _runtime.wrap(t214 + t216) + t207,
-        _runtime.wrap(t213 + t208) + t207,
-        _runtime.wrap(t214 - t216) + t207,
-        t88 + t207,
-        t218,
-        t219,
-        t221,
-        t222,
+        t121 + t167,
+        _runtime.wrap(t171 - t174) + t167,
+        _runtime.wrap(t176 + t178) + t167,
+        _runtime.wrap(t174 + t171) + t167,
+        _runtime.wrap(t176 - t178) + t167,
+        t88 + t167,
+        t121 + t203,
+        _runtime.wrap(t204 - t207) + t203,
+        _runtime.wrap(t208 + t210) + t203,
+        _runtime.wrap(t207 + t204) + t203,
+        _runtime.wrap(t208 - t210) + t203,
+        t88 + t203,
+        t212,
+        t213,
+        t215,
+        t216,
     )
 
 
@@ -1225,17 +1219,16 @@ def _wrist_length(psi, phi, d, gs, al):
     c_psi = np.cos(psi)
     c_phi = np.cos(phi)
     t1 = d - c_psi * (gs - al)
-    t2 = gs + al
-    t3 = t2 * c_psi - d
-    t4 = np.sqrt(np.maximum(t1, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
-    t5 = np.isfinite(psi) & np.isfinite(phi) & np.isfinite(d)
-    t6 = t5 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
-    invalid = np.logical_not(t6 & (0.0 <= gs) & (0.0 <= al))
-    t7 = -(_runtime.FEASIBILITY * (d + t2))
-    t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t3)
-    t9 = _runtime.poison(invalid | np.logical_not(t8 & (t7 <= t1)))
+    t2 = (gs + al) * c_psi - d
+    t3 = np.sqrt(np.maximum(t1, 0.0)) * np.sqrt(np.maximum(t2, 0.0))
+    t4 = np.isfinite(psi) & np.isfinite(phi) & np.isfinite(d)
+    t5 = t4 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
+    invalid = np.logical_not(t5 & (0.0 <= gs) & (0.0 <= al))
+    t6 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t7 = (-_runtime.FEASIBILITY <= c_phi) & (t6 <= t2)
+    t8 = _runtime.poison(invalid | np.logical_not(t7 & (t6 <= t1)))
     return (
-        t4 / c_psi + t9,
+        t3 / c_psi + t8,
     )
 
 

@@ -3,15 +3,15 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 77 add, 84 compare and select, 3 atan2, 20 divide, 115 multiply, 6 sincos, 9 sqrt
-#   pose: 104 add, 81 compare and select, 20 divide, 154 multiply, 6 sincos, 9 sqrt
+#   fk: 77 add, 84 compare and select, 3 atan2, 20 divide, 116 multiply, 6 sincos, 9 sqrt
+#   pose: 104 add, 81 compare and select, 20 divide, 155 multiply, 6 sincos, 9 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 212 add, 77 compare and select, 52 divide, 295 multiply, 6 sincos, 9 sqrt
-#   determinant: 84 add, 77 compare and select, 21 divide, 150 multiply, 5 sincos, 9 sqrt
-#   singularities: 89 add, 77 compare and select, 20 divide, 140 multiply, 5 sincos, 9 sqrt
-#   ik: 265 add, 285 compare and select, 24 atan2, 59 divide, 305 multiply, 3 sincos, 41 sqrt
-#   wrist_length: 6 add, 26 compare and select, 1 divide, 5 multiply, 2 sincos, 2 sqrt
+#   jacobian: 212 add, 77 compare and select, 52 divide, 296 multiply, 6 sincos, 9 sqrt
+#   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
+#   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
+#   ik: 264 add, 285 compare and select, 24 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+#   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
 #   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
@@ -129,99 +129,98 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t24 = t23 * _runtime.VANISHING
     bare_virtual = fore <= t24
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
-    t25 = t23 * t23
-    short_virtual = L1 * fore <= t25 * _runtime.VANISHING
-    t26 = s3L_half * c3L_half
-    t27 = t26 + t26
-    t28 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t27 + a3 * t28
-    t29 = 0.0 <= straight_left
-    t30 = L2 * t28 - a3 * t27
-    large_left = fore + np.where(t29, straight_left, -straight_left)
-    small_left = t30 * t30 / large_left
-    t31 = L1 * 2.0
-    t32 = np.where(t29, small_left, large_left) * t31 / 2.0
-    t33 = s3R_half * c3R_half
-    t34 = t33 + t33
-    t35 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t34 + a3 * t35
-    t36 = 0.0 <= straight_right
-    t37 = L2 * t35 - a3 * t34
-    t38 = np.where(t36, straight_right, -straight_right)
-    large_right = fore + t38
-    small_right = t37 * t37 / large_right
-    N_right = np.where(t36, small_right, large_right) * t31
-    t39 = L2 * t16 + a3 * t15
-    t40 = c2L_half * c2R_half
-    t41 = s2L_half * s2R_half
-    t42 = t40 - t41
-    t43 = t39 * t10 + t42 * t21
-    gap = t22 * t22 + t43 * t43
-    t44 = t32 + N_right / 2.0 + gap
-    N_virtual = np.maximum(t44, 0.0)
-    t45 = np.where(t29, large_left, small_left) * t31 / 2.0
-    M_right = np.where(t36, large_right, small_right) * t31
-    t46 = t45 + M_right / 2.0 - gap
-    M_virtual = np.maximum(t46, 0.0)
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t23 * t23)
+    t25 = s3L_half * c3L_half
+    t26 = t25 + t25
+    t27 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t26 + a3 * t27
+    t28 = 0.0 <= straight_left
+    t29 = L2 * t27 - a3 * t26
+    large_left = fore + np.where(t28, straight_left, -straight_left)
+    small_left = t29 * t29 / large_left
+    t30 = L1 * 2.0
+    t31 = np.where(t28, small_left, large_left) * t30 / 2.0
+    t32 = s3R_half * c3R_half
+    t33 = t32 + t32
+    t34 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t33 + a3 * t34
+    t35 = 0.0 <= straight_right
+    t36 = L2 * t34 - a3 * t33
+    t37 = np.where(t35, straight_right, -straight_right)
+    large_right = fore + t37
+    small_right = t36 * t36 / large_right
+    N_right = np.where(t35, small_right, large_right) * t30
+    t38 = L2 * t16 + a3 * t15
+    t39 = c2L_half * c2R_half
+    t40 = s2L_half * s2R_half
+    t41 = t39 - t40
+    t42 = t38 * t10 + t41 * t21
+    gap = t22 * t22 + t42 * t42
+    t43 = t31 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t43, 0.0)
+    t44 = np.where(t28, large_left, small_left) * t30 / 2.0
+    M_right = np.where(t35, large_right, small_right) * t30
+    t45 = t44 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t45, 0.0)
     whole_virtual = N_virtual + M_virtual
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
-    t47 = 2.0 * np.where(0.0 <= -t37, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t47 * np.sqrt(M_virtual) / whole_virtual)
+    t46 = 2.0 * np.where(0.0 <= -t36, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t46 * np.sqrt(M_virtual) / whole_virtual)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t48 = c2L_half * t8 + s2L_half * t9
-    t49 = L1 * (t40 + t41)
-    t50 = t48 * t17 - t20 * t49
-    r_I = t39 * t48 + t42 * t49
-    folded_virtual = np.sqrt(t50 * t50 + r_I * r_I) <= t24
+    t47 = c2L_half * t8 + s2L_half * t9
+    t48 = L1 * (t39 + t40)
+    t49 = t47 * t17 - t20 * t48
+    r_I = t38 * t47 + t41 * t48
+    folded_virtual = np.sqrt(t49 * t49 + r_I * r_I) <= t24
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t51 = fore * s_bend_virtual
-    out_virtual = ahead_1_virtual * r_I - t50 * t51
-    t52 = ahead_1_virtual * t50 + r_I * t51
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
+    t50 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t49 * t50
+    t51 = ahead_1_virtual * t49 + r_I * t50
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
     ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t53 = np.where(folded_virtual, 0.0, t52 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t53
-    t54 = c_relative_virtual * t53 - s_relative_virtual * ctheta2A
-    t55 = t22 * ctheta23A - t43 * t54
-    t56 = d * d
-    tilted = np.sqrt(t56 + t55 * t55)
-    t57 = t55 / tilted
+    t52 = np.where(folded_virtual, 0.0, t51 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t52
+    t53 = c_relative_virtual * t52 - s_relative_virtual * ctheta2A
+    t54 = t22 * ctheta23A - t42 * t53
+    t55 = d * d
+    tilted = np.sqrt(t55 + t54 * t54)
+    t56 = t54 / tilted
     cphi = d / tilted
-    base = np.sqrt(t56 + gap)
-    spsi = (t22 * t54 + t43 * ctheta23A) / base
-    t58 = base - (gs - al)
-    t59 = gs + al
-    t60 = t59 - base
-    wrist = np.sqrt(np.maximum(t58, 0.0)) * np.sqrt(np.maximum(t60, 0.0))
-    t61 = loff + lp * c + wrist
-    t62 = spsi * t61
-    t63 = t1 * t57 - cphi * t62
+    base = np.sqrt(t55 + gap)
+    spsi = (t22 * t53 + t42 * ctheta23A) / base
+    t57 = base - (gs - al)
+    t58 = gs + al
+    t59 = t58 - base
+    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
+    t60 = loff + lp * c + wrist
+    t61 = spsi * t60
+    t62 = t1 * t56 - cphi * t61
     cpsi = tilted / base
-    t64 = L2 + t61 * cpsi
-    t65 = a3 + t1 * cphi + t57 * t62
-    t66 = L1 * ctheta2A - t54 * t64 + ctheta23A * t65
-    t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t68 = t67 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t69 = t68 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t70 = t69 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t71 = t70 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t72 = t71 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t73 = t72 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t74 = t73 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t75 = -(_runtime.FEASIBILITY * t25)
-    t76 = -(_runtime.FEASIBILITY * t59)
-    t77 = (t75 <= t44) & (t75 <= t46) & (t76 <= t60) & (t76 <= t58)
-    t78 = _runtime.poison(np.logical_not(t74) | np.logical_not(t77))
-    t79 = d1 - L1 * t53 - ctheta23A * t64 - t54 * t65 + t78
+    t63 = L2 + t60 * cpsi
+    t64 = a3 + t1 * cphi + t56 * t61
+    t65 = L1 * ctheta2A - t53 * t63 + ctheta23A * t64
+    t66 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t67 = t66 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t68 = t67 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t69 = t68 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t70 = t69 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t71 = t70 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t72 = t71 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t73 = t72 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t74 = -(_runtime.FEASIBILITY * (d * t23))
+    t75 = -(_runtime.FEASIBILITY * t58)
+    t76 = (t74 <= t43) & (t74 <= t45) & (t75 <= t59) & (t75 <= t57)
+    t77 = _runtime.poison(np.logical_not(t73) | np.logical_not(t76))
+    t78 = d1 - L1 * t52 - ctheta23A * t63 - t53 * t64 + t77
     return (
-        s1 * t63 + c1 * t66 + t78,
-        s1 * t66 - c1 * t63 + t78,
-        t79,
-        _runtime.wrap(np.arctan2(spsi, cpsi)) + t78,
-        _runtime.wrap(-np.arctan2(-t57, cphi)) + t78,
-        _runtime.wrap(np.arctan2(s, c)) + t78,
+        s1 * t62 + c1 * t65 + t77,
+        s1 * t65 - c1 * t62 + t77,
+        t78,
+        _runtime.wrap(np.arctan2(spsi, cpsi)) + t77,
+        _runtime.wrap(-np.arctan2(-t56, cphi)) + t77,
+        _runtime.wrap(np.arctan2(s, c)) + t77,
     )
 
 
@@ -285,131 +284,130 @@ def _pose(
     t23 = t22 * _runtime.VANISHING
     bare_virtual = fore <= t23
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
-    t24 = t22 * t22
-    short_virtual = L1 * fore <= t24 * _runtime.VANISHING
-    t25 = s3L_half * c3L_half
-    t26 = t25 + t25
-    t27 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t26 + a3 * t27
-    t28 = 0.0 <= straight_left
-    t29 = L2 * t27 - a3 * t26
-    large_left = fore + np.where(t28, straight_left, -straight_left)
-    small_left = t29 * t29 / large_left
-    t30 = L1 * 2.0
-    t31 = np.where(t28, small_left, large_left) * t30 / 2.0
-    t32 = s3R_half * c3R_half
-    t33 = t32 + t32
-    t34 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t33 + a3 * t34
-    t35 = 0.0 <= straight_right
-    t36 = L2 * t34 - a3 * t33
-    t37 = np.where(t35, straight_right, -straight_right)
-    large_right = fore + t37
-    small_right = t36 * t36 / large_right
-    N_right = np.where(t35, small_right, large_right) * t30
-    t38 = L2 * t15 + a3 * t14
-    t39 = c2L_half * c2R_half
-    t40 = s2L_half * s2R_half
-    t41 = t39 - t40
-    t42 = t38 * t9 + t41 * t20
-    gap = t21 * t21 + t42 * t42
-    t43 = t31 + N_right / 2.0 + gap
-    N_virtual = np.maximum(t43, 0.0)
-    t44 = np.where(t28, large_left, small_left) * t30 / 2.0
-    M_right = np.where(t35, large_right, small_right) * t30
-    t45 = t44 + M_right / 2.0 - gap
-    M_virtual = np.maximum(t45, 0.0)
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t22 * t22)
+    t24 = s3L_half * c3L_half
+    t25 = t24 + t24
+    t26 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t25 + a3 * t26
+    t27 = 0.0 <= straight_left
+    t28 = L2 * t26 - a3 * t25
+    large_left = fore + np.where(t27, straight_left, -straight_left)
+    small_left = t28 * t28 / large_left
+    t29 = L1 * 2.0
+    t30 = np.where(t27, small_left, large_left) * t29 / 2.0
+    t31 = s3R_half * c3R_half
+    t32 = t31 + t31
+    t33 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t32 + a3 * t33
+    t34 = 0.0 <= straight_right
+    t35 = L2 * t33 - a3 * t32
+    t36 = np.where(t34, straight_right, -straight_right)
+    large_right = fore + t36
+    small_right = t35 * t35 / large_right
+    N_right = np.where(t34, small_right, large_right) * t29
+    t37 = L2 * t15 + a3 * t14
+    t38 = c2L_half * c2R_half
+    t39 = s2L_half * s2R_half
+    t40 = t38 - t39
+    t41 = t37 * t9 + t40 * t20
+    gap = t21 * t21 + t41 * t41
+    t42 = t30 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t42, 0.0)
+    t43 = np.where(t27, large_left, small_left) * t29 / 2.0
+    M_right = np.where(t34, large_right, small_right) * t29
+    t44 = t43 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t44, 0.0)
     whole_virtual = N_virtual + M_virtual
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
-    t46 = 2.0 * np.where(0.0 <= -t36, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t46 * np.sqrt(M_virtual) / whole_virtual)
+    t45 = 2.0 * np.where(0.0 <= -t35, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t45 * np.sqrt(M_virtual) / whole_virtual)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t47 = c2L_half * t7 + s2L_half * t8
-    t48 = L1 * (t39 + t40)
-    t49 = t47 * t16 - t19 * t48
-    r_I = t38 * t47 + t41 * t48
-    folded_virtual = np.sqrt(t49 * t49 + r_I * r_I) <= t23
+    t46 = c2L_half * t7 + s2L_half * t8
+    t47 = L1 * (t38 + t39)
+    t48 = t46 * t16 - t19 * t47
+    r_I = t37 * t46 + t40 * t47
+    folded_virtual = np.sqrt(t48 * t48 + r_I * r_I) <= t23
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t50 = fore * s_bend_virtual
-    out_virtual = ahead_1_virtual * r_I - t49 * t50
-    t51 = ahead_1_virtual * t49 + r_I * t50
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
+    t49 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t48 * t49
+    t50 = ahead_1_virtual * t48 + r_I * t49
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t50 * t50)
     ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t52 = np.where(folded_virtual, 0.0, t51 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t52
-    t53 = c_relative_virtual * t52 - s_relative_virtual * ctheta2A
-    t54 = t21 * ctheta23A - t42 * t53
-    t55 = d * d
-    tilted = np.sqrt(t55 + t54 * t54)
-    t56 = t54 / tilted
-    t57 = c * t56
+    t51 = np.where(folded_virtual, 0.0, t50 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t51
+    t52 = c_relative_virtual * t51 - s_relative_virtual * ctheta2A
+    t53 = t21 * ctheta23A - t41 * t52
+    t54 = d * d
+    tilted = np.sqrt(t54 + t53 * t53)
+    t55 = t53 / tilted
+    t56 = c * t55
     cphi = d / tilted
-    t58 = s * cphi
-    base = np.sqrt(t55 + gap)
-    spsi = (t21 * t53 + t42 * ctheta23A) / base
-    hand_21 = t57 + t58 * spsi
-    t59 = c1 * ctheta23A
-    t60 = c * cphi
-    t61 = s * t56
-    hand_11 = t60 - t61 * spsi
-    t62 = c1 * t53
+    t57 = s * cphi
+    base = np.sqrt(t54 + gap)
+    spsi = (t21 * t52 + t41 * ctheta23A) / base
+    hand_21 = t56 + t57 * spsi
+    t58 = c1 * ctheta23A
+    t59 = c * cphi
+    t60 = s * t55
+    hand_11 = t59 - t60 * spsi
+    t61 = c1 * t52
     cpsi = tilted / base
-    t63 = s * cpsi
-    t64 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t65 = t64 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t66 = t65 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t67 = t66 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t68 = t67 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t69 = t68 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t70 = t69 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t71 = t70 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t72 = -(_runtime.FEASIBILITY * t24)
-    t73 = gs + al
-    t74 = -(_runtime.FEASIBILITY * t73)
-    t75 = t73 - base
-    t76 = base - (gs - al)
-    t77 = (t72 <= t43) & (t72 <= t45) & (t74 <= t75) & (t74 <= t76)
-    t78 = _runtime.poison(np.logical_not(t71) | np.logical_not(t77))
-    t79 = s1 * hand_21 + t59 * hand_11 + t62 * t63 + t78
+    t62 = s * cpsi
+    t63 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t64 = t63 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t65 = t64 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t66 = t65 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t67 = t66 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t68 = t67 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t69 = t68 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t70 = t69 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t71 = -(_runtime.FEASIBILITY * (d * t22))
+    t72 = gs + al
+    t73 = -(_runtime.FEASIBILITY * t72)
+    t74 = t72 - base
+    t75 = base - (gs - al)
+    t76 = (t71 <= t42) & (t71 <= t44) & (t73 <= t74) & (t73 <= t75)
+    t77 = _runtime.poison(np.logical_not(t70) | np.logical_not(t76))
+    t78 = s1 * hand_21 + t58 * hand_11 + t61 * t62 + t77
     hand_22 = cphi * cpsi
-    t80 = t56 * cpsi
-    t81 = t61 - t60 * spsi
+    t79 = t55 * cpsi
+    t80 = t60 - t59 * spsi
     hand_33 = c * cpsi
-    hand_13 = t58 + t57 * spsi
-    t82 = s1 * t81 - (t62 * hand_33 - t59 * hand_13) + t78
-    wrist = np.sqrt(np.maximum(t76, 0.0)) * np.sqrt(np.maximum(t75, 0.0))
-    t83 = loff + lp * c + wrist
-    t84 = L2 + cpsi * t83
-    t85 = spsi * t83
-    t86 = a3 + lp * t58 + t56 * t85
-    t87 = L1 * ctheta2A - t53 * t84 + ctheta23A * t86
-    t88 = lp * t61 - cphi * t85
-    t89 = s1 * t53
-    t90 = s1 * ctheta23A
-    t91 = t89 * t63 - (c1 * hand_21 - t90 * hand_11) + t78
-    t92 = -(c1 * hand_22 + t90 * t80 + t89 * spsi) + t78
-    t93 = -(t89 * hand_33 - t90 * hand_13 + c1 * t81) + t78
-    t94 = d1 - L1 * t52 - ctheta23A * t84 - t53 * t86 + t78
-    t95 = 0.0 + t78
+    hand_13 = t57 + t56 * spsi
+    t81 = s1 * t80 - (t61 * hand_33 - t58 * hand_13) + t77
+    wrist = np.sqrt(np.maximum(t75, 0.0)) * np.sqrt(np.maximum(t74, 0.0))
+    t82 = loff + lp * c + wrist
+    t83 = L2 + cpsi * t82
+    t84 = spsi * t82
+    t85 = a3 + lp * t57 + t55 * t84
+    t86 = L1 * ctheta2A - t52 * t83 + ctheta23A * t85
+    t87 = lp * t60 - cphi * t84
+    t88 = s1 * t52
+    t89 = s1 * ctheta23A
+    t90 = t88 * t62 - (c1 * hand_21 - t89 * hand_11) + t77
+    t91 = -(c1 * hand_22 + t89 * t79 + t88 * spsi) + t77
+    t92 = -(t88 * hand_33 - t89 * hand_13 + c1 * t80) + t77
+    t93 = d1 - L1 * t51 - ctheta23A * t83 - t52 * t85 + t77
+    t94 = 0.0 + t77
     return (
-        t79,
-        s1 * hand_22 - t59 * t80 - t62 * spsi + t78,
-        t82,
-        c1 * t87 + s1 * t88 + t78,
+        t78,
+        s1 * hand_22 - t58 * t79 - t61 * spsi + t77,
+        t81,
+        c1 * t86 + s1 * t87 + t77,
+        t90,
         t91,
         t92,
+        s1 * t86 - c1 * t87 + t77,
+        ctheta23A * t62 - t52 * hand_11 + t77,
+        t52 * t79 - ctheta23A * spsi + t77,
+        -(ctheta23A * hand_33 + t52 * hand_13) + t77,
         t93,
-        s1 * t87 - c1 * t88 + t78,
-        ctheta23A * t63 - t53 * hand_11 + t78,
-        t53 * t80 - ctheta23A * spsi + t78,
-        -(ctheta23A * hand_33 + t53 * hand_13) + t78,
         t94,
-        t95,
-        t95,
-        t95,
-        1.0 + t78,
+        t94,
+        t94,
+        1.0 + t77,
     )
 
 
@@ -575,255 +573,254 @@ def _jacobian(
     t28 = t27 * _runtime.VANISHING
     bare_virtual = fore <= t28
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
-    t29 = t27 * t27
-    short_virtual = L1 * fore <= t29 * _runtime.VANISHING
-    t30 = s3L_half * c3L_half
-    t31 = t30 + t30
-    t32 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t31 + a3 * t32
-    t33 = 0.0 <= straight_left
-    t34 = L2 * t32 - a3 * t31
-    large_left = fore + np.where(t33, straight_left, -straight_left)
-    small_left = t34 * t34 / large_left
-    t35 = L1 * 2.0
-    t36 = np.where(t33, small_left, large_left) * t35 / 2.0
-    t37 = s3R_half * c3R_half
-    t38 = t37 + t37
-    t39 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t38 + a3 * t39
-    t40 = 0.0 <= straight_right
-    t41 = L2 * t39 - a3 * t38
-    t42 = np.where(t40, straight_right, -straight_right)
-    large_right = fore + t42
-    small_right = t41 * t41 / large_right
-    N_right = np.where(t40, small_right, large_right) * t35
-    t43 = L2 * t17
-    t44 = a3 * t15
-    t45 = t43 + t44
-    t46 = t45 * t10
-    t47 = c2L_half * c2R_half
-    t48 = s2L_half * s2R_half
-    t49 = t47 - t48
-    t50 = t49 * t24
-    t51 = t46 + t50
-    gap = t26 * t26 + t51 * t51
-    t52 = t36 + N_right / 2.0 + gap
-    N_virtual = np.maximum(t52, 0.0)
-    t53 = np.where(t33, large_left, small_left) * t35 / 2.0
-    M_right = np.where(t40, large_right, small_right) * t35
-    t54 = t53 + M_right / 2.0 - gap
-    M_virtual = np.maximum(t54, 0.0)
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t27 * t27)
+    t29 = s3L_half * c3L_half
+    t30 = t29 + t29
+    t31 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t30 + a3 * t31
+    t32 = 0.0 <= straight_left
+    t33 = L2 * t31 - a3 * t30
+    large_left = fore + np.where(t32, straight_left, -straight_left)
+    small_left = t33 * t33 / large_left
+    t34 = L1 * 2.0
+    t35 = np.where(t32, small_left, large_left) * t34 / 2.0
+    t36 = s3R_half * c3R_half
+    t37 = t36 + t36
+    t38 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t37 + a3 * t38
+    t39 = 0.0 <= straight_right
+    t40 = L2 * t38 - a3 * t37
+    t41 = np.where(t39, straight_right, -straight_right)
+    large_right = fore + t41
+    small_right = t40 * t40 / large_right
+    N_right = np.where(t39, small_right, large_right) * t34
+    t42 = L2 * t17
+    t43 = a3 * t15
+    t44 = t42 + t43
+    t45 = t44 * t10
+    t46 = c2L_half * c2R_half
+    t47 = s2L_half * s2R_half
+    t48 = t46 - t47
+    t49 = t48 * t24
+    t50 = t45 + t49
+    gap = t26 * t26 + t50 * t50
+    t51 = t35 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t51, 0.0)
+    t52 = np.where(t32, large_left, small_left) * t34 / 2.0
+    M_right = np.where(t39, large_right, small_right) * t34
+    t53 = t52 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t53, 0.0)
     whole_virtual = N_virtual + M_virtual
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
-    t55 = 2.0 * np.where(0.0 <= -t41, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t55 * np.sqrt(M_virtual) / whole_virtual)
+    t54 = 2.0 * np.where(0.0 <= -t40, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t54 * np.sqrt(M_virtual) / whole_virtual)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t56 = c2L_half * t8 + s2L_half * t9
-    t57 = t56 * t19
-    t58 = L1 * (t47 + t48)
-    t59 = t23 * t58
-    t60 = t57 - t59
-    t61 = t45 * t56
-    t62 = t49 * t58
-    r_I = t61 + t62
-    folded_virtual = np.sqrt(t60 * t60 + r_I * r_I) <= t28
+    t55 = c2L_half * t8 + s2L_half * t9
+    t56 = t55 * t19
+    t57 = L1 * (t46 + t47)
+    t58 = t23 * t57
+    t59 = t56 - t58
+    t60 = t44 * t55
+    t61 = t48 * t57
+    r_I = t60 + t61
+    folded_virtual = np.sqrt(t59 * t59 + r_I * r_I) <= t28
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t63 = fore * s_bend_virtual
-    out_virtual = ahead_1_virtual * r_I - t60 * t63
-    t64 = ahead_1_virtual * t60 + r_I * t63
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t64 * t64)
+    t62 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t59 * t62
+    t63 = ahead_1_virtual * t59 + r_I * t62
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t63 * t63)
     ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t65 = np.where(folded_virtual, 0.0, t64 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t65
-    t66 = c_relative_virtual * t65 - s_relative_virtual * ctheta2A
-    t67 = t26 * ctheta23A - t51 * t66
-    t68 = d * d
-    t69 = t67 * t67
-    tilted = np.sqrt(t68 + t69)
-    t70 = t67 / tilted
+    t64 = np.where(folded_virtual, 0.0, t63 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t64
+    t65 = c_relative_virtual * t64 - s_relative_virtual * ctheta2A
+    t66 = t26 * ctheta23A - t50 * t65
+    t67 = d * d
+    t68 = t66 * t66
+    tilted = np.sqrt(t67 + t68)
+    t69 = t66 / tilted
     cphi = d / tilted
-    beyond = t26 * t66 + t51 * ctheta23A
-    base = np.sqrt(t68 + gap)
+    beyond = t26 * t65 + t50 * ctheta23A
+    base = np.sqrt(t67 + gap)
     spsi = beyond / base
-    t71 = lp * c
-    t72 = base - (gs - al)
-    t73 = gs + al
-    t74 = t73 - base
-    wrist = np.sqrt(np.maximum(t72, 0.0)) * np.sqrt(np.maximum(t74, 0.0))
-    t75 = loff + t71 + wrist
-    t76 = spsi * t75
-    t77 = t1 * t70 - cphi * t76
-    t78 = c1 * t77
+    t70 = lp * c
+    t71 = base - (gs - al)
+    t72 = gs + al
+    t73 = t72 - base
+    wrist = np.sqrt(np.maximum(t71, 0.0)) * np.sqrt(np.maximum(t73, 0.0))
+    t74 = loff + t70 + wrist
+    t75 = spsi * t74
+    t76 = t1 * t69 - cphi * t75
+    t77 = c1 * t76
     outer_32 = L1 * ctheta2A
     cpsi = tilted / base
-    t79 = t75 * cpsi
-    t80 = L2 + t79
-    t81 = t1 * cphi + t70 * t76
-    t82 = a3 + t81
-    t83 = t66 * t80 - ctheta23A * t82
-    t84 = outer_32 - t83
-    t85 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t86 = t85 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t87 = t86 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t88 = t87 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t89 = t88 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t90 = t89 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t91 = t90 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t92 = -(_runtime.FEASIBILITY * t29)
-    t93 = -(_runtime.FEASIBILITY * t73)
-    t94 = (t92 <= t52) & (t92 <= t54) & (t93 <= t74) & (t93 <= t72)
-    failed = np.logical_not(t91 & (0.0 <= lp)) | np.logical_not(t94)
-    t95 = _runtime.poison(failed)
-    t96 = L1 * t65
-    t97 = c1 * t96
-    t98 = L2 * t66 - a3 * ctheta23A
-    t99 = t46 / 2.0
-    t100 = t16 / 2.0 - t18 / 2.0
-    t101 = t56 * t100
-    mid_13 = t99 + t101
-    t102 = t50 / 2.0
-    t103 = t59 / 2.0
-    t104 = t102 - t103
-    mid_12 = mid_13 + t104
-    t105 = L2 * ctheta23A + a3 * t66
-    t106 = t43 / 2.0 + t44 / 2.0
-    t107 = t56 * t106
-    t108 = t20 / 2.0
-    mid_23 = t107 - t108
-    t109 = t25 / 2.0
-    t110 = t62 / 2.0
-    t111 = t109 + t110
-    mid_22 = mid_23 + t111
-    t112 = L2 * (ctheta2A * ctheta23A + t65 * t66) - a3 * (t65 * ctheta23A - ctheta2A * t66)
-    t113 = L1 * t112
-    t114 = (t98 * mid_12 + t105 * mid_22) / t113
-    t115 = cphi * spsi
-    t116 = t70 * spsi
-    t117 = t66 * cpsi - ctheta23A * t116
-    t118 = s1 * t115 + c1 * t117
-    t119 = d * (gs - d / (cphi * cpsi))
-    t120 = t70 * t119
-    t121 = cphi * cphi * wrist * cpsi
-    outer_15 = s1 * t81 - t118 * t120 / t121 - ctheta23A * t78
-    t122 = 1.0 / (d * (1.0 + t69 / t68))
-    t123 = t10 * t106
-    t124 = t57 / 2.0
-    gap_13 = t123 + t124
-    gap_12 = gap_13 + t104
-    t125 = t61 / 2.0
-    t126 = t10 * t100
-    gap_23 = t125 - t126
-    gap_22 = gap_23 + t111
-    rate_22 = (outer_32 * mid_12 - t96 * mid_22) / t113
-    line_12 = ctheta23A * gap_12 - t66 * gap_22 - beyond * rate_22
-    t127 = t122 * line_12
-    t128 = spsi * t119
-    t129 = cphi * wrist * (cpsi * cpsi)
-    t130 = t70 * t79
-    t131 = t66 * t76 + ctheta23A * t130
-    t132 = cphi * t79
-    t133 = t118 * t128 / t129 - c1 * t131 + s1 * t132
-    t134 = tilted * tilted
-    t135 = 1.0 + beyond * beyond / t134
-    turn_12 = 1.0 / (tilted * t135)
-    t136 = t66 * gap_12 + ctheta23A * gap_22 + t67 * rate_22
-    t137 = t67 * beyond / (t135 * (tilted * t134))
-    t138 = turn_12 * t136 - t137 * line_12
-    t139 = ctheta23A * t80 + t66 * t82
-    outer_13 = c1 * t139
-    t140 = t97 * t114 - outer_15 * t127 + t133 * t138 + rate_22 * outer_13
-    t141 = (mid_13 * t98 + mid_23 * t105) / t113
-    rate_23 = (mid_13 * outer_32 - mid_23 * t96) / t113
-    line_13 = gap_13 * ctheta23A - gap_23 * t66 - beyond * rate_23
-    t142 = t122 * line_13
-    t143 = gap_23 * ctheta23A + gap_13 * t66 + t67 * rate_23
-    t144 = turn_12 * t143 - line_13 * t137
-    t145 = t97 * t141 - t142 * outer_15 + t144 * t133 + rate_23 * outer_13
-    t146 = t99 - t101
-    t147 = t102 + t103
-    t148 = t146 + t147
-    mid_25 = t107 + t108
-    t149 = t109 - t110
-    t150 = mid_25 - t149
-    t151 = (t98 * t148 - t105 * t150) / t113
-    gap_15 = t123 - t124
-    gap_14 = gap_15 + t147
-    t152 = t125 + t126
-    t153 = t152 - t149
-    t154 = (outer_32 * t148 + t96 * t150) / t113
-    line_14 = ctheta23A * gap_14 + t66 * t153 + beyond * t154
-    t155 = t122 * line_14
-    t156 = turn_12 * (t66 * gap_14 - ctheta23A * t153 - t67 * t154)
-    t157 = t156 - t137 * line_14
-    t158 = t97 * t151 + outer_15 * t155 - t133 * t157 + t154 * outer_13
-    t159 = (t146 * t98 - mid_25 * t105) / t113
-    t160 = (t146 * outer_32 + mid_25 * t96) / t113
-    line_15 = gap_15 * ctheta23A + t152 * t66 + beyond * t160
-    t161 = t122 * line_15
-    t162 = turn_12 * (t152 * ctheta23A - gap_15 * t66 + t67 * t160)
-    inner_45 = t162 + line_15 * t137
-    t163 = t97 * t159 + t161 * outer_15 + inner_45 * t133
-    t164 = t71 * t70 + t1 * t115
-    t165 = t71 * cphi - t1 * t116
-    t166 = t1 * cpsi
-    t167 = ctheta23A * t165 + t66 * t166
-    t168 = s1 * t77
-    t169 = s1 * t96
-    t170 = c1 * t115 - s1 * t117
-    t171 = c1 * t81 - t120 * t170 / t121 + ctheta23A * t168
-    outer_24 = t128 * t170 / t129 + s1 * t131 + c1 * t132
-    outer_23 = s1 * t139
-    t172 = t169 * t114 + t171 * t127 - outer_24 * t138 + rate_22 * outer_23
-    t173 = t141 * t169 + t142 * t171 - t144 * outer_24 + rate_23 * outer_23
-    t174 = t169 * t151 - t171 * t155 + outer_24 * t157 + t154 * outer_23
-    t175 = t159 * t169 - t161 * t171 - inner_45 * outer_24
-    t176 = 0.0 + t95
-    t177 = ctheta23A * cpsi + t66 * t116
-    outer_35 = t66 * t77 - t120 * t177 / t121
-    t178 = ctheta23A * t76 - t128 * t177 / t129 - t66 * t130
-    t179 = outer_32 * t114 - outer_35 * t127 - t178 * t138
-    t180 = outer_32 * t141 - t142 * outer_35 - t144 * t178
-    t181 = outer_32 * t151 + outer_35 * t155 + t178 * t157
-    t182 = outer_32 * t159 + t161 * outer_35 - inner_45 * t178
+    t78 = t74 * cpsi
+    t79 = L2 + t78
+    t80 = t1 * cphi + t69 * t75
+    t81 = a3 + t80
+    t82 = t65 * t79 - ctheta23A * t81
+    t83 = outer_32 - t82
+    t84 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t85 = t84 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t86 = t85 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t87 = t86 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t88 = t87 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t89 = t88 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t90 = t89 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t91 = -(_runtime.FEASIBILITY * (d * t27))
+    t92 = -(_runtime.FEASIBILITY * t72)
+    t93 = (t91 <= t51) & (t91 <= t53) & (t92 <= t73) & (t92 <= t71)
+    failed = np.logical_not(t90 & (0.0 <= lp)) | np.logical_not(t93)
+    t94 = _runtime.poison(failed)
+    t95 = L1 * t64
+    t96 = c1 * t95
+    t97 = L2 * t65 - a3 * ctheta23A
+    t98 = t45 / 2.0
+    t99 = t16 / 2.0 - t18 / 2.0
+    t100 = t55 * t99
+    mid_13 = t98 + t100
+    t101 = t49 / 2.0
+    t102 = t58 / 2.0
+    t103 = t101 - t102
+    mid_12 = mid_13 + t103
+    t104 = L2 * ctheta23A + a3 * t65
+    t105 = t42 / 2.0 + t43 / 2.0
+    t106 = t55 * t105
+    t107 = t20 / 2.0
+    mid_23 = t106 - t107
+    t108 = t25 / 2.0
+    t109 = t61 / 2.0
+    t110 = t108 + t109
+    mid_22 = mid_23 + t110
+    t111 = L2 * (ctheta2A * ctheta23A + t64 * t65) - a3 * (t64 * ctheta23A - ctheta2A * t65)
+    t112 = L1 * t111
+    t113 = (t97 * mid_12 + t104 * mid_22) / t112
+    t114 = cphi * spsi
+    t115 = t69 * spsi
+    t116 = t65 * cpsi - ctheta23A * t115
+    t117 = s1 * t114 + c1 * t116
+    t118 = d * (gs - d / (cphi * cpsi))
+    t119 = t69 * t118
+    t120 = cphi * cphi * wrist * cpsi
+    outer_15 = s1 * t80 - t117 * t119 / t120 - ctheta23A * t77
+    t121 = 1.0 / (d * (1.0 + t68 / t67))
+    t122 = t10 * t105
+    t123 = t56 / 2.0
+    gap_13 = t122 + t123
+    gap_12 = gap_13 + t103
+    t124 = t60 / 2.0
+    t125 = t10 * t99
+    gap_23 = t124 - t125
+    gap_22 = gap_23 + t110
+    rate_22 = (outer_32 * mid_12 - t95 * mid_22) / t112
+    line_12 = ctheta23A * gap_12 - t65 * gap_22 - beyond * rate_22
+    t126 = t121 * line_12
+    t127 = spsi * t118
+    t128 = cphi * wrist * (cpsi * cpsi)
+    t129 = t69 * t78
+    t130 = t65 * t75 + ctheta23A * t129
+    t131 = cphi * t78
+    t132 = t117 * t127 / t128 - c1 * t130 + s1 * t131
+    t133 = tilted * tilted
+    t134 = 1.0 + beyond * beyond / t133
+    turn_12 = 1.0 / (tilted * t134)
+    t135 = t65 * gap_12 + ctheta23A * gap_22 + t66 * rate_22
+    t136 = t66 * beyond / (t134 * (tilted * t133))
+    t137 = turn_12 * t135 - t136 * line_12
+    t138 = ctheta23A * t79 + t65 * t81
+    outer_13 = c1 * t138
+    t139 = t96 * t113 - outer_15 * t126 + t132 * t137 + rate_22 * outer_13
+    t140 = (mid_13 * t97 + mid_23 * t104) / t112
+    rate_23 = (mid_13 * outer_32 - mid_23 * t95) / t112
+    line_13 = gap_13 * ctheta23A - gap_23 * t65 - beyond * rate_23
+    t141 = t121 * line_13
+    t142 = gap_23 * ctheta23A + gap_13 * t65 + t66 * rate_23
+    t143 = turn_12 * t142 - line_13 * t136
+    t144 = t96 * t140 - t141 * outer_15 + t143 * t132 + rate_23 * outer_13
+    t145 = t98 - t100
+    t146 = t101 + t102
+    t147 = t145 + t146
+    mid_25 = t106 + t107
+    t148 = t108 - t109
+    t149 = mid_25 - t148
+    t150 = (t97 * t147 - t104 * t149) / t112
+    gap_15 = t122 - t123
+    gap_14 = gap_15 + t146
+    t151 = t124 + t125
+    t152 = t151 - t148
+    t153 = (outer_32 * t147 + t95 * t149) / t112
+    line_14 = ctheta23A * gap_14 + t65 * t152 + beyond * t153
+    t154 = t121 * line_14
+    t155 = turn_12 * (t65 * gap_14 - ctheta23A * t152 - t66 * t153)
+    t156 = t155 - t136 * line_14
+    t157 = t96 * t150 + outer_15 * t154 - t132 * t156 + t153 * outer_13
+    t158 = (t145 * t97 - mid_25 * t104) / t112
+    t159 = (t145 * outer_32 + mid_25 * t95) / t112
+    line_15 = gap_15 * ctheta23A + t151 * t65 + beyond * t159
+    t160 = t121 * line_15
+    t161 = turn_12 * (t151 * ctheta23A - gap_15 * t65 + t66 * t159)
+    inner_45 = t161 + line_15 * t136
+    t162 = t96 * t158 + t160 * outer_15 + inner_45 * t132
+    t163 = t70 * t69 + t1 * t114
+    t164 = t70 * cphi - t1 * t115
+    t165 = t1 * cpsi
+    t166 = ctheta23A * t164 + t65 * t165
+    t167 = s1 * t76
+    t168 = s1 * t95
+    t169 = c1 * t114 - s1 * t116
+    t170 = c1 * t80 - t119 * t169 / t120 + ctheta23A * t167
+    outer_24 = t127 * t169 / t128 + s1 * t130 + c1 * t131
+    outer_23 = s1 * t138
+    t171 = t168 * t113 + t170 * t126 - outer_24 * t137 + rate_22 * outer_23
+    t172 = t140 * t168 + t141 * t170 - t143 * outer_24 + rate_23 * outer_23
+    t173 = t168 * t150 - t170 * t154 + outer_24 * t156 + t153 * outer_23
+    t174 = t158 * t168 - t160 * t170 - inner_45 * outer_24
+    t175 = 0.0 + t94
+    t176 = ctheta23A * cpsi + t65 * t115
+    outer_35 = t65 * t76 - t119 * t176 / t120
+    t177 = ctheta23A * t75 - t127 * t176 / t128 - t65 * t129
+    t178 = outer_32 * t113 - outer_35 * t126 - t177 * t137
+    t179 = outer_32 * t140 - t141 * outer_35 - t143 * t177
+    t180 = outer_32 * t150 + outer_35 * t154 + t177 * t156
+    t181 = outer_32 * t158 + t160 * outer_35 - inner_45 * t177
     return (
-        t78 - s1 * t84 + t95,
-        t140 + t95,
-        t145 + t95,
-        -t158 + t95,
-        -(t163 + t160 * outer_13) + t95,
-        s1 * t164 + c1 * t167 + t95,
-        t168 + c1 * t84 + t95,
-        t172 + t95,
-        t173 + t95,
-        -t174 + t95,
-        -(t175 + t160 * outer_23) + t95,
-        s1 * t167 - c1 * t164 + t95,
-        t176,
-        t179 - rate_22 * t83 + t95,
-        t180 - rate_23 * t83 + t95,
-        t154 * t83 - t181 + t95,
-        t160 * t83 - t182 + t95,
-        ctheta23A * t166 - t66 * t165 + t95,
-        t176,
-        -t138 + t95,
-        -t144 + t95,
-        -t157 + t95,
-        inner_45 + t95,
-        t176,
-        t176,
-        -t127 + t95,
-        -t142 + t95,
-        -t155 + t95,
-        -t161 + t95,
-        t176,
-        t176,
-        t176,
-        t176,
-        t176,
-        t176,
-        1.0 + t95,
+        t77 - s1 * t83 + t94,
+        t139 + t94,
+        t144 + t94,
+        -t157 + t94,
+        -(t162 + t159 * outer_13) + t94,
+        s1 * t163 + c1 * t166 + t94,
+        t167 + c1 * t83 + t94,
+        t171 + t94,
+        t172 + t94,
+        -t173 + t94,
+        -(t174 + t159 * outer_23) + t94,
+        s1 * t166 - c1 * t163 + t94,
+        t175,
+        t178 - rate_22 * t82 + t94,
+        t179 - rate_23 * t82 + t94,
+        t153 * t82 - t180 + t94,
+        t159 * t82 - t181 + t94,
+        ctheta23A * t165 - t65 * t164 + t94,
+        t175,
+        -t137 + t94,
+        -t143 + t94,
+        -t156 + t94,
+        inner_45 + t94,
+        t175,
+        t175,
+        -t126 + t94,
+        -t141 + t94,
+        -t154 + t94,
+        -t160 + t94,
+        t175,
+        t175,
+        t175,
+        t175,
+        t175,
+        t175,
+        1.0 + t94,
     )
 
 
@@ -909,81 +906,80 @@ def _determinant(
     t40 = L1 + fore
     t41 = t40 * _runtime.VANISHING
     folded_virtual = np.sqrt(t37 * t37 + r_I * r_I) <= t41
-    t42 = t40 * t40
-    short_virtual = L1 * fore <= t42 * _runtime.VANISHING
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t40 * t40)
     straight_left = L2 * t5 + a3 * t3
-    t43 = 0.0 <= straight_left
-    t44 = L2 * t3 - a3 * t5
-    large_left = fore + np.where(t43, straight_left, -straight_left)
-    small_left = t44 * t44 / large_left
-    t45 = L1 * 2.0
-    t46 = np.where(t43, small_left, large_left) * t45 / 2.0
+    t42 = 0.0 <= straight_left
+    t43 = L2 * t3 - a3 * t5
+    large_left = fore + np.where(t42, straight_left, -straight_left)
+    small_left = t43 * t43 / large_left
+    t44 = L1 * 2.0
+    t45 = np.where(t42, small_left, large_left) * t44 / 2.0
     straight_right = L2 * t12 + a3 * t10
-    t47 = 0.0 <= straight_right
-    t48 = L2 * t10 - a3 * t12
-    t49 = np.where(t47, straight_right, -straight_right)
-    large_right = fore + t49
-    small_right = t48 * t48 / large_right
-    N_right = np.where(t47, small_right, large_right) * t45
-    t50 = s2L_half * t21 - c2L_half * t22
-    t51 = L1 * (t31 - t32)
-    t52 = t50 * t30 - t33 * t51
-    t53 = t38 * t50 + t39 * t51
-    gap = t52 * t52 + t53 * t53
-    t54 = t46 + N_right / 2.0 + gap
-    N_virtual = np.maximum(t54, 0.0)
-    t55 = np.where(t43, large_left, small_left) * t45 / 2.0
-    M_right = np.where(t47, large_right, small_right) * t45
-    t56 = t55 + M_right / 2.0 - gap
-    M_virtual = np.maximum(t56, 0.0)
+    t46 = 0.0 <= straight_right
+    t47 = L2 * t10 - a3 * t12
+    t48 = np.where(t46, straight_right, -straight_right)
+    large_right = fore + t48
+    small_right = t47 * t47 / large_right
+    N_right = np.where(t46, small_right, large_right) * t44
+    t49 = s2L_half * t21 - c2L_half * t22
+    t50 = L1 * (t31 - t32)
+    t51 = t49 * t30 - t33 * t50
+    t52 = t38 * t49 + t39 * t50
+    gap = t51 * t51 + t52 * t52
+    t53 = t45 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t53, 0.0)
+    t54 = np.where(t42, large_left, small_left) * t44 / 2.0
+    M_right = np.where(t46, large_right, small_right) * t44
+    t55 = t54 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t55, 0.0)
     whole_virtual = N_virtual + M_virtual
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t57 = 2.0 * np.where(0.0 <= -t48, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t57 * np.sqrt(M_virtual) / whole_virtual)
-    t58 = fore * s_bend_virtual
-    out_virtual = ahead_1_virtual * r_I - t37 * t58
-    t59 = ahead_1_virtual * t37 + r_I * t58
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t59 * t59)
+    t56 = 2.0 * np.where(0.0 <= -t47, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t56 * np.sqrt(M_virtual) / whole_virtual)
+    t57 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t37 * t57
+    t58 = ahead_1_virtual * t37 + r_I * t57
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t58 * t58)
     ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
     bare_virtual = fore <= t41
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t60 = np.where(folded_virtual, 0.0, t59 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t60
-    t61 = c_relative_virtual * t60 - s_relative_virtual * ctheta2A
-    t62 = ctheta2A * ctheta23A + t60 * t61
-    t63 = d * d
-    t64 = t52 * ctheta23A - t53 * t61
-    tilted = np.sqrt(t63 + t64 * t64)
-    base = np.sqrt(t63 + gap)
-    t65 = base - (gs - al)
-    t66 = gs + al
-    t67 = t66 - base
-    wrist = np.sqrt(np.maximum(t65, 0.0)) * np.sqrt(np.maximum(t67, 0.0))
-    t68 = loff + lp * c + wrist
-    t69 = L2 + tilted / base * t68
-    t70 = t60 * ctheta23A - ctheta2A * t61
-    t71 = t64 / tilted * t68 * ((t52 * t61 + t53 * ctheta23A) / base)
-    t72 = a3 + lp * s * (d / tilted) + t71
-    t73 = d * (L1 * L1) * t7 * t14 * (t62 * t69 - t70 * t72)
-    t74 = t73 * (L1 * ctheta2A + ctheta23A * t72 - t61 * t69)
-    t75 = 4.0 * tilted * (L2 * t62 - a3 * t70) * (base * base)
-    t76 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t77 = t76 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t78 = t77 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t79 = t78 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t80 = t79 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t81 = t80 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t82 = t81 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t83 = -(_runtime.FEASIBILITY * t42)
-    t84 = -(_runtime.FEASIBILITY * t66)
-    t85 = (t83 <= t54) & (t83 <= t56) & (t84 <= t67) & (t84 <= t65)
-    failed = np.logical_not(t82 & (0.0 <= lp)) | np.logical_not(t85)
+    t59 = np.where(folded_virtual, 0.0, t58 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t59
+    t60 = c_relative_virtual * t59 - s_relative_virtual * ctheta2A
+    t61 = ctheta2A * ctheta23A + t59 * t60
+    t62 = d * d
+    t63 = t51 * ctheta23A - t52 * t60
+    tilted = np.sqrt(t62 + t63 * t63)
+    base = np.sqrt(t62 + gap)
+    t64 = base - (gs - al)
+    t65 = gs + al
+    t66 = t65 - base
+    wrist = np.sqrt(np.maximum(t64, 0.0)) * np.sqrt(np.maximum(t66, 0.0))
+    t67 = loff + lp * c + wrist
+    t68 = L2 + tilted / base * t67
+    t69 = t59 * ctheta23A - ctheta2A * t60
+    t70 = t63 / tilted * t67 * ((t51 * t60 + t52 * ctheta23A) / base)
+    t71 = a3 + lp * s * (d / tilted) + t70
+    t72 = d * (L1 * L1) * t7 * t14 * (t61 * t68 - t69 * t71)
+    t73 = t72 * (L1 * ctheta2A + ctheta23A * t71 - t60 * t68)
+    t74 = 4.0 * tilted * (L2 * t61 - a3 * t69) * (base * base)
+    t75 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t76 = t75 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t77 = t76 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t78 = t77 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t79 = t78 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t80 = t79 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t81 = t80 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t82 = -(_runtime.FEASIBILITY * (d * t40))
+    t83 = -(_runtime.FEASIBILITY * t65)
+    t84 = (t82 <= t53) & (t82 <= t55) & (t83 <= t66) & (t83 <= t64)
+    failed = np.logical_not(t81 & (0.0 <= lp)) | np.logical_not(t84)
     return (
-        t74 / t75 + _runtime.poison(failed),
+        t73 / t74 + _runtime.poison(failed),
     )
 
 
@@ -1049,103 +1045,102 @@ def _singularities(
     t26 = L1 + fore
     t27 = t26 * _runtime.VANISHING
     folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t27
-    t28 = t26 * t26
-    short_virtual = L1 * fore <= t28 * _runtime.VANISHING
-    t29 = s3L_half * c3L_half
-    t30 = t29 + t29
-    t31 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t30 + a3 * t31
-    t32 = 0.0 <= straight_left
-    t33 = L2 * t31 - a3 * t30
-    large_left = fore + np.where(t32, straight_left, -straight_left)
-    small_left = t33 * t33 / large_left
-    t34 = L1 * 2.0
-    t35 = np.where(t32, small_left, large_left) * t34 / 2.0
-    t36 = s3R_half * c3R_half
-    t37 = t36 + t36
-    t38 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t37 + a3 * t38
-    t39 = 0.0 <= straight_right
-    t40 = L2 * t38 - a3 * t37
-    t41 = np.where(t39, straight_right, -straight_right)
-    large_right = fore + t41
-    small_right = t40 * t40 / large_right
-    N_right = np.where(t39, small_right, large_right) * t34
-    t42 = s2L_half * t7 - c2L_half * t8
-    t43 = L1 * (t17 - t18)
-    t44 = t42 * t16 - t19 * t43
-    t45 = t24 * t42 + t25 * t43
-    gap = t44 * t44 + t45 * t45
-    t46 = t35 + N_right / 2.0 + gap
-    N_virtual = np.maximum(t46, 0.0)
-    t47 = np.where(t32, large_left, small_left) * t34 / 2.0
-    M_right = np.where(t39, large_right, small_right) * t34
-    t48 = t47 + M_right / 2.0 - gap
-    M_virtual = np.maximum(t48, 0.0)
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t26 * t26)
+    t28 = s3L_half * c3L_half
+    t29 = t28 + t28
+    t30 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t29 + a3 * t30
+    t31 = 0.0 <= straight_left
+    t32 = L2 * t30 - a3 * t29
+    large_left = fore + np.where(t31, straight_left, -straight_left)
+    small_left = t32 * t32 / large_left
+    t33 = L1 * 2.0
+    t34 = np.where(t31, small_left, large_left) * t33 / 2.0
+    t35 = s3R_half * c3R_half
+    t36 = t35 + t35
+    t37 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t36 + a3 * t37
+    t38 = 0.0 <= straight_right
+    t39 = L2 * t37 - a3 * t36
+    t40 = np.where(t38, straight_right, -straight_right)
+    large_right = fore + t40
+    small_right = t39 * t39 / large_right
+    N_right = np.where(t38, small_right, large_right) * t33
+    t41 = s2L_half * t7 - c2L_half * t8
+    t42 = L1 * (t17 - t18)
+    t43 = t41 * t16 - t19 * t42
+    t44 = t24 * t41 + t25 * t42
+    gap = t43 * t43 + t44 * t44
+    t45 = t34 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t45, 0.0)
+    t46 = np.where(t31, large_left, small_left) * t33 / 2.0
+    M_right = np.where(t38, large_right, small_right) * t33
+    t47 = t46 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t47, 0.0)
     whole_virtual = N_virtual + M_virtual
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t49 = 2.0 * np.where(0.0 <= -t40, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t49 * np.sqrt(M_virtual) / whole_virtual)
-    t50 = fore * s_bend_virtual
-    out_virtual = ahead_1_virtual * r_I - t23 * t50
-    t51 = ahead_1_virtual * t23 + r_I * t50
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
+    t48 = 2.0 * np.where(0.0 <= -t39, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t48 * np.sqrt(M_virtual) / whole_virtual)
+    t49 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t23 * t49
+    t50 = ahead_1_virtual * t23 + r_I * t49
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t50 * t50)
     ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
     bare_virtual = fore <= t27
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t52 = np.where(folded_virtual, 0.0, t51 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t52
-    t53 = d * d
-    t54 = c_relative_virtual * t52 - s_relative_virtual * ctheta2A
-    t55 = t44 * ctheta23A - t45 * t54
-    tilted = np.sqrt(t53 + t55 * t55)
-    base = np.sqrt(t53 + gap)
-    t56 = t55 / tilted * ((t44 * t54 + t45 * ctheta23A) / base)
-    t57 = base - (gs - al)
-    t58 = gs + al
-    t59 = t58 - base
-    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
-    t60 = loff + lp * c + wrist
-    t61 = a3 + lp * s * (d / tilted) + t56 * t60
-    t62 = L2 + t60 * (tilted / base)
-    t63 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t64 = t63 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t65 = t64 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t66 = t65 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t67 = t66 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t68 = t67 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t69 = t68 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t70 = -(_runtime.FEASIBILITY * t28)
-    t71 = -(_runtime.FEASIBILITY * t58)
-    t72 = (t70 <= t46) & (t70 <= t48) & (t71 <= t59) & (t71 <= t57)
-    failed = np.logical_not(t69 & (0.0 <= lp)) | np.logical_not(t72)
-    t73 = _runtime.poison(failed)
-    t74 = L1 * ctheta2A + ctheta23A * t61 - t54 * t62 + t73
-    t75 = ctheta2A * ctheta23A + t52 * t54
-    t76 = t52 * ctheta23A - ctheta2A * t54
-    t77 = s2R_half * c2R_half
-    t78 = t77 + t77
-    t79 = c2R_half * c2R_half - s2R_half * s2R_half
-    s2R3R = t38 * t78 + t37 * t79
-    c2R3R = t38 * t79 - t37 * t78
-    t80 = L2 * (t78 * s2R3R + t79 * c2R3R) + a3 * (t78 * c2R3R - t79 * s2R3R)
-    t81 = s2L_half * c2L_half
-    t82 = t81 + t81
-    t83 = c2L_half * c2L_half - s2L_half * s2L_half
-    s2L3L = t31 * t82 + t30 * t83
-    c2L3L = t31 * t83 - t30 * t82
-    t84 = L2 * (t82 * s2L3L + t83 * c2L3L) + a3 * (t82 * c2L3L - t83 * s2L3L)
+    t51 = np.where(folded_virtual, 0.0, t50 / norm_virtual)
+    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t51
+    t52 = d * d
+    t53 = c_relative_virtual * t51 - s_relative_virtual * ctheta2A
+    t54 = t43 * ctheta23A - t44 * t53
+    tilted = np.sqrt(t52 + t54 * t54)
+    base = np.sqrt(t52 + gap)
+    t55 = t54 / tilted * ((t43 * t53 + t44 * ctheta23A) / base)
+    t56 = base - (gs - al)
+    t57 = gs + al
+    t58 = t57 - base
+    wrist = np.sqrt(np.maximum(t56, 0.0)) * np.sqrt(np.maximum(t58, 0.0))
+    t59 = loff + lp * c + wrist
+    t60 = a3 + lp * s * (d / tilted) + t55 * t59
+    t61 = L2 + t59 * (tilted / base)
+    t62 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t63 = t62 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t64 = t63 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t65 = t64 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t66 = t65 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t67 = t66 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t68 = t67 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t69 = -(_runtime.FEASIBILITY * (d * t26))
+    t70 = -(_runtime.FEASIBILITY * t57)
+    t71 = (t69 <= t45) & (t69 <= t47) & (t70 <= t58) & (t70 <= t56)
+    failed = np.logical_not(t68 & (0.0 <= lp)) | np.logical_not(t71)
+    t72 = _runtime.poison(failed)
+    t73 = L1 * ctheta2A + ctheta23A * t60 - t53 * t61 + t72
+    t74 = ctheta2A * ctheta23A + t51 * t53
+    t75 = t51 * ctheta23A - ctheta2A * t53
+    t76 = s2R_half * c2R_half
+    t77 = t76 + t76
+    t78 = c2R_half * c2R_half - s2R_half * s2R_half
+    s2R3R = t37 * t77 + t36 * t78
+    c2R3R = t37 * t78 - t36 * t77
+    t79 = L2 * (t77 * s2R3R + t78 * c2R3R) + a3 * (t77 * c2R3R - t78 * s2R3R)
+    t80 = s2L_half * c2L_half
+    t81 = t80 + t80
+    t82 = c2L_half * c2L_half - s2L_half * s2L_half
+    s2L3L = t30 * t81 + t29 * t82
+    c2L3L = t30 * t82 - t29 * t81
+    t83 = L2 * (t81 * s2L3L + t82 * c2L3L) + a3 * (t81 * c2L3L - t82 * s2L3L)
     return (
-        t74,
-        t75 * t62 - t76 * t61 + t73,
-        t80 + t73,
-        t84 + t73,
-        L2 * t75 - a3 * t76 + t73,
-        wrist + t73,
+        t73,
+        t74 * t61 - t75 * t60 + t72,
+        t79 + t72,
+        t83 + t72,
+        L2 * t74 - a3 * t75 + t72,
+        wrist + t72,
     )
 
 
@@ -1184,565 +1179,564 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t3 = lp * s_pitch
     t4 = c_phi * c_psi
     t5 = d - (gs - al) * t4
-    t6 = gs + al
-    t7 = t6 * t4 - d
-    t8 = np.sqrt(np.maximum(t5, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
-    t9 = loff + lp * c_pitch + t8 / t4
-    t10 = s_psi * t9
-    t11 = s_phi * t3 - c_phi * t10
-    t12 = h + t11
-    below = np.maximum(t12, 0.0)
-    t13 = np.sqrt(below)
-    t14 = h - t11
-    above = np.maximum(t14, 0.0)
-    t15 = np.sqrt(above)
-    t16 = 2.0 * np.arctan2(t13, t15)
-    t17 = _runtime.wrap(-np.where(nowhere, 0.0, t2 - t16))
-    t18 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t19 = t18 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t20 = t19 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
-    t21 = t20 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
-    t22 = t21 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t23 = t22 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t24 = t23 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    invalid = np.logical_not(t24 & (0.0 <= loff) & (0.0 <= lp))
-    t25 = -(_runtime.FEASIBILITY * (d + t6))
-    t26 = (-_runtime.FEASIBILITY <= c_phi) & (t25 <= t7)
-    t27 = -(_runtime.FEASIBILITY * t1)
-    t28 = t26 & (t25 <= t5) & (t27 <= t12) & (t27 <= t14)
-    L_2W = L2 + c_psi * t9
-    a_3W = a3 + c_phi * t3 + s_phi * t10
+    t6 = (gs + al) * t4 - d
+    t7 = np.sqrt(np.maximum(t5, 0.0)) * np.sqrt(np.maximum(t6, 0.0))
+    t8 = loff + lp * c_pitch + t7 / t4
+    t9 = s_psi * t8
+    t10 = s_phi * t3 - c_phi * t9
+    t11 = h + t10
+    below = np.maximum(t11, 0.0)
+    t12 = np.sqrt(below)
+    t13 = h - t10
+    above = np.maximum(t13, 0.0)
+    t14 = np.sqrt(above)
+    t15 = 2.0 * np.arctan2(t12, t14)
+    t16 = _runtime.wrap(-np.where(nowhere, 0.0, t2 - t15))
+    t17 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t18 = t17 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t19 = t18 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
+    t20 = t19 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
+    t21 = t20 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t22 = t21 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t23 = t22 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    invalid = np.logical_not(t23 & (0.0 <= loff) & (0.0 <= lp))
+    t24 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t6)
+    t26 = -(_runtime.FEASIBILITY * t1)
+    t27 = t25 & (t24 <= t5) & (t26 <= t11) & (t26 <= t13)
+    L_2W = L2 + c_psi * t8
+    a_3W = a3 + c_phi * t3 + s_phi * t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t29 = L1 + fore
-    t30 = -(_runtime.FEASIBILITY * t29)
-    t31 = z - d1
-    t32 = t31 * t31
+    t28 = L1 + fore
+    t29 = -(_runtime.FEASIBILITY * t28)
+    t30 = z - d1
+    t31 = t30 * t30
     total = below + above
-    t33 = (below - above) / total
-    t34 = y * t33
-    s_turn = 2.0 * t13 * t15 / total
-    t35 = x * s_turn
-    t36 = x * np.where(nowhere, 1.0, -((t34 - t35) / h))
-    t37 = x * t33
-    t38 = y * s_turn
-    outward = t36 + y * np.where(nowhere, 0.0, (t37 + t38) / h)
-    reach = np.sqrt(t32 + outward * outward)
-    t39 = t29 - reach
-    t40 = L1 - fore
-    t41 = reach + t40
-    t42 = reach - t40
-    t43 = t28 & (t30 <= t39) & (t30 <= t41) & (t30 <= t42)
+    t32 = (below - above) / total
+    t33 = y * t32
+    s_turn = 2.0 * t12 * t14 / total
+    t34 = x * s_turn
+    t35 = x * np.where(nowhere, 1.0, -((t33 - t34) / h))
+    t36 = x * t32
+    t37 = y * s_turn
+    outward = t35 + y * np.where(nowhere, 0.0, (t36 + t37) / h)
+    reach = np.sqrt(t31 + outward * outward)
+    t38 = t28 - reach
+    t39 = L1 - fore
+    t40 = reach + t39
+    t41 = reach - t39
+    t42 = t27 & (t29 <= t38) & (t29 <= t40) & (t29 <= t41)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
-    t44 = L1 + fore_arm
-    t45 = t44 * t44
-    t46 = -(_runtime.FEASIBILITY * t45)
-    t47 = L1 * 2.0
-    t48 = _runtime.VANISHING * t29
-    folded = reach <= t48
-    s_sight = np.where(folded, 0.0, t31 / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t29 * t29)
-    t49 = folded | short
-    A = np.maximum(t39, 0.0)
-    C = np.maximum(t42, 0.0)
-    t50 = A * C
-    S = t29 + reach
-    B = np.maximum(t41, 0.0)
-    t51 = S * B
-    at_base = t50 + t51
-    c_base = np.where(t49, 1.0, -((t50 - t51) / at_base))
-    t52 = s_sight * c_base
+    t43 = L1 + fore_arm
+    t44 = d * t43
+    t45 = -(_runtime.FEASIBILITY * t44)
+    t46 = L1 * 2.0
+    t47 = _runtime.VANISHING * t28
+    folded = reach <= t47
+    s_sight = np.where(folded, 0.0, t30 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t28 * t28)
+    t48 = folded | short
+    A = np.maximum(t38, 0.0)
+    C = np.maximum(t41, 0.0)
+    t49 = A * C
+    S = t28 + reach
+    B = np.maximum(t40, 0.0)
+    t50 = S * B
+    at_base = t49 + t50
+    c_base = np.where(t48, 1.0, -((t49 - t50) / at_base))
+    t51 = s_sight * c_base
     c_sight = np.where(folded, 1.0, outward / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = np.where(t49, 0.0, area_front_elbow_down_alike / at_base)
-    t53 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t52 + t53
-    t54 = c_sight * c_base
-    t55 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t54 - t55
-    bare = fore <= t48
+    s_base_front_elbow_down_alike = np.where(t48, 0.0, area_front_elbow_down_alike / at_base)
+    t52 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t51 + t52
+    t53 = c_sight * c_base
+    t54 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t53 - t54
+    bare = fore <= t47
     c_lag = np.where(bare, 1.0, a_3W / fore)
-    t56 = A * S
-    t57 = C * B
-    at_elbow = t56 + t57
-    c_bend = np.where(short, 1.0, -((t56 - t57) / at_elbow))
-    t58 = c_lag * c_bend
+    t55 = A * S
+    t56 = C * B
+    at_elbow = t55 + t56
+    c_bend = np.where(short, 1.0, -((t55 - t56) / at_elbow))
+    t57 = c_lag * c_bend
     s_lag = np.where(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down_alike = np.where(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t59 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t58 + t59
-    t60 = s_lag * c_bend
-    t61 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t60 - t61
+    t58 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t57 + t58
+    t59 = s_lag * c_bend
+    t60 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t59 - t60
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = c_relative * stheta2A + ctheta2A * s_relative
-    t62 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t61 = stheta2A * ctheta23A - ctheta2A * stheta23A
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t63 = L2 * t62 - a3 * c_elbow
-    t64 = 0.0 <= -t63
-    t65 = L2 * c_elbow + a3 * t62
-    large = fore_arm + np.where(t64, -t63, t63)
-    small = t65 * t65 / large
-    N = t47 * np.where(t64, small, large)
-    t66 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t67 = d * t66
-    t68 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t69 = d * t68
-    gap = t67 * t67 + t69 * t69
+    t62 = L2 * t61 - a3 * c_elbow
+    t63 = 0.0 <= -t62
+    t64 = L2 * c_elbow + a3 * t61
+    large = fore_arm + np.where(t63, -t62, t62)
+    small = t64 * t64 / large
+    N = t46 * np.where(t63, small, large)
+    t65 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t66 = d * t65
+    t67 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
+    t68 = d * t67
+    gap = t66 * t66 + t68 * t68
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t70 = 2.0 * t67 * point_11 + 2.0 * t69 * point_21
-    t71 = gap - t70
-    t72 = N - t71
-    M = t47 * np.where(t64, large, small)
-    t73 = M + t71
-    t74 = gap + t70
-    t75 = N - t74
-    t76 = t43 & (t46 <= t72) & (t46 <= t73) & (t46 <= t75)
-    t77 = M + t74
-    unreachable = np.logical_not(t76 & (t46 <= t77))
-    t78 = _runtime.poison(invalid | unreachable)
-    t79 = t17 + t78
-    t80 = t69 - point_21
-    t81 = t67 - point_11
-    t82 = _runtime.VANISHING * t44
-    folded_right = np.sqrt(t80 * t80 + t81 * t81) <= t82
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t45
-    t83 = 2.0 * np.where(0.0 <= -t65, 1.0, -1.0)
-    t84 = _runtime.VANISHING * (_runtime.VANISHING * (t45 * 16.0))
-    N_right = np.maximum(t72, t84)
+    t69 = 2.0 * t66 * point_11 + 2.0 * t68 * point_21
+    t70 = gap - t69
+    t71 = N - t70
+    M = t46 * np.where(t63, large, small)
+    t72 = M + t70
+    t73 = gap + t69
+    t74 = N - t73
+    t75 = t42 & (t45 <= t71) & (t45 <= t72) & (t45 <= t74)
+    t76 = M + t73
+    unreachable = np.logical_not(t75 & (t45 <= t76))
+    t77 = _runtime.poison(invalid | unreachable)
+    t78 = t16 + t77
+    t79 = t68 - point_21
+    t80 = t66 - point_11
+    t81 = _runtime.VANISHING * t43
+    folded_right = np.sqrt(t79 * t79 + t80 * t80) <= t81
+    short_right = L1 * fore_arm <= _runtime.VANISHING * (t43 * t43)
+    t82 = 2.0 * np.where(0.0 <= -t64, 1.0, -1.0)
+    t83 = _runtime.VANISHING * (_runtime.VANISHING * (t44 * 16.0))
+    N_right = np.maximum(t71, t83)
     rN_right = np.sqrt(N_right)
-    M_right = np.maximum(t73, t84)
+    M_right = np.maximum(t72, t83)
     rM_right = np.sqrt(M_right)
     whole_right = N_right + M_right
-    s_bend_right = np.where(short_right, 0.0, t83 * rN_right * rM_right / whole_right)
-    t85 = fore_arm * s_bend_right
+    s_bend_right = np.where(short_right, 0.0, t82 * rN_right * rM_right / whole_right)
+    t84 = fore_arm * s_bend_right
     c_bend_right = np.where(short_right, 1.0, -((N_right - M_right) / whole_right))
     ahead_1_right = L1 + fore_arm * c_bend_right
-    t86 = np.arctan2(t81 * t85 - t80 * ahead_1_right, -(t81 * ahead_1_right + t80 * t85))
-    t87 = _runtime.wrap(np.where(folded_right, 0.0, t86))
-    t88 = t87 + t78
-    bare_right = fore_arm <= t82
-    t89 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
-    t90 = np.where(short_right, 0.0, t83 * np.arctan2(rN_right, rM_right))
-    t91 = _runtime.wrap(t89 + t90) + t78
-    h_left = t69 + point_21
-    r_left = t67 + point_11
-    folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t82
-    N_left = np.maximum(t75, 0.0)
-    M_left = np.maximum(t77, 0.0)
+    t85 = np.arctan2(t80 * t84 - t79 * ahead_1_right, -(t80 * ahead_1_right + t79 * t84))
+    t86 = _runtime.wrap(np.where(folded_right, 0.0, t85))
+    t87 = t86 + t77
+    bare_right = fore_arm <= t81
+    t88 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
+    t89 = np.where(short_right, 0.0, t82 * np.arctan2(rN_right, rM_right))
+    t90 = _runtime.wrap(t88 + t89) + t77
+    h_left = t68 + point_21
+    r_left = t66 + point_11
+    folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t81
+    N_left = np.maximum(t74, 0.0)
+    M_left = np.maximum(t76, 0.0)
     whole_left = N_left + M_left
     c_bend_left = np.where(short_right, 1.0, -((N_left - M_left) / whole_left))
     ahead_1_left = L1 + fore_arm * c_bend_left
-    t92 = h_left * ahead_1_left
+    t91 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = np.where(short_right, 0.0, t83 * rN_left * rM_left / whole_left)
-    t93 = fore_arm * s_bend_left
-    t94 = r_left * t93
-    t95 = r_left * ahead_1_left
-    t96 = h_left * t93
-    t97 = np.where(folded_left, 0.0, np.arctan2(t92 - t94, t95 + t96))
-    t98 = np.where(short_right, 0.0, t83 * np.arctan2(rN_left, rM_left))
-    t99 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    t100 = t99 + t78
-    t101 = np.where(folded_left, 0.0, np.arctan2(t92 + t94, t95 - t96))
-    stheta2A_front_elbow_down_alike = t52 - t53
-    ctheta2A_front_elbow_down_alike = t54 + t55
-    c_relative_front_elbow_down_alike = t58 - t59
-    t102 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t60 + t61
-    t103 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t102 - t103
-    t104 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t105 = c_relative_front_elbow_down_alike * stheta2A_front_elbow_down_alike
-    t106 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t105 + t106
-    t107 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t108 = t104 - t107
-    t109 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t110 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t109 + t110
-    t111 = L2 * t108 - a3 * c_elbow_front_elbow_down_alike
-    t112 = 0.0 <= -t111
-    t113 = L2 * c_elbow_front_elbow_down_alike + a3 * t108
-    large_front_elbow_down_alike = fore_arm + np.where(t112, -t111, t111)
-    small_front_elbow_down_alike = t113 * t113 / large_front_elbow_down_alike
-    t114 = np.where(t112, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    N_front_elbow_down_alike = t47 * t114
-    t115 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t116 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t117 = d * (t115 - t116)
-    t118 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t119 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t120 = d * (t118 + t119)
-    gap_front_elbow_down_alike = t117 * t117 + t120 * t120
-    t121 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t121 + a3 * ctheta23A_front_elbow_down_alike
-    t122 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t122 + a3 * stheta23A_front_elbow_down_alike
-    t123 = 2.0 * t117 * point_11_front_elbow_down_alike + 2.0 * t120 * point_21_front_elbow_down_alike
-    t124 = gap_front_elbow_down_alike - t123
-    t125 = N_front_elbow_down_alike - t124
-    t126 = np.where(t112, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    M_front_elbow_down_alike = t47 * t126
-    t127 = M_front_elbow_down_alike + t124
-    t128 = gap_front_elbow_down_alike + t123
-    t129 = N_front_elbow_down_alike - t128
-    t130 = t43 & (t46 <= t125) & (t46 <= t127) & (t46 <= t129)
-    t131 = M_front_elbow_down_alike + t128
-    unreachable_2 = np.logical_not(t130 & (t46 <= t131))
-    t132 = _runtime.poison(invalid | unreachable_2)
-    t133 = t17 + t132
-    t134 = t120 - point_21_front_elbow_down_alike
-    t135 = t117 - point_11_front_elbow_down_alike
-    folded_right_front_elbow_down_alike = np.sqrt(t134 * t134 + t135 * t135) <= t82
-    t136 = 2.0 * np.where(0.0 <= -t113, 1.0, -1.0)
-    N_right_front_elbow_down_alike = np.maximum(t125, t84)
+    s_bend_left = np.where(short_right, 0.0, t82 * rN_left * rM_left / whole_left)
+    t92 = fore_arm * s_bend_left
+    t93 = r_left * t92
+    t94 = r_left * ahead_1_left
+    t95 = h_left * t92
+    t96 = np.where(folded_left, 0.0, np.arctan2(t91 - t93, t94 + t95))
+    t97 = np.where(short_right, 0.0, t82 * np.arctan2(rN_left, rM_left))
+    t98 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
+    t99 = t98 + t77
+    t100 = np.where(folded_left, 0.0, np.arctan2(t91 + t93, t94 - t95))
+    stheta2A_front_elbow_down_alike = t51 - t52
+    ctheta2A_front_elbow_down_alike = t53 + t54
+    c_relative_front_elbow_down_alike = t57 - t58
+    t101 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t59 + t60
+    t102 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t101 - t102
+    t103 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t104 = c_relative_front_elbow_down_alike * stheta2A_front_elbow_down_alike
+    t105 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t104 + t105
+    t106 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t107 = t103 - t106
+    t108 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t109 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t108 + t109
+    t110 = L2 * t107 - a3 * c_elbow_front_elbow_down_alike
+    t111 = 0.0 <= -t110
+    t112 = L2 * c_elbow_front_elbow_down_alike + a3 * t107
+    large_front_elbow_down_alike = fore_arm + np.where(t111, -t110, t110)
+    small_front_elbow_down_alike = t112 * t112 / large_front_elbow_down_alike
+    t113 = np.where(t111, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    N_front_elbow_down_alike = t46 * t113
+    t114 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t115 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t116 = d * (t114 - t115)
+    t117 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t118 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t119 = d * (t117 + t118)
+    gap_front_elbow_down_alike = t116 * t116 + t119 * t119
+    t120 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t120 + a3 * ctheta23A_front_elbow_down_alike
+    t121 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t121 + a3 * stheta23A_front_elbow_down_alike
+    t122 = 2.0 * t116 * point_11_front_elbow_down_alike + 2.0 * t119 * point_21_front_elbow_down_alike
+    t123 = gap_front_elbow_down_alike - t122
+    t124 = N_front_elbow_down_alike - t123
+    t125 = np.where(t111, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    M_front_elbow_down_alike = t46 * t125
+    t126 = M_front_elbow_down_alike + t123
+    t127 = gap_front_elbow_down_alike + t122
+    t128 = N_front_elbow_down_alike - t127
+    t129 = t42 & (t45 <= t124) & (t45 <= t126) & (t45 <= t128)
+    t130 = M_front_elbow_down_alike + t127
+    unreachable_2 = np.logical_not(t129 & (t45 <= t130))
+    t131 = _runtime.poison(invalid | unreachable_2)
+    t132 = t16 + t131
+    t133 = t119 - point_21_front_elbow_down_alike
+    t134 = t116 - point_11_front_elbow_down_alike
+    folded_right_front_elbow_down_alike = np.sqrt(t133 * t133 + t134 * t134) <= t81
+    t135 = 2.0 * np.where(0.0 <= -t112, 1.0, -1.0)
+    N_right_front_elbow_down_alike = np.maximum(t124, t83)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(t127, t84)
+    M_right_front_elbow_down_alike = np.maximum(t126, t83)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t137 = t136 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    t136 = t135 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = N_right_front_elbow_down_alike + M_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t137 / whole_right_front_elbow_down_alike)
-    t138 = fore_arm * s_bend_right_front_elbow_down_alike
-    t139 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
-    c_bend_right_front_elbow_down_alike = np.where(short_right, 1.0, -(t139 / whole_right_front_elbow_down_alike))
-    t140 = fore_arm * c_bend_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = L1 + t140
-    up_right_front_elbow_down_alike = t135 * t138 - t134 * ahead_1_right_front_elbow_down_alike
-    t141 = t135 * ahead_1_right_front_elbow_down_alike + t134 * t138
-    t142 = np.arctan2(up_right_front_elbow_down_alike, -t141)
-    t143 = np.where(folded_right_front_elbow_down_alike, 0.0, t142)
-    t144 = _runtime.wrap(t143) + t132
-    t145 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t146 = t89 + np.where(short_right, 0.0, t136 * t145)
-    t147 = _runtime.wrap(t146) + t132
-    h_left_front_elbow_down_alike = t120 + point_21_front_elbow_down_alike
-    t148 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = t117 + point_11_front_elbow_down_alike
-    t149 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    folded_left_front_elbow_down_alike = np.sqrt(t148 + t149) <= t82
-    N_left_front_elbow_down_alike = np.maximum(t129, 0.0)
-    M_left_front_elbow_down_alike = np.maximum(t131, 0.0)
-    t150 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t136 / whole_right_front_elbow_down_alike)
+    t137 = fore_arm * s_bend_right_front_elbow_down_alike
+    t138 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
+    c_bend_right_front_elbow_down_alike = np.where(short_right, 1.0, -(t138 / whole_right_front_elbow_down_alike))
+    t139 = fore_arm * c_bend_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = L1 + t139
+    up_right_front_elbow_down_alike = t134 * t137 - t133 * ahead_1_right_front_elbow_down_alike
+    t140 = t134 * ahead_1_right_front_elbow_down_alike + t133 * t137
+    t141 = np.arctan2(up_right_front_elbow_down_alike, -t140)
+    t142 = np.where(folded_right_front_elbow_down_alike, 0.0, t141)
+    t143 = _runtime.wrap(t142) + t131
+    t144 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t145 = t88 + np.where(short_right, 0.0, t135 * t144)
+    t146 = _runtime.wrap(t145) + t131
+    h_left_front_elbow_down_alike = t119 + point_21_front_elbow_down_alike
+    t147 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = t116 + point_11_front_elbow_down_alike
+    t148 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    folded_left_front_elbow_down_alike = np.sqrt(t147 + t148) <= t81
+    N_left_front_elbow_down_alike = np.maximum(t128, 0.0)
+    M_left_front_elbow_down_alike = np.maximum(t130, 0.0)
+    t149 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
     whole_left_front_elbow_down_alike = N_left_front_elbow_down_alike + M_left_front_elbow_down_alike
-    c_bend_left_front_elbow_down_alike = np.where(short_right, 1.0, -(t150 / whole_left_front_elbow_down_alike))
-    t151 = fore_arm * c_bend_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = L1 + t151
-    t152 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    c_bend_left_front_elbow_down_alike = np.where(short_right, 1.0, -(t149 / whole_left_front_elbow_down_alike))
+    t150 = fore_arm * c_bend_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = L1 + t150
+    t151 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t153 = t136 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t153 / whole_left_front_elbow_down_alike)
-    t154 = fore_arm * s_bend_left_front_elbow_down_alike
-    t155 = r_left_front_elbow_down_alike * t154
-    t156 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t157 = h_left_front_elbow_down_alike * t154
-    t158 = np.where(folded_left_front_elbow_down_alike, 0.0, np.arctan2(t152 - t155, t156 + t157))
-    t159 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t160 = np.where(short_right, 0.0, t136 * t159)
-    t161 = t99 + t132
-    t162 = np.where(folded_left_front_elbow_down_alike, 0.0, np.arctan2(t152 + t155, t156 - t157))
-    t163 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t16))
-    t164 = x * np.where(nowhere, 1.0, -((t34 + t35) / h))
-    outward_rear_elbow_up_alike = t164 + y * np.where(nowhere, 0.0, (t37 - t38) / h)
-    t165 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t32 + t165)
-    t166 = t29 - reach_rear_elbow_up_alike
-    t167 = reach_rear_elbow_up_alike + t40
-    t168 = reach_rear_elbow_up_alike - t40
-    t169 = t28 & (t30 <= t166) & (t30 <= t167) & (t30 <= t168)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t48
-    s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t31 / reach_rear_elbow_up_alike)
-    t170 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t166, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t168, 0.0)
-    t171 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
-    S_rear_elbow_up_alike = t29 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t167, 0.0)
-    t172 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t171 + t172
-    t173 = -((t171 - t172) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = np.where(t170, 1.0, t173)
-    t174 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t175 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t175)
-    t176 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t176 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t177 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = np.where(t170, 0.0, t177)
-    t178 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t174 - t178
-    t179 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t180 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t179 + t180
-    t181 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t182 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t181 + t182
-    t183 = -((t181 - t182) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t183)
-    t184 = c_lag * c_bend_rear_elbow_up_alike
-    t185 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t185)
-    t186 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t184 - t186
-    t187 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t188 = s_lag * c_bend_rear_elbow_up_alike
-    t189 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t188 + t189
-    t190 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t187 - t190
-    t191 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t192 = c_relative_rear_elbow_up_alike * stheta2A_rear_elbow_up_alike
-    t193 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t192 + t193
-    t194 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t195 = t191 - t194
-    t196 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t197 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t196 + t197
-    t198 = L2 * t195 - a3 * c_elbow_rear_elbow_up_alike
-    t199 = 0.0 <= -t198
-    t200 = L2 * c_elbow_rear_elbow_up_alike + a3 * t195
-    large_rear_elbow_up_alike = fore_arm + np.where(t199, -t198, t198)
-    small_rear_elbow_up_alike = t200 * t200 / large_rear_elbow_up_alike
-    t201 = np.where(t199, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    N_rear_elbow_up_alike = t47 * t201
-    t202 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t203 = t202 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t204 = d * t203
-    t205 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t206 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t205
-    t207 = d * t206
-    gap_rear_elbow_up_alike = t204 * t204 + t207 * t207
-    t208 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t208 + a3 * ctheta23A_rear_elbow_up_alike
-    t209 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t209 + a3 * stheta23A_rear_elbow_up_alike
-    t210 = 2.0 * t204 * point_11_rear_elbow_up_alike + 2.0 * t207 * point_21_rear_elbow_up_alike
-    t211 = gap_rear_elbow_up_alike - t210
-    t212 = N_rear_elbow_up_alike - t211
-    t213 = np.where(t199, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    M_rear_elbow_up_alike = t47 * t213
-    t214 = M_rear_elbow_up_alike + t211
-    t215 = gap_rear_elbow_up_alike + t210
-    t216 = N_rear_elbow_up_alike - t215
-    t217 = t169 & (t46 <= t212) & (t46 <= t214) & (t46 <= t216)
-    t218 = M_rear_elbow_up_alike + t215
-    unreachable_3 = np.logical_not(t217 & (t46 <= t218))
-    t219 = _runtime.poison(invalid | unreachable_3)
-    t220 = t163 + t219
-    t221 = t207 - point_21_rear_elbow_up_alike
-    t222 = t204 - point_11_rear_elbow_up_alike
-    folded_right_rear_elbow_up_alike = np.sqrt(t221 * t221 + t222 * t222) <= t82
-    t223 = 2.0 * np.where(0.0 <= -t200, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t212, t84)
+    t152 = t135 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t152 / whole_left_front_elbow_down_alike)
+    t153 = fore_arm * s_bend_left_front_elbow_down_alike
+    t154 = r_left_front_elbow_down_alike * t153
+    t155 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t156 = h_left_front_elbow_down_alike * t153
+    t157 = np.where(folded_left_front_elbow_down_alike, 0.0, np.arctan2(t151 - t154, t155 + t156))
+    t158 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t159 = np.where(short_right, 0.0, t135 * t158)
+    t160 = t98 + t131
+    t161 = np.where(folded_left_front_elbow_down_alike, 0.0, np.arctan2(t151 + t154, t155 - t156))
+    t162 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
+    t163 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
+    outward_rear_elbow_up_alike = t163 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
+    t164 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t31 + t164)
+    t165 = t28 - reach_rear_elbow_up_alike
+    t166 = reach_rear_elbow_up_alike + t39
+    t167 = reach_rear_elbow_up_alike - t39
+    t168 = t27 & (t29 <= t165) & (t29 <= t166) & (t29 <= t167)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t47
+    s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t30 / reach_rear_elbow_up_alike)
+    t169 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t165, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t167, 0.0)
+    t170 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    S_rear_elbow_up_alike = t28 + reach_rear_elbow_up_alike
+    B_rear_elbow_up_alike = np.maximum(t166, 0.0)
+    t171 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t170 + t171
+    t172 = -((t170 - t171) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = np.where(t169, 1.0, t172)
+    t173 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t174 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t174)
+    t175 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t175 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t176 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = np.where(t169, 0.0, t176)
+    t177 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t173 - t177
+    t178 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t179 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t178 + t179
+    t180 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t181 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t180 + t181
+    t182 = -((t180 - t181) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t182)
+    t183 = c_lag * c_bend_rear_elbow_up_alike
+    t184 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t184)
+    t185 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t183 - t185
+    t186 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t187 = s_lag * c_bend_rear_elbow_up_alike
+    t188 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t187 + t188
+    t189 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t186 - t189
+    t190 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t191 = c_relative_rear_elbow_up_alike * stheta2A_rear_elbow_up_alike
+    t192 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t191 + t192
+    t193 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t194 = t190 - t193
+    t195 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t196 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t195 + t196
+    t197 = L2 * t194 - a3 * c_elbow_rear_elbow_up_alike
+    t198 = 0.0 <= -t197
+    t199 = L2 * c_elbow_rear_elbow_up_alike + a3 * t194
+    large_rear_elbow_up_alike = fore_arm + np.where(t198, -t197, t197)
+    small_rear_elbow_up_alike = t199 * t199 / large_rear_elbow_up_alike
+    t200 = np.where(t198, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    N_rear_elbow_up_alike = t46 * t200
+    t201 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t202 = t201 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t203 = d * t202
+    t204 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t205 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t204
+    t206 = d * t205
+    gap_rear_elbow_up_alike = t203 * t203 + t206 * t206
+    t207 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t207 + a3 * ctheta23A_rear_elbow_up_alike
+    t208 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t208 + a3 * stheta23A_rear_elbow_up_alike
+    t209 = 2.0 * t203 * point_11_rear_elbow_up_alike + 2.0 * t206 * point_21_rear_elbow_up_alike
+    t210 = gap_rear_elbow_up_alike - t209
+    t211 = N_rear_elbow_up_alike - t210
+    t212 = np.where(t198, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    M_rear_elbow_up_alike = t46 * t212
+    t213 = M_rear_elbow_up_alike + t210
+    t214 = gap_rear_elbow_up_alike + t209
+    t215 = N_rear_elbow_up_alike - t214
+    t216 = t168 & (t45 <= t211) & (t45 <= t213) & (t45 <= t215)
+    t217 = M_rear_elbow_up_alike + t214
+    unreachable_3 = np.logical_not(t216 & (t45 <= t217))
+    t218 = _runtime.poison(invalid | unreachable_3)
+    t219 = t162 + t218
+    t220 = t206 - point_21_rear_elbow_up_alike
+    t221 = t203 - point_11_rear_elbow_up_alike
+    folded_right_rear_elbow_up_alike = np.sqrt(t220 * t220 + t221 * t221) <= t81
+    t222 = 2.0 * np.where(0.0 <= -t199, 1.0, -1.0)
+    N_right_rear_elbow_up_alike = np.maximum(t211, t83)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(t214, t84)
+    M_right_rear_elbow_up_alike = np.maximum(t213, t83)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t224 = t223 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    t223 = t222 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = N_right_rear_elbow_up_alike + M_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t224 / whole_right_rear_elbow_up_alike)
-    t225 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t226 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
-    c_bend_right_rear_elbow_up_alike = np.where(short_right, 1.0, -(t226 / whole_right_rear_elbow_up_alike))
+    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t223 / whole_right_rear_elbow_up_alike)
+    t224 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t225 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
+    c_bend_right_rear_elbow_up_alike = np.where(short_right, 1.0, -(t225 / whole_right_rear_elbow_up_alike))
     ahead_1_right_rear_elbow_up_alike = L1 + fore_arm * c_bend_right_rear_elbow_up_alike
-    up_right_rear_elbow_up_alike = t222 * t225 - t221 * ahead_1_right_rear_elbow_up_alike
-    t227 = t222 * ahead_1_right_rear_elbow_up_alike + t221 * t225
-    t228 = np.arctan2(up_right_rear_elbow_up_alike, -t227)
-    t229 = np.where(folded_right_rear_elbow_up_alike, 0.0, t228)
-    t230 = _runtime.wrap(t229) + t219
-    t231 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t232 = t89 + np.where(short_right, 0.0, t223 * t231)
-    t233 = _runtime.wrap(t232) + t219
-    h_left_rear_elbow_up_alike = t207 + point_21_rear_elbow_up_alike
-    t234 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = t204 + point_11_rear_elbow_up_alike
-    t235 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    folded_left_rear_elbow_up_alike = np.sqrt(t234 + t235) <= t82
-    N_left_rear_elbow_up_alike = np.maximum(t216, 0.0)
-    M_left_rear_elbow_up_alike = np.maximum(t218, 0.0)
-    t236 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
+    up_right_rear_elbow_up_alike = t221 * t224 - t220 * ahead_1_right_rear_elbow_up_alike
+    t226 = t221 * ahead_1_right_rear_elbow_up_alike + t220 * t224
+    t227 = np.arctan2(up_right_rear_elbow_up_alike, -t226)
+    t228 = np.where(folded_right_rear_elbow_up_alike, 0.0, t227)
+    t229 = _runtime.wrap(t228) + t218
+    t230 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t231 = t88 + np.where(short_right, 0.0, t222 * t230)
+    t232 = _runtime.wrap(t231) + t218
+    h_left_rear_elbow_up_alike = t206 + point_21_rear_elbow_up_alike
+    t233 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = t203 + point_11_rear_elbow_up_alike
+    t234 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    folded_left_rear_elbow_up_alike = np.sqrt(t233 + t234) <= t81
+    N_left_rear_elbow_up_alike = np.maximum(t215, 0.0)
+    M_left_rear_elbow_up_alike = np.maximum(t217, 0.0)
+    t235 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
     whole_left_rear_elbow_up_alike = N_left_rear_elbow_up_alike + M_left_rear_elbow_up_alike
-    c_bend_left_rear_elbow_up_alike = np.where(short_right, 1.0, -(t236 / whole_left_rear_elbow_up_alike))
+    c_bend_left_rear_elbow_up_alike = np.where(short_right, 1.0, -(t235 / whole_left_rear_elbow_up_alike))
     ahead_1_left_rear_elbow_up_alike = L1 + fore_arm * c_bend_left_rear_elbow_up_alike
-    t237 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t236 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t238 = t223 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t238 / whole_left_rear_elbow_up_alike)
-    t239 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t240 = r_left_rear_elbow_up_alike * t239
-    t241 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t242 = h_left_rear_elbow_up_alike * t239
-    t243 = np.where(folded_left_rear_elbow_up_alike, 0.0, np.arctan2(t237 - t240, t241 + t242))
-    t244 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t245 = np.where(short_right, 0.0, t223 * t244)
-    t246 = t99 + t219
-    t247 = np.where(folded_left_rear_elbow_up_alike, 0.0, np.arctan2(t237 + t240, t241 - t242))
-    stheta2A_rear_elbow_down_alike = t174 + t178
-    ctheta2A_rear_elbow_down_alike = t179 - t180
-    c_relative_rear_elbow_down_alike = t184 + t186
-    t248 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t188 - t189
-    t249 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t248 - t249
-    t250 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t251 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    t252 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t251 + t252
-    t253 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t254 = t250 - t253
-    t255 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t256 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t255 + t256
-    t257 = L2 * t254 - a3 * c_elbow_rear_elbow_down_alike
-    t258 = 0.0 <= -t257
-    t259 = L2 * c_elbow_rear_elbow_down_alike + a3 * t254
-    large_rear_elbow_down_alike = fore_arm + np.where(t258, -t257, t257)
-    small_rear_elbow_down_alike = t259 * t259 / large_rear_elbow_down_alike
-    t260 = np.where(t258, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    N_rear_elbow_down_alike = t47 * t260
-    t261 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t262 = t261 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t263 = d * t262
-    t264 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t265 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t264
-    t266 = d * t265
-    gap_rear_elbow_down_alike = t263 * t263 + t266 * t266
-    t267 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t267 + a3 * ctheta23A_rear_elbow_down_alike
-    t268 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t268 + a3 * stheta23A_rear_elbow_down_alike
-    t269 = 2.0 * t263 * point_11_rear_elbow_down_alike + 2.0 * t266 * point_21_rear_elbow_down_alike
-    t270 = gap_rear_elbow_down_alike - t269
-    t271 = N_rear_elbow_down_alike - t270
-    t272 = np.where(t258, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    M_rear_elbow_down_alike = t47 * t272
-    t273 = M_rear_elbow_down_alike + t270
-    t274 = gap_rear_elbow_down_alike + t269
-    t275 = N_rear_elbow_down_alike - t274
-    t276 = t169 & (t46 <= t271) & (t46 <= t273) & (t46 <= t275)
-    t277 = M_rear_elbow_down_alike + t274
-    unreachable_4 = np.logical_not(t276 & (t46 <= t277))
-    t278 = _runtime.poison(invalid | unreachable_4)
-    t279 = t163 + t278
-    t280 = t266 - point_21_rear_elbow_down_alike
-    t281 = t263 - point_11_rear_elbow_down_alike
-    folded_right_rear_elbow_down_alike = np.sqrt(t280 * t280 + t281 * t281) <= t82
-    t282 = 2.0 * np.where(0.0 <= -t259, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t271, t84)
+    t237 = t222 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t237 / whole_left_rear_elbow_up_alike)
+    t238 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t239 = r_left_rear_elbow_up_alike * t238
+    t240 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t241 = h_left_rear_elbow_up_alike * t238
+    t242 = np.where(folded_left_rear_elbow_up_alike, 0.0, np.arctan2(t236 - t239, t240 + t241))
+    t243 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t244 = np.where(short_right, 0.0, t222 * t243)
+    t245 = t98 + t218
+    t246 = np.where(folded_left_rear_elbow_up_alike, 0.0, np.arctan2(t236 + t239, t240 - t241))
+    stheta2A_rear_elbow_down_alike = t173 + t177
+    ctheta2A_rear_elbow_down_alike = t178 - t179
+    c_relative_rear_elbow_down_alike = t183 + t185
+    t247 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t187 - t188
+    t248 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t247 - t248
+    t249 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t250 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t251 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t250 + t251
+    t252 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t253 = t249 - t252
+    t254 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t255 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t254 + t255
+    t256 = L2 * t253 - a3 * c_elbow_rear_elbow_down_alike
+    t257 = 0.0 <= -t256
+    t258 = L2 * c_elbow_rear_elbow_down_alike + a3 * t253
+    large_rear_elbow_down_alike = fore_arm + np.where(t257, -t256, t256)
+    small_rear_elbow_down_alike = t258 * t258 / large_rear_elbow_down_alike
+    t259 = np.where(t257, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    N_rear_elbow_down_alike = t46 * t259
+    t260 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t261 = t260 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t262 = d * t261
+    t263 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t264 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t263
+    t265 = d * t264
+    gap_rear_elbow_down_alike = t262 * t262 + t265 * t265
+    t266 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t266 + a3 * ctheta23A_rear_elbow_down_alike
+    t267 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t267 + a3 * stheta23A_rear_elbow_down_alike
+    t268 = 2.0 * t262 * point_11_rear_elbow_down_alike + 2.0 * t265 * point_21_rear_elbow_down_alike
+    t269 = gap_rear_elbow_down_alike - t268
+    t270 = N_rear_elbow_down_alike - t269
+    t271 = np.where(t257, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    M_rear_elbow_down_alike = t46 * t271
+    t272 = M_rear_elbow_down_alike + t269
+    t273 = gap_rear_elbow_down_alike + t268
+    t274 = N_rear_elbow_down_alike - t273
+    t275 = t168 & (t45 <= t270) & (t45 <= t272) & (t45 <= t274)
+    t276 = M_rear_elbow_down_alike + t273
+    unreachable_4 = np.logical_not(t275 & (t45 <= t276))
+    t277 = _runtime.poison(invalid | unreachable_4)
+    t278 = t162 + t277
+    t279 = t265 - point_21_rear_elbow_down_alike
+    t280 = t262 - point_11_rear_elbow_down_alike
+    folded_right_rear_elbow_down_alike = np.sqrt(t279 * t279 + t280 * t280) <= t81
+    t281 = 2.0 * np.where(0.0 <= -t258, 1.0, -1.0)
+    N_right_rear_elbow_down_alike = np.maximum(t270, t83)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(t273, t84)
+    M_right_rear_elbow_down_alike = np.maximum(t272, t83)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t283 = t282 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    t282 = t281 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
     whole_right_rear_elbow_down_alike = N_right_rear_elbow_down_alike + M_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t283 / whole_right_rear_elbow_down_alike)
-    t284 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t285 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
-    c_bend_right_rear_elbow_down_alike = np.where(short_right, 1.0, -(t285 / whole_right_rear_elbow_down_alike))
-    t286 = fore_arm * c_bend_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = L1 + t286
-    up_right_rear_elbow_down_alike = t281 * t284 - t280 * ahead_1_right_rear_elbow_down_alike
-    t287 = t281 * ahead_1_right_rear_elbow_down_alike + t280 * t284
-    t288 = np.arctan2(up_right_rear_elbow_down_alike, -t287)
-    t289 = np.where(folded_right_rear_elbow_down_alike, 0.0, t288)
-    t290 = _runtime.wrap(t289) + t278
-    t291 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t292 = t89 + np.where(short_right, 0.0, t282 * t291)
-    t293 = _runtime.wrap(t292) + t278
-    h_left_rear_elbow_down_alike = t266 + point_21_rear_elbow_down_alike
-    t294 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = t263 + point_11_rear_elbow_down_alike
-    t295 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    folded_left_rear_elbow_down_alike = np.sqrt(t294 + t295) <= t82
-    N_left_rear_elbow_down_alike = np.maximum(t275, 0.0)
-    M_left_rear_elbow_down_alike = np.maximum(t277, 0.0)
-    t296 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t282 / whole_right_rear_elbow_down_alike)
+    t283 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t284 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
+    c_bend_right_rear_elbow_down_alike = np.where(short_right, 1.0, -(t284 / whole_right_rear_elbow_down_alike))
+    t285 = fore_arm * c_bend_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = L1 + t285
+    up_right_rear_elbow_down_alike = t280 * t283 - t279 * ahead_1_right_rear_elbow_down_alike
+    t286 = t280 * ahead_1_right_rear_elbow_down_alike + t279 * t283
+    t287 = np.arctan2(up_right_rear_elbow_down_alike, -t286)
+    t288 = np.where(folded_right_rear_elbow_down_alike, 0.0, t287)
+    t289 = _runtime.wrap(t288) + t277
+    t290 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t291 = t88 + np.where(short_right, 0.0, t281 * t290)
+    t292 = _runtime.wrap(t291) + t277
+    h_left_rear_elbow_down_alike = t265 + point_21_rear_elbow_down_alike
+    t293 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = t262 + point_11_rear_elbow_down_alike
+    t294 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    folded_left_rear_elbow_down_alike = np.sqrt(t293 + t294) <= t81
+    N_left_rear_elbow_down_alike = np.maximum(t274, 0.0)
+    M_left_rear_elbow_down_alike = np.maximum(t276, 0.0)
+    t295 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
     whole_left_rear_elbow_down_alike = N_left_rear_elbow_down_alike + M_left_rear_elbow_down_alike
-    c_bend_left_rear_elbow_down_alike = np.where(short_right, 1.0, -(t296 / whole_left_rear_elbow_down_alike))
+    c_bend_left_rear_elbow_down_alike = np.where(short_right, 1.0, -(t295 / whole_left_rear_elbow_down_alike))
     ahead_1_left_rear_elbow_down_alike = L1 + fore_arm * c_bend_left_rear_elbow_down_alike
-    t297 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t296 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t298 = t282 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t298 / whole_left_rear_elbow_down_alike)
-    t299 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t300 = r_left_rear_elbow_down_alike * t299
-    t301 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t302 = h_left_rear_elbow_down_alike * t299
-    t303 = np.where(folded_left_rear_elbow_down_alike, 0.0, np.arctan2(t297 - t300, t301 + t302))
-    t304 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t305 = np.where(short_right, 0.0, t282 * t304)
-    t306 = t99 + t278
-    t307 = np.where(folded_left_rear_elbow_down_alike, 0.0, np.arctan2(t297 + t300, t301 - t302))
-    t308 = nowhere | folded | short
-    t309 = t308 | folded_right | short_right | folded_left
-    t310 = _runtime.status(invalid, unreachable, t309)
-    t311 = t308 | folded_right_front_elbow_down_alike | short_right
-    t312 = _runtime.status(invalid, unreachable_2, t311 | folded_left_front_elbow_down_alike)
-    t313 = nowhere | folded_rear_elbow_up_alike | short
-    t314 = t313 | folded_right_rear_elbow_up_alike | short_right
-    t315 = _runtime.status(invalid, unreachable_3, t314 | folded_left_rear_elbow_up_alike)
-    t316 = t313 | folded_right_rear_elbow_down_alike | short_right
-    t317 = _runtime.status(invalid, unreachable_4, t316 | folded_left_rear_elbow_down_alike)
+    t297 = t281 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t297 / whole_left_rear_elbow_down_alike)
+    t298 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t299 = r_left_rear_elbow_down_alike * t298
+    t300 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t301 = h_left_rear_elbow_down_alike * t298
+    t302 = np.where(folded_left_rear_elbow_down_alike, 0.0, np.arctan2(t296 - t299, t300 + t301))
+    t303 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t304 = np.where(short_right, 0.0, t281 * t303)
+    t305 = t98 + t277
+    t306 = np.where(folded_left_rear_elbow_down_alike, 0.0, np.arctan2(t296 + t299, t300 - t301))
+    t307 = nowhere | folded | short
+    t308 = t307 | folded_right | short_right | folded_left
+    t309 = _runtime.status(invalid, unreachable, t308)
+    t310 = t307 | folded_right_front_elbow_down_alike | short_right
+    t311 = _runtime.status(invalid, unreachable_2, t310 | folded_left_front_elbow_down_alike)
+    t312 = nowhere | folded_rear_elbow_up_alike | short
+    t313 = t312 | folded_right_rear_elbow_up_alike | short_right
+    t314 = _runtime.status(invalid, unreachable_3, t313 | folded_left_rear_elbow_up_alike)
+    t315 = t312 | folded_right_rear_elbow_down_alike | short_right
+    t316 = _runtime.status(invalid, unreachable_4, t315 | folded_left_rear_elbow_down_alike)
     return (
-        t79,
-        t88,
-        t91,
-        _runtime.wrap(t97) + t78,
-        _runtime.wrap(t89 + t98) + t78,
-        t100,
-        t79,
-        t88,
-        t91,
-        _runtime.wrap(t101) + t78,
-        _runtime.wrap(t89 - t98) + t78,
-        t100,
-        t133,
-        t144,
-        t147,
-        _runtime.wrap(t158) + t132,
-        _runtime.wrap(t89 + t160) + t132,
-        t161,
-        t133,
-        t144,
-        t147,
-        _runtime.wrap(t162) + t132,
-        _runtime.wrap(t89 - t160) + t132,
-        t161,
-        t220,
-        t230,
-        t233,
-        _runtime.wrap(t243) + t219,
-        _runtime.wrap(t89 + t245) + t219,
-        t246,
-        t220,
-        t230,
-        t233,
-        _runtime.wrap(t247) + t219,
-        _runtime.wrap(t89 - t245) + t219,
-        t246,
-        t279,
-        t290,
-        t293,
-        _runtime.wrap(t303) + t278,
-        _runtime.wrap(t89 + t305) + t278,
-        t306,
-        t279,
-        t290,
-        t293,
-        _runtime.wrap(t307) + t278,
-        _runtime.wrap(t89 - t305) + t278,
-        t306,
-        t310,
-        t310,
-        t312,
-        t312,
-        t315,
-        t315,
-        t317,
-        t317,
+        t78,
+        t87,
+        t90,
+        _runtime.wrap(t96) + t77,
+        _runtime.wrap(t88 + t97) + t77,
+        t99,
+        t78,
+        t87,
+        t90,
+        _runtime.wrap(t100) + t77,
+        _runtime.wrap(t88 - t97) + t77,
+        t99,
+        t132,
+        t143,
+        t146,
+        _runtime.wrap(t157) + t131,
+        _runtime.wrap(t88 + t159) + t131,
+        t160,
+        t132,
+        t143,
+        t146,
+        _runtime.wrap(t161) + t131,
+        _runtime.wrap(t88 - t159) + t131,
+        t160,
+        t219,
+        t229,
+        t232,
+        _runtime.wrap(t242) + t218,
+        _runtime.wrap(t88 + t244) + t218,
+        t245,
+        t219,
+        t229,
+        t232,
+        _runtime.wrap(t246) + t218,
+        _runtime.wrap(t88 - t244) + t218,
+        t245,
+        t278,
+        t289,
+        t292,
+        _runtime.wrap(t302) + t277,
+        _runtime.wrap(t88 + t304) + t277,
+        t305,
+        t278,
+        t289,
+        t292,
+        _runtime.wrap(t306) + t277,
+        _runtime.wrap(t88 - t304) + t277,
+        t305,
+        t309,
+        t309,
+        t311,
+        t311,
+        t314,
+        t314,
+        t316,
+        t316,
     )
 
 
@@ -1780,17 +1774,16 @@ def _wrist_length(psi, phi, d, gs, al):
     c_psi = np.cos(psi)
     t1 = c_phi * c_psi
     t2 = d - (gs - al) * t1
-    t3 = gs + al
-    t4 = t3 * t1 - d
-    t5 = np.sqrt(np.maximum(t2, 0.0)) * np.sqrt(np.maximum(t4, 0.0))
-    t6 = np.isfinite(psi) & np.isfinite(phi) & np.isfinite(d)
-    t7 = t6 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
-    invalid = np.logical_not(t7 & (0.0 <= gs) & (0.0 <= al))
-    t8 = -(_runtime.FEASIBILITY * (d + t3))
-    t9 = (-_runtime.FEASIBILITY <= c_phi) & (t8 <= t4)
-    t10 = _runtime.poison(invalid | np.logical_not(t9 & (t8 <= t2)))
+    t3 = (gs + al) * t1 - d
+    t4 = np.sqrt(np.maximum(t2, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
+    t5 = np.isfinite(psi) & np.isfinite(phi) & np.isfinite(d)
+    t6 = t5 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
+    invalid = np.logical_not(t6 & (0.0 <= gs) & (0.0 <= al))
+    t7 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t3)
+    t9 = _runtime.poison(invalid | np.logical_not(t8 & (t7 <= t2)))
     return (
-        t5 / t1 + t10,
+        t4 / t1 + t9,
     )
 
 

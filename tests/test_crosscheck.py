@@ -19,7 +19,7 @@ from closedform.crosscheck import (
 from closedform.derivation import Derivation
 from closedform.tolerances import DOUBLE
 
-ROBOTS = ("hybrid_five_bar", "irb260", "planar_2r", "spherical_wrist")
+ROBOTS = ("h6ar", "h6ar_loop_closed", "hybrid_five_bar", "irb260", "planar_2r", "spherical_wrist")
 GENERATED = Path(__file__).parent.parent / "generated"
 
 

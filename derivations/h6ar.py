@@ -111,8 +111,9 @@ d.step(
 d.step(
     "Invariant point",
     "The paper gives it twice: as the middle of the tips in (6), and with the averages of the angles "
-    "in (7), which this model takes.  The middle is nearer to the shoulders: its links are "
-    "shortened by the cosines of the half differences.",
+    "in (7), which this model takes.  The links of the middle are shortened by the cosines "
+    "of the half differences, so that it is off by at most L1 (1 - cos(alpha)) + f (1 - cos(beta)), f "
+    "the length of a fore-arm: of second order.",
     {"(r, h)_I": invariant, "(r, h)_6": ((right + left) / 2).xreplace(halves)},
     published=("(6)", "(7)"),
     equal=[

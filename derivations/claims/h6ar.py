@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy import asin, cos, sin, sqrt, tan
 
-from closedform.claims import Enumeration, Every, Identity, Undecidable
+from closedform.claims import Count, Enumeration, Every, Identity, Undecidable, Under
 from closedform.derivation import Derivation
+from closedform.frames import denavit_hartenberg
 from closedform.functions import real
 
 
@@ -50,10 +51,10 @@ def mobility(d: Derivation) -> None:
     claim(
         "Grübler's formula",
         r"$M = \sum_{i=1}^{p} f_i - 6l$, “hence l = 1 and [...] M = 6”",
-        Enumeration(
-            6,
-            lambda: sum(freedoms) - 6,
-            "the formula, which counts the two wrist joints as free though the gears couple them",
+        Under(
+            Enumeration(6, lambda: sum(freedoms) - 6, "the formula"),
+            "both wrist joints are counted as free, though the gears couple them: with one freedom "
+            "less it gives 5, unless one of the six conditions of the loop follows from the others",
         ),
     )
     claim(
@@ -65,6 +66,18 @@ def mobility(d: Derivation) -> None:
 
 def tips(d: Derivation, r: Robot) -> None:
     claim = partial(d.claim, where="3.1 Tips of the fore-arms")
+    m, (d2, d3), (t1, t2, t3) = r.m, (real("d_2"), real("d_3")), (r.theta1, r.A, r.B - r.A)
+
+    def ends(second: sp.Expr, third: sp.Expr) -> sp.Matrix:
+        first = denavit_hartenberg(0, sp.pi / 2, m.d1, t1)
+        upper = denavit_hartenberg(m.L1, 0, second, t2)
+        return (first * upper * denavit_hartenberg(m.a3, sp.pi / 2, third, t3))[:3, 3]
+
+    claim(
+        "mid-plane offset",
+        r"“The mid-plane offset, d, is related to these parameters by the equation $d = d_2 + d_3$.”",
+        Identity(ends(d2 + d3, sp.S.Zero), ends(d2, d3)),
+    )
     names = (("(1a)", "x_R"), ("(1b)", "y_R"), ("(1c)", "z_R"))
     left = (("(2a)", "x_L"), ("(2b)", "y_L"), ("(2c)", "z_L"))
     forms = (
@@ -160,9 +173,38 @@ def invariant(d: Derivation, r: Robot) -> None:
         Identity(list(middle), list(r.arm(r.A, r.B))),
     )
 
+    claim(
+        "virtual mechanism",
+        "“the link lengths of this virtual mechanism are $L_1$ and $L_2$ and [...] its joint angles are "
+        "the averages of the respective actual joint angles”",
+        Identity(list(r.arm(r.A, r.B)), list(middle)),
+        where="3.3 Equivalent serial mechanism",
+    )
+    gap = (r.arm(*moved["R"]) - r.arm(*moved["L"])) / 2
+    claim(
+        "unique angles",
+        "“unique shoulders' and elbows' joint angles can be found that yield the given yaw and roll "
+        "angles”, read as: one pair of half differences alpha, beta for given averages",
+        Count(list(gap - point), (r.alpha, r.beta), 1),
+    )
+    claim(
+        "roll and waist",
+        "“the rolling motion is indepedent of the waist angle”",
+        Identity(list(gap.diff(theta1)), [sp.S.Zero, sp.S.Zero]),
+    )
+
 
 def wrist(d: Derivation, r: Robot) -> None:
     m, psi, phi = r.m, r.psi, r.phi
+    half, length = real("b"), real("l_W")
+    right, left = sp.Matrix([m.gs - half, length]), sp.Matrix([half - m.gs, length])
+    d.claim(
+        "symmetric wrist",
+        "“The gearset also ensures that the wrist assembly remains symmetric during the yaw and roll "
+        "motions.”",
+        Identity(right.dot(right), left.dot(left)),
+        where="2 Description of the H6AR",
+    )
     base = m.d / (cos(psi) * cos(phi))
     ratio = 1 - m.gs * cos(psi) / m.d
     closed, printed = (base - m.gs) ** 2, (ratio * m.d) ** 2 / cos(psi) ** 2
@@ -193,6 +235,17 @@ def wrist(d: Derivation, r: Robot) -> None:
         )
     ):
         claim(label, f"${text}$", Identity(r.printed_tip[k], r.serial[k, 3]))
+    c1, s1, cB, sB = cos(r.theta1), sin(r.theta1), cos(r.B), sin(r.B)
+    forearm = sp.Matrix([[c1 * cB, s1, c1 * sB], [s1 * cB, -c1, s1 * sB], [sB, 0, -cB]])
+    elbow = sp.Matrix([c1 * m.L1 * cos(r.A), s1 * m.L1 * cos(r.A), m.d1 + m.L1 * sin(r.A)])
+    seen = forearm.T * (r.serial[:3, 3] - elbow)
+    for printed, this, derived in (
+        (r"L_\theta = (L_W + l_p c_\theta) c_\phi s_\psi - l_p s_\theta s_\phi", 0, -seen[1]),
+        (r"L_{2W} = L_2 + (L_W + l_p c_\theta) c_\psi", 1, seen[2]),
+        (r"a_{3W} = a_3 + (L_W + l_p c_\theta) s_\phi s_\psi + l_p s_\theta c_\phi", 2, seen[0]),
+    ):
+        name = printed.partition(" =")[0]
+        claim(f"eq. (9), ${name}$", f"${printed}$", Identity(r.extended[this], derived))
     cos_beta = real("c_beta", positive=True)
     ten = (m.d - m.gs * cos(psi)) / (cos(psi) * cos_beta)
     needed = (base - m.gs) / cos_beta
@@ -277,6 +330,25 @@ def inverse(d: Derivation, r: Robot) -> None:
         Identity(positive * sin(elbow) + across * cos(elbow), reach, (fore - reach, fore + reach)),
     )
     claim(
+        "one angle of the waist",
+        "(11) gives one angle of the waist",
+        Count([-s1 * real("x_T") + c1 * real("y_T") - aside], (theta1,), 1),
+    )
+    bend_A = real("theta_3^A")
+    claim(
+        "one angle of the elbow",
+        "(13) gives one angle of the elbow",
+        Count([along * sin(bend_A) + across * cos(bend_A) - reach], (bend_A,), 1),
+    )
+    own = sqrt(m.L2**2 + m.a3**2)
+    elbow = asin(reach / own) - asin(m.a3 / own)
+    claim(
+        "right elbow",
+        r"$\theta_3^R = \sin^{-1}(\ldots / (2L_1 \sqrt{L_2^2 + a_3^2})) - "
+        r"\sin^{-1}(a_3 / \sqrt{L_2^2 + a_3^2})$",
+        Identity(m.L2 * sin(elbow) + m.a3 * cos(elbow), reach, (own - reach, own + reach)),
+    )
+    claim(
         "first equation before (14)",
         r"$(c_1x_T + s_1y_T)c_{23}^A + (z_T - d_1)s_{23}^A = L_1c_3^A + a_{3W}$",
         Identity(P * cos(B) + Q * sin(B), m.L1 * c3 + across),
@@ -296,6 +368,14 @@ def inverse(d: Derivation, r: Robot) -> None:
         r"$\theta_{23}^A = \tan^{-1} \frac{(z_T - d_1)(L_1 c_3^A + a_{3W}) + "
         r"(c_1 x_T + s_1 y_T)(L_1 s_3^A + L_{2W})}{(c_1 x_T + s_1 y_T)(L_1 c_3^A + a_{3W}) - "
         r"(z_T - d_1)(L_1 s_3^A + L_{2W})}$",
+        Identity((Q * e + P * f) / (P * e - Q * f), tan(B)),
+    )
+    P, Q = r.arm(A, B)
+    e, f = m.L1 * c3 + m.a3, m.L1 * s3 + m.L2
+    claim(
+        "right shoulder",
+        r"$\theta_{23}^R = \tan^{-1} \frac{(z_R - d_1)(L_1 c_3^R + a_3) + (c_1 x_R + s_1 y_R)"
+        r"(L_1 s_3^R + L_2)}{(c_1 x_R + s_1 y_R)(L_1 c_3^R + a_3) - (z_R - d_1)(L_1 s_3^R + L_2)}$",
         Identity((Q * e + P * f) / (P * e - Q * f), tan(B)),
     )
     right = r.arm(A + r.alpha, B + r.beta)

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 
 import sympy as sp
 
-from closedform.functions import Program, Statement, choose, real
+from closedform.functions import Number, Program, Statement, choose, real
 
 
 @dataclass(frozen=True)
@@ -316,6 +316,7 @@ def two_link_arm_beside(
     suffix: str = "",
     sided: bool = False,
     free: Sequence[sp.Symbol] = (),
+    rest: tuple[Number, Number] = (1, 0),
 ) -> Lemma:
     """The two-link arm, where another arm knows better than the target how far it is bent.
 
@@ -324,7 +325,8 @@ def two_link_arm_beside(
     from the target, N has lost all its digits where the arm is straight, and the elbow half of
     them; an arm nearby gives them without a difference of nearly equal lengths.  ``scale`` is that
     of the distance between both, which decides how far the target may be missed.  ``sided`` keeps
-    the elbow from being quite straight, so that its side can be read from the answer.
+    the elbow from being quite straight, so that its side can be read from the answer.  ``rest`` is
+    the direction of the upper arm where the end is on the shoulder.
     """
     upper, along, across = lengths
     r, h = target
@@ -349,9 +351,9 @@ def two_link_arm_beside(
     out = program.let(f"out{suffix}", r * beyond[0] + h * beyond[1])
     up = program.let(f"up{suffix}", h * beyond[0] - r * beyond[1])
     norm = program.let(f"norm{suffix}", sp.sqrt(out**2 + up**2), nonnegative=True)
-    direction = (choose(folded, 1, out / norm), choose(folded, 0, up / norm))
+    direction = (choose(folded, rest[0], out / norm), choose(folded, rest[1], up / norm))
     angles = (
-        choose(folded, 0, sp.atan2(up, out)),
+        choose(folded, sp.atan2(rest[1], rest[0]), sp.atan2(up, out)),
         choose(short, 0, 2 * sigma * sp.atan2(rN, rM)),
     )
     lemma = _arm(program, lengths, target, unknowns, suffix, start, direction, bend, angles)

@@ -276,7 +276,7 @@ d.step(
     "Jacobian by the chain rule",
     "The task depends on the joints through theta1, the averages, yaw, roll and pitch.  The outer "
     "factor holds the position by these, the inner one these by the joints.",
-    {"J_{xyz}": outer[:3, :3]},
+    {"J": outer[:3, :3]},
     equal=[
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
         (spread, -m.L1 * without * cos(alpha) * cos(beta)),
@@ -382,21 +382,21 @@ design(d, m, cos(psi))
 
 # Claims of the paper
 
+as_printed = {theta2A: real("theta_2^A"), theta23A: real("theta_23^A")}
 state(
     d,
     Robot(
         m,
         theta1,
-        theta2A,
-        theta23A,
+        *as_printed.values(),
         alpha,
         beta,
         psi,
         phi,
         tips,
         by_frames,
-        serial,
-        T,
+        serial.xreplace(as_printed),
+        T.xreplace(as_printed),
         extended(m, posture),
         partial(arm, m),
     ),

@@ -203,6 +203,7 @@ def stand(p: Program) -> Posture:
         (mean[0] + gap, mean[1] - gap),
         m.d,
         suffix="_virtual",
+        rest=pair(theta2R),
     )
     upper, fore = (Pair(*virtual.pairs[angle]) for angle in (theta2A, theta23A))
     seen = {cos(theta23A): fore.c, sin(theta23A): fore.s}
@@ -278,7 +279,7 @@ d.step(
     "virtual arm follows the middle of the tips by the inverse of its own Jacobian; yaw and roll "
     "follow the base line in the axes of its fore-arm.  The determinant is the product of those of "
     "the parts: both real arms stand in the numerator, the virtual one in the denominator.",
-    {"J_{xyz}": outer[:3, :3]},
+    {"J": outer[:3, :3]},
     equal=[
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
         (point_by.det(), -m.L1 * without),
@@ -401,6 +402,7 @@ for name, sigma, sign, unknowns in (
             suffix=f"_{name}",
             sided=name == "right",
             free=unknowns[:1],
+            rest=upper,
         )
     )
 lemmas = (*mid.lemmas, *arms)
@@ -422,8 +424,9 @@ d.function(
         "UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist "
         "axis than L_theta, or an arm is out of reach.",
         "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder "
-        "(the link at the shoulder is returned horizontal), or a link without length.",
-        "A stretched right arm is returned bent by 1e-7, so that fk can read the side.",
+        "(its upper arm is returned beside that of the virtual arm), or a link without length.",
+        "A straight right arm is returned bent by a few units in the last place, so that fk can read "
+        "the side.",
     ),
 )
 half_row = Rational(1, 2)

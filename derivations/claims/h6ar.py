@@ -170,7 +170,7 @@ def invariant(d: Derivation, r: Robot) -> None:
         "invariant",
         "“the fact that the point $(x, y, z)_I$ is invariant to the reflective-symmetric motions”, "
         "read as: averages that stay keep the middle of the tips",
-        Identity(list(middle), list(r.arm(r.A, r.B))),
+        Identity(list(r.arm(r.A, r.B)), list(middle)),
     )
 
     claim(

@@ -1523,9 +1523,10 @@ const cf_function cf_functions[] = {
       "UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer\n"
       "    to the waist axis than L_theta, or an arm is out of reach.\n"
       "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its\n"
-      "    shoulder (the link at the shoulder is returned horizontal), or a link\n"
-      "    without length.\n"
-      "A stretched right arm is returned bent by 1e-7, so that fk can read the side.\n"
+      "    shoulder (its upper arm is returned beside that of the virtual arm), or a\n"
+      "    link without length.\n"
+      "A straight right arm is returned bent by a few units in the last place, so that\n"
+      "    fk can read the side.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_ik_in, 2, h6ar_loop_closed_ik_out,

@@ -107,7 +107,7 @@ CF_INLINE void h6ar_fk_kernel(const h6ar_params *params, const real_t q[6], cons
     const int t47 = t46 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t48 = t47 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const real_t t49 = -(CLOSEDFORM_FEASIBILITY * t27);
-    const real_t t50 = cf_poison(!t48 | !((t49 <= t28) & (t49 <= t26)));
+    const real_t t50 = cf_poison((!t48) | (!((t49 <= t28) & (t49 <= t26))));
     const real_t t51 = d1 + L1 * (side2A * t23) - c23A * t30 + s23A * t36;
     x[0] = c1 * t37 - s1 * t38 + t50;
     x[1] = c1 * t38 + s1 * t37 + t50;
@@ -256,7 +256,7 @@ CF_INLINE void h6ar_pose_kernel(const h6ar_params *params, const real_t q[6], co
     const real_t t46 = -(CLOSEDFORM_FEASIBILITY * t45);
     const real_t t47 = t45 - base;
     const real_t t48 = base - (gs - al);
-    const real_t t49 = cf_poison(!t44 | !((t46 <= t47) & (t46 <= t48)));
+    const real_t t49 = cf_poison((!t44) | (!((t46 <= t47) & (t46 <= t48))));
     const real_t hand_22 = cpsi * cphi;
     const real_t hand_12 = cpsi * t26;
     const real_t t50 = s1 * hand_22 + t15 * hand_12 - t31 * t29 + t49;
@@ -623,7 +623,7 @@ CF_INLINE void h6ar_jacobian_kernel(const h6ar_params *params, const real_t q[6]
     const int t59 = t58 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t60 = t59 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const real_t t61 = -(CLOSEDFORM_FEASIBILITY * t40);
-    const real_t t62 = cf_poison(!t60 | !((t61 <= t41) & (t61 <= t39)));
+    const real_t t62 = cf_poison((!t60) | (!((t61 <= t41) & (t61 <= t39))));
     const real_t t63 = s23A * cpsi;
     const real_t t64 = t63 + c23A * t48;
     const real_t t65 = (gs - d / cpsi) * (d * t36);
@@ -894,7 +894,7 @@ CF_INLINE void h6ar_determinant_kernel(const h6ar_params *params, const real_t q
     const int t46 = t45 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t47 = t46 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const real_t t48 = -(CLOSEDFORM_FEASIBILITY * t32);
-    const real_t t49 = cf_poison(!t47 | !((t48 <= t33) & (t48 <= t31)));
+    const real_t t49 = cf_poison((!t47) | (!((t48 <= t33) & (t48 <= t31))));
     det[0] = -t38 + t49;
 }
 
@@ -1025,7 +1025,7 @@ CF_INLINE void h6ar_singularities_kernel(const h6ar_params *params, const real_t
     const int t41 = t40 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int t42 = t41 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
     const real_t t43 = -(CLOSEDFORM_FEASIBILITY * t29);
-    const real_t t44 = cf_poison(!t42 | !((t43 <= t30) & (t43 <= t28)));
+    const real_t t44 = cf_poison((!t42) | (!((t43 <= t30) & (t43 <= t28))));
     const real_t s2A = side2A * t26;
     const real_t t45 = c2A * c23A + s2A * s23A;
     const real_t t46 = s2A * c23A - c2A * s23A;
@@ -1606,7 +1606,7 @@ CF_INLINE void h6ar_wrist_length_kernel(const h6ar_params *params, const real_t 
     const int t6 = t5 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const real_t t7 = CLOSEDFORM_FEASIBILITY * (d / CLOSEDFORM_C(2.0));
     const int t8 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t7 <= t2);
-    const real_t t9 = t3 / c_psi + cf_poison(!t6 | !(t8 & (-t7 <= t1)));
+    const real_t t9 = t3 / c_psi + cf_poison((!t6) | (!(t8 & (-t7 <= t1))));
     l_W[0] = t9;
 }
 
@@ -1713,7 +1713,7 @@ CF_INLINE void h6ar_largest_yaw_kernel(const h6ar_params *params, const real_t p
     const int t4 = t3 & cf_is_finite(d) & cf_is_finite(gs) & cf_is_finite(al);
     const int t5 = t4 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
-    const int failed = !(t5 & (CLOSEDFORM_C(0.0) <= al)) | unreachable;
+    const int failed = (!(t5 & (CLOSEDFORM_C(0.0) <= al))) | unreachable;
     const real_t t6 = cf_wrap(CLOSEDFORM_C(2.0) * t2) + cf_poison(failed);
     psi[0] = t6;
 }
@@ -1769,7 +1769,7 @@ CF_INLINE void h6ar_largest_angle_kernel(const h6ar_params *params, const real_t
     const int t4 = t3 & cf_is_finite(al) & (CLOSEDFORM_C(0.0) <= d);
     const int t5 = t4 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
-    const real_t t6 = cf_wrap(CLOSEDFORM_C(2.0) * t2) + cf_poison(!t5 | unreachable);
+    const real_t t6 = cf_wrap(CLOSEDFORM_C(2.0) * t2) + cf_poison((!t5) | unreachable);
     angle[0] = t6;
 }
 

@@ -4,14 +4,14 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 77 add, 84 compare and select, 3 atan2, 20 divide, 116 multiply, 6 sincos, 9 sqrt
- *   pose: 104 add, 81 compare and select, 20 divide, 155 multiply, 6 sincos, 9 sqrt
+ *   fk: 79 add, 84 compare and select, 3 atan2, 20 divide, 119 multiply, 6 sincos, 9 sqrt
+ *   pose: 106 add, 81 compare and select, 20 divide, 158 multiply, 6 sincos, 9 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
- *   jacobian: 212 add, 77 compare and select, 52 divide, 296 multiply, 6 sincos, 9 sqrt
+ *   jacobian: 214 add, 77 compare and select, 52 divide, 299 multiply, 6 sincos, 9 sqrt
  *   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
  *   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
- *   ik: 264 add, 285 compare and select, 24 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+ *   ik: 264 add, 285 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
  *   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -162,9 +162,10 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  *     rear_elbow_down_mixed.
  * UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
  *     axis than L_theta, or an arm is out of reach.
- * SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (the
- *     link at the shoulder is returned horizontal), or a link without length.
- * A stretched right arm is returned bent by 1e-7, so that fk can read the side.
+ * SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
+ *     upper arm is returned beside that of the virtual arm), or a link without length.
+ * A straight right arm is returned bent by a few units in the last place, so that fk can read
+ *     the side.
  */
 void h6ar_loop_closed_ik(const h6ar_loop_closed_params *params, const real_t
     x[6], real_t q[48], uint8_t status[8]);

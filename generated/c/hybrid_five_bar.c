@@ -163,7 +163,7 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const hybrid_five_bar_param
     const int t13 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t14 = t13 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t15 = t14 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t15 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
+    const int failed = (!(t15 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t8));
     const real_t t16 = cf_poison(failed);
     const real_t t17 = cf_wrap(-cf_atan2(DP_r_right_of_CD, CP_y)) + t16;
     const real_t DP_r = t6 + t10;
@@ -238,7 +238,7 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const hybrid_five_bar_pa
     const real_t t7 = L1 * c2 - (L0 + L1 * c3);
     const real_t apart = cf_sqrt(t6 * t6 + t7 * t7);
     const real_t t8 = t5 - apart;
-    const int failed = !(t3 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t8);
+    const int failed = (!(t3 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t8));
     const real_t t9 = cf_poison(failed);
     const real_t t10 = L2 * s1 + t9;
     const real_t t11 = CLOSEDFORM_C(0.0) + t9;
@@ -372,7 +372,7 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_para
     const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t14 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const int failed = (!(t14 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t15 = cf_poison(failed);
     const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t17 = t6 * height;
@@ -466,7 +466,7 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *par
     const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t14 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const int failed = (!(t14 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t15 = cf_poison(failed);
     const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t17 = t6 * height;
@@ -601,7 +601,7 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *
     const int t16 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t17 = t16 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t18 = t17 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t18 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const int failed = (!(t18 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t19 = cf_poison(failed);
     const real_t t20 = (C_r - DP_r) * (C_r * CP_y_right_of_CD + C_y * DP_r);
     const real_t t21 = t20 * (D_r * CP_y + t2 * DP_r_right_of_CD) / side;
@@ -678,7 +678,7 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params
     const int t11 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t12 = t11 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t13 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
+    const int failed = (!(t13 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t8));
     const real_t t14 = cf_poison(failed);
     const real_t t15 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t16 = t5 * height;
@@ -765,7 +765,7 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_par
     const int t9 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t10 = t9 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t11 = t10 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t11 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t7);
+    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t7));
     const real_t t12 = cf_max(t5, height) / cf_min(t5, height) + cf_poison(failed);
     kappa[0] = t12;
     kappa[1] = t12;
@@ -1006,7 +1006,7 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     const real_t t9 = y - L0;
     const real_t reach_d = cf_sqrt(t6 + t9 * t9);
     const int t10 = t8 & (t5 <= t4 - reach_d) & (t5 <= reach_d + t7);
-    const int failed = !(t3 & (CLOSEDFORM_C(0.0) <= L2)) | !(t10 & (t5 <= reach_d - t7));
+    const int failed = (!(t3 & (CLOSEDFORM_C(0.0) <= L2))) | (!(t10 & (t5 <= reach_d - t7)));
     inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -1078,7 +1078,7 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_par
     const real_t t24 = cf_select(t3 <= L0, t10, cf_select(t4 < L0, t18, t23));
     const int t25 = cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t26 = t25 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t26 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1);
+    const int failed = (!(t26 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1));
     const real_t t27 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t24) + cf_poison(failed);
     volume[0] = t27;
 }

@@ -3,14 +3,14 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 77 add, 84 compare and select, 3 atan2, 20 divide, 116 multiply, 6 sincos, 9 sqrt
-#   pose: 104 add, 81 compare and select, 20 divide, 155 multiply, 6 sincos, 9 sqrt
+#   fk: 79 add, 84 compare and select, 3 atan2, 20 divide, 119 multiply, 6 sincos, 9 sqrt
+#   pose: 106 add, 81 compare and select, 20 divide, 158 multiply, 6 sincos, 9 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 212 add, 77 compare and select, 52 divide, 296 multiply, 6 sincos, 9 sqrt
+#   jacobian: 214 add, 77 compare and select, 52 divide, 299 multiply, 6 sincos, 9 sqrt
 #   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
 #   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
-#   ik: 264 add, 285 compare and select, 24 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+#   ik: 264 add, 285 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -178,29 +178,30 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     out_virtual = ahead_1_virtual * r_I - t49 * t50
     t51 = ahead_1_virtual * t49 + r_I * t50
     norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
-    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t52 = np.where(folded_virtual, 0.0, t51 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t52
-    t53 = c_relative_virtual * t52 - s_relative_virtual * ctheta2A
-    t54 = t22 * ctheta23A - t42 * t53
-    t55 = d * d
-    tilted = np.sqrt(t55 + t54 * t54)
-    t56 = t54 / tilted
+    t52 = s2R_half * c2R_half
+    stheta2A = np.where(folded_virtual, t52 + t52, -(t51 / norm_virtual))
+    ctheta23A = c_relative_virtual * ctheta2A - s_relative_virtual * stheta2A
+    stheta23A = c_relative_virtual * stheta2A + s_relative_virtual * ctheta2A
+    t53 = t22 * ctheta23A + t42 * stheta23A
+    t54 = d * d
+    tilted = np.sqrt(t54 + t53 * t53)
+    t55 = t53 / tilted
     cphi = d / tilted
-    base = np.sqrt(t55 + gap)
-    spsi = (t22 * t53 + t42 * ctheta23A) / base
+    base = np.sqrt(t54 + gap)
+    t56 = (t22 * stheta23A - t42 * ctheta23A) / base
     t57 = base - (gs - al)
     t58 = gs + al
     t59 = t58 - base
     wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
     t60 = loff + lp * c + wrist
-    t61 = spsi * t60
-    t62 = t1 * t56 - cphi * t61
+    t61 = t56 * t60
+    t62 = t1 * t55 + cphi * t61
     cpsi = tilted / base
     t63 = L2 + t60 * cpsi
-    t64 = a3 + t1 * cphi + t56 * t61
-    t65 = L1 * ctheta2A - t53 * t63 + ctheta23A * t64
+    t64 = a3 + t1 * cphi - t55 * t61
+    t65 = L1 * ctheta2A + stheta23A * t63 + ctheta23A * t64
     t66 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
     t67 = t66 & np.isfinite(theta2L) & np.isfinite(theta3L)
     t68 = t67 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
@@ -213,13 +214,13 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t75 = -(_runtime.FEASIBILITY * t58)
     t76 = (t74 <= t43) & (t74 <= t45) & (t75 <= t59) & (t75 <= t57)
     t77 = _runtime.poison(np.logical_not(t73) | np.logical_not(t76))
-    t78 = d1 - L1 * t52 - ctheta23A * t63 - t53 * t64 + t77
+    t78 = d1 + L1 * stheta2A - ctheta23A * t63 + stheta23A * t64
     return (
         s1 * t62 + c1 * t65 + t77,
         s1 * t65 - c1 * t62 + t77,
-        t78,
-        _runtime.wrap(np.arctan2(spsi, cpsi)) + t77,
-        _runtime.wrap(-np.arctan2(-t56, cphi)) + t77,
+        t78 + t77,
+        _runtime.wrap(np.arctan2(-t56, cpsi)) + t77,
+        _runtime.wrap(-np.arctan2(-t55, cphi)) + t77,
         _runtime.wrap(np.arctan2(s, c)) + t77,
     )
 
@@ -333,26 +334,27 @@ def _pose(
     out_virtual = ahead_1_virtual * r_I - t48 * t49
     t50 = ahead_1_virtual * t48 + r_I * t49
     norm_virtual = np.sqrt(out_virtual * out_virtual + t50 * t50)
-    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t51 = np.where(folded_virtual, 0.0, t50 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t51
-    t52 = c_relative_virtual * t51 - s_relative_virtual * ctheta2A
-    t53 = t21 * ctheta23A - t41 * t52
-    t54 = d * d
-    tilted = np.sqrt(t54 + t53 * t53)
-    t55 = t53 / tilted
-    t56 = c * t55
+    t51 = s2R_half * c2R_half
+    stheta2A = np.where(folded_virtual, t51 + t51, -(t50 / norm_virtual))
+    ctheta23A = c_relative_virtual * ctheta2A - s_relative_virtual * stheta2A
+    stheta23A = c_relative_virtual * stheta2A + s_relative_virtual * ctheta2A
+    t52 = t21 * ctheta23A + t41 * stheta23A
+    t53 = d * d
+    tilted = np.sqrt(t53 + t52 * t52)
+    t54 = t52 / tilted
+    t55 = c * t54
     cphi = d / tilted
-    t57 = s * cphi
-    base = np.sqrt(t54 + gap)
-    spsi = (t21 * t52 + t41 * ctheta23A) / base
-    hand_21 = t56 + t57 * spsi
+    t56 = s * cphi
+    base = np.sqrt(t53 + gap)
+    t57 = (t21 * stheta23A - t41 * ctheta23A) / base
+    hand_21 = t55 - t56 * t57
     t58 = c1 * ctheta23A
     t59 = c * cphi
-    t60 = s * t55
-    hand_11 = t59 - t60 * spsi
-    t61 = c1 * t52
+    t60 = s * t54
+    hand_11 = t59 + t60 * t57
+    t61 = c1 * stheta23A
     cpsi = tilted / base
     t62 = s * cpsi
     t63 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
@@ -370,43 +372,44 @@ def _pose(
     t75 = base - (gs - al)
     t76 = (t71 <= t42) & (t71 <= t44) & (t73 <= t74) & (t73 <= t75)
     t77 = _runtime.poison(np.logical_not(t70) | np.logical_not(t76))
-    t78 = s1 * hand_21 + t58 * hand_11 + t61 * t62 + t77
+    t78 = s1 * hand_21 + t58 * hand_11 - t61 * t62 + t77
     hand_22 = cphi * cpsi
-    t79 = t55 * cpsi
-    t80 = t60 - t59 * spsi
+    t79 = t54 * cpsi
     hand_33 = c * cpsi
-    hand_13 = t57 + t56 * spsi
-    t81 = s1 * t80 - (t61 * hand_33 - t58 * hand_13) + t77
+    hand_13 = t56 - t55 * t57
+    t80 = t60 + t59 * t57
+    t81 = t61 * hand_33 + t58 * hand_13 + s1 * t80 + t77
     wrist = np.sqrt(np.maximum(t75, 0.0)) * np.sqrt(np.maximum(t74, 0.0))
     t82 = loff + lp * c + wrist
     t83 = L2 + cpsi * t82
-    t84 = spsi * t82
-    t85 = a3 + lp * t57 + t55 * t84
-    t86 = L1 * ctheta2A - t52 * t83 + ctheta23A * t85
-    t87 = lp * t60 - cphi * t84
-    t88 = s1 * t52
-    t89 = s1 * ctheta23A
-    t90 = t88 * t62 - (c1 * hand_21 - t89 * hand_11) + t77
-    t91 = -(c1 * hand_22 + t89 * t79 + t88 * spsi) + t77
-    t92 = -(t88 * hand_33 - t89 * hand_13 + c1 * t80) + t77
-    t93 = d1 - L1 * t51 - ctheta23A * t83 - t52 * t85 + t77
-    t94 = 0.0 + t77
+    t84 = t57 * t82
+    t85 = a3 + lp * t56 - t54 * t84
+    t86 = L1 * ctheta2A + stheta23A * t83 + ctheta23A * t85
+    t87 = lp * t60 + cphi * t84
+    t88 = s1 * ctheta23A
+    t89 = s1 * stheta23A
+    t90 = -(c1 * hand_21 - t88 * hand_11 + t89 * t62) + t77
+    t91 = -(c1 * hand_22 + t88 * t79 + t89 * t57) + t77
+    t92 = t89 * hand_33 + t88 * hand_13 - c1 * t80 + t77
+    t93 = stheta23A * hand_13 - ctheta23A * hand_33 + t77
+    t94 = d1 + L1 * stheta2A - ctheta23A * t83 + stheta23A * t85
+    t95 = 0.0 + t77
     return (
         t78,
-        s1 * hand_22 - t58 * t79 - t61 * spsi + t77,
+        s1 * hand_22 - t58 * t79 - t61 * t57 + t77,
         t81,
         c1 * t86 + s1 * t87 + t77,
         t90,
         t91,
         t92,
         s1 * t86 - c1 * t87 + t77,
-        ctheta23A * t62 - t52 * hand_11 + t77,
-        t52 * t79 - ctheta23A * spsi + t77,
-        -(ctheta23A * hand_33 + t52 * hand_13) + t77,
+        ctheta23A * t62 + stheta23A * hand_11 + t77,
+        ctheta23A * t57 - stheta23A * t79 + t77,
         t93,
-        t94,
-        t94,
-        t94,
+        t94 + t77,
+        t95,
+        t95,
+        t95,
         1.0 + t77,
     )
 
@@ -630,37 +633,38 @@ def _jacobian(
     out_virtual = ahead_1_virtual * r_I - t59 * t62
     t63 = ahead_1_virtual * t59 + r_I * t62
     norm_virtual = np.sqrt(out_virtual * out_virtual + t63 * t63)
-    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t64 = np.where(folded_virtual, 0.0, t63 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t64
-    t65 = c_relative_virtual * t64 - s_relative_virtual * ctheta2A
-    t66 = t26 * ctheta23A - t50 * t65
-    t67 = d * d
-    t68 = t66 * t66
-    tilted = np.sqrt(t67 + t68)
-    t69 = t66 / tilted
+    t64 = s2R_half * c2R_half
+    stheta2A = np.where(folded_virtual, t64 + t64, -(t63 / norm_virtual))
+    ctheta23A = c_relative_virtual * ctheta2A - s_relative_virtual * stheta2A
+    stheta23A = c_relative_virtual * stheta2A + s_relative_virtual * ctheta2A
+    t65 = t26 * ctheta23A + t50 * stheta23A
+    t66 = d * d
+    t67 = t65 * t65
+    tilted = np.sqrt(t66 + t67)
+    t68 = t65 / tilted
     cphi = d / tilted
-    beyond = t26 * t65 + t50 * ctheta23A
-    base = np.sqrt(t67 + gap)
-    spsi = beyond / base
-    t70 = lp * c
-    t71 = base - (gs - al)
-    t72 = gs + al
-    t73 = t72 - base
-    wrist = np.sqrt(np.maximum(t71, 0.0)) * np.sqrt(np.maximum(t73, 0.0))
-    t74 = loff + t70 + wrist
-    t75 = spsi * t74
-    t76 = t1 * t69 - cphi * t75
-    t77 = c1 * t76
+    t69 = t26 * stheta23A - t50 * ctheta23A
+    base = np.sqrt(t66 + gap)
+    t70 = t69 / base
+    t71 = lp * c
+    t72 = base - (gs - al)
+    t73 = gs + al
+    t74 = t73 - base
+    wrist = np.sqrt(np.maximum(t72, 0.0)) * np.sqrt(np.maximum(t74, 0.0))
+    t75 = loff + t71 + wrist
+    t76 = t70 * t75
+    t77 = t1 * t68 + cphi * t76
+    t78 = c1 * t77
     outer_32 = L1 * ctheta2A
     cpsi = tilted / base
-    t78 = t74 * cpsi
-    t79 = L2 + t78
-    t80 = t1 * cphi + t69 * t75
-    t81 = a3 + t80
-    t82 = t65 * t79 - ctheta23A * t81
-    t83 = outer_32 - t82
+    t79 = t75 * cpsi
+    t80 = L2 + t79
+    t81 = t1 * cphi - t68 * t76
+    t82 = a3 + t81
+    outer_33 = stheta23A * t80 + ctheta23A * t82
+    t83 = outer_32 + outer_33
     t84 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
     t85 = t84 & np.isfinite(theta2L) & np.isfinite(theta3L)
     t86 = t85 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
@@ -669,157 +673,158 @@ def _jacobian(
     t89 = t88 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
     t90 = t89 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     t91 = -(_runtime.FEASIBILITY * (d * t27))
-    t92 = -(_runtime.FEASIBILITY * t72)
-    t93 = (t91 <= t51) & (t91 <= t53) & (t92 <= t73) & (t92 <= t71)
+    t92 = -(_runtime.FEASIBILITY * t73)
+    t93 = (t91 <= t51) & (t91 <= t53) & (t92 <= t74) & (t92 <= t72)
     failed = np.logical_not(t90 & (0.0 <= lp)) | np.logical_not(t93)
     t94 = _runtime.poison(failed)
-    t95 = L1 * t64
+    t95 = L1 * stheta2A
     t96 = c1 * t95
-    t97 = L2 * t65 - a3 * ctheta23A
-    t98 = t45 / 2.0
-    t99 = t16 / 2.0 - t18 / 2.0
-    t100 = t55 * t99
-    mid_13 = t98 + t100
-    t101 = t49 / 2.0
-    t102 = t58 / 2.0
-    t103 = t101 - t102
-    mid_12 = mid_13 + t103
-    t104 = L2 * ctheta23A + a3 * t65
-    t105 = t42 / 2.0 + t43 / 2.0
-    t106 = t55 * t105
-    t107 = t20 / 2.0
-    mid_23 = t106 - t107
-    t108 = t25 / 2.0
-    t109 = t61 / 2.0
-    t110 = t108 + t109
-    mid_22 = mid_23 + t110
-    t111 = L2 * (ctheta2A * ctheta23A + t64 * t65) - a3 * (t64 * ctheta23A - ctheta2A * t65)
-    t112 = L1 * t111
-    t113 = (t97 * mid_12 + t104 * mid_22) / t112
-    t114 = cphi * spsi
-    t115 = t69 * spsi
-    t116 = t65 * cpsi - ctheta23A * t115
+    virtual_11 = L2 * stheta23A + a3 * ctheta23A
+    t97 = t45 / 2.0
+    t98 = t16 / 2.0 - t18 / 2.0
+    t99 = t55 * t98
+    mid_13 = t97 + t99
+    t100 = t49 / 2.0
+    t101 = t58 / 2.0
+    t102 = t100 - t101
+    mid_12 = mid_13 + t102
+    t103 = L2 * ctheta23A - a3 * stheta23A
+    t104 = t42 / 2.0 + t43 / 2.0
+    t105 = t55 * t104
+    t106 = t20 / 2.0
+    mid_23 = t105 - t106
+    t107 = t25 / 2.0
+    t108 = t61 / 2.0
+    t109 = t107 + t108
+    mid_22 = mid_23 + t109
+    t110 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t111 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t112 = L1 * (t110 + t111)
+    t113 = (virtual_11 * mid_12 - t103 * mid_22) / t112
+    t114 = cphi * t70
+    t115 = t68 * t70
+    t116 = stheta23A * cpsi - ctheta23A * t115
     t117 = s1 * t114 + c1 * t116
     t118 = d * (gs - d / (cphi * cpsi))
-    t119 = t69 * t118
+    t119 = t68 * t118
     t120 = cphi * cphi * wrist * cpsi
-    outer_15 = s1 * t80 - t117 * t119 / t120 - ctheta23A * t77
-    t121 = 1.0 / (d * (1.0 + t68 / t67))
-    t122 = t10 * t105
+    outer_15 = s1 * t81 + t117 * t119 / t120 - ctheta23A * t78
+    t121 = 1.0 / (d * (1.0 + t67 / t66))
+    t122 = t10 * t104
     t123 = t56 / 2.0
     gap_13 = t122 + t123
-    gap_12 = gap_13 + t103
+    gap_12 = gap_13 + t102
     t124 = t60 / 2.0
-    t125 = t10 * t99
+    t125 = t10 * t98
     gap_23 = t124 - t125
-    gap_22 = gap_23 + t110
-    rate_22 = (outer_32 * mid_12 - t95 * mid_22) / t112
-    line_12 = ctheta23A * gap_12 - t65 * gap_22 - beyond * rate_22
+    gap_22 = gap_23 + t109
+    rate_22 = (outer_32 * mid_12 + t95 * mid_22) / t112
+    line_12 = ctheta23A * gap_12 + stheta23A * gap_22 + t69 * rate_22
     t126 = t121 * line_12
-    t127 = spsi * t118
+    t127 = t70 * t118
     t128 = cphi * wrist * (cpsi * cpsi)
-    t129 = t69 * t78
-    t130 = t65 * t75 + ctheta23A * t129
-    t131 = cphi * t78
+    t129 = t68 * t79
+    t130 = stheta23A * t76 + ctheta23A * t129
+    t131 = cphi * t79
     t132 = t117 * t127 / t128 - c1 * t130 + s1 * t131
     t133 = tilted * tilted
-    t134 = 1.0 + beyond * beyond / t133
+    t134 = 1.0 + t69 * t69 / t133
     turn_12 = 1.0 / (tilted * t134)
-    t135 = t65 * gap_12 + ctheta23A * gap_22 + t66 * rate_22
-    t136 = t66 * beyond / (t134 * (tilted * t133))
-    t137 = turn_12 * t135 - t136 * line_12
-    t138 = ctheta23A * t79 + t65 * t81
+    t135 = stheta23A * gap_12 - ctheta23A * gap_22 - t65 * rate_22
+    t136 = t65 * t69 / (t134 * (tilted * t133))
+    inner_42 = turn_12 * t135 - t136 * line_12
+    t137 = t96 * t113 - outer_15 * t126 - t132 * inner_42
+    t138 = ctheta23A * t80 - stheta23A * t82
     outer_13 = c1 * t138
-    t139 = t96 * t113 - outer_15 * t126 + t132 * t137 + rate_22 * outer_13
-    t140 = (mid_13 * t97 + mid_23 * t104) / t112
-    rate_23 = (mid_13 * outer_32 - mid_23 * t95) / t112
-    line_13 = gap_13 * ctheta23A - gap_23 * t65 - beyond * rate_23
-    t141 = t121 * line_13
-    t142 = gap_23 * ctheta23A + gap_13 * t65 + t66 * rate_23
-    t143 = turn_12 * t142 - line_13 * t136
-    t144 = t96 * t140 - t141 * outer_15 + t143 * t132 + rate_23 * outer_13
-    t145 = t98 - t100
-    t146 = t101 + t102
-    t147 = t145 + t146
-    mid_25 = t106 + t107
-    t148 = t108 - t109
-    t149 = mid_25 - t148
-    t150 = (t97 * t147 - t104 * t149) / t112
+    t139 = (mid_13 * virtual_11 - mid_23 * t103) / t112
+    rate_23 = (mid_13 * outer_32 + mid_23 * t95) / t112
+    line_13 = gap_13 * ctheta23A + gap_23 * stheta23A + t69 * rate_23
+    t140 = t121 * line_13
+    t141 = gap_23 * ctheta23A - gap_13 * stheta23A + t65 * rate_23
+    t142 = turn_12 * t141 + line_13 * t136
+    t143 = t96 * t139 - t140 * outer_15 + t142 * t132 + rate_23 * outer_13
+    t144 = t97 - t99
+    t145 = t100 + t101
+    t146 = t144 + t145
+    mid_25 = t105 + t106
+    t147 = t107 - t108
+    t148 = mid_25 - t147
+    rate_14 = (virtual_11 * t146 + t103 * t148) / t112
     gap_15 = t122 - t123
-    gap_14 = gap_15 + t146
-    t151 = t124 + t125
-    t152 = t151 - t148
-    t153 = (outer_32 * t147 + t95 * t149) / t112
-    line_14 = ctheta23A * gap_14 + t65 * t152 + beyond * t153
-    t154 = t121 * line_14
-    t155 = turn_12 * (t65 * gap_14 - ctheta23A * t152 - t66 * t153)
-    t156 = t155 - t136 * line_14
-    t157 = t96 * t150 + outer_15 * t154 - t132 * t156 + t153 * outer_13
-    t158 = (t145 * t97 - mid_25 * t104) / t112
-    t159 = (t145 * outer_32 + mid_25 * t95) / t112
-    line_15 = gap_15 * ctheta23A + t151 * t65 + beyond * t159
-    t160 = t121 * line_15
-    t161 = turn_12 * (t151 * ctheta23A - gap_15 * t65 + t66 * t159)
-    inner_45 = t161 + line_15 * t136
-    t162 = t96 * t158 + t160 * outer_15 + inner_45 * t132
-    t163 = t70 * t69 + t1 * t114
-    t164 = t70 * cphi - t1 * t115
-    t165 = t1 * cpsi
-    t166 = ctheta23A * t164 + t65 * t165
-    t167 = s1 * t76
-    t168 = s1 * t95
-    t169 = c1 * t114 - s1 * t116
-    t170 = c1 * t80 - t119 * t169 / t120 + ctheta23A * t167
-    outer_24 = t127 * t169 / t128 + s1 * t130 + c1 * t131
+    gap_14 = gap_15 + t145
+    t149 = t124 + t125
+    t150 = t149 - t147
+    t151 = (outer_32 * t146 - t95 * t148) / t112
+    line_14 = ctheta23A * gap_14 - stheta23A * t150 - t69 * t151
+    t152 = t121 * line_14
+    t153 = stheta23A * gap_14 + ctheta23A * t150 + t65 * t151
+    inner_44 = turn_12 * t153 - t136 * line_14
+    t154 = t96 * rate_14 + outer_15 * t152 + t132 * inner_44
+    rate_15 = (t144 * virtual_11 + mid_25 * t103) / t112
+    t155 = (t144 * outer_32 - mid_25 * t95) / t112
+    line_15 = gap_15 * ctheta23A - t149 * stheta23A - t69 * t155
+    t156 = t121 * line_15
+    line_25 = t149 * ctheta23A + gap_15 * stheta23A + t65 * t155
+    inner_45 = turn_12 * line_25 - line_15 * t136
+    t157 = t96 * rate_15 + t156 * outer_15 + inner_45 * t132
+    t158 = t71 * t68 - t1 * t114
+    t159 = t71 * cphi + t1 * t115
+    t160 = t1 * cpsi
+    t161 = ctheta23A * t159 - stheta23A * t160
+    t162 = s1 * t77
+    t163 = s1 * t95
+    t164 = c1 * t114 - s1 * t116
+    t165 = c1 * t81 + t119 * t164 / t120 + ctheta23A * t162
+    outer_24 = t127 * t164 / t128 + s1 * t130 + c1 * t131
+    t166 = t163 * t113 + t165 * t126 + outer_24 * inner_42
     outer_23 = s1 * t138
-    t171 = t168 * t113 + t170 * t126 - outer_24 * t137 + rate_22 * outer_23
-    t172 = t140 * t168 + t141 * t170 - t143 * outer_24 + rate_23 * outer_23
-    t173 = t168 * t150 - t170 * t154 + outer_24 * t156 + t153 * outer_23
-    t174 = t158 * t168 - t160 * t170 - inner_45 * outer_24
-    t175 = 0.0 + t94
-    t176 = ctheta23A * cpsi + t65 * t115
-    outer_35 = t65 * t76 - t119 * t176 / t120
-    t177 = ctheta23A * t75 - t127 * t176 / t128 - t65 * t129
-    t178 = outer_32 * t113 - outer_35 * t126 - t177 * t137
-    t179 = outer_32 * t140 - t141 * outer_35 - t143 * t177
-    t180 = outer_32 * t150 + outer_35 * t154 + t177 * t156
-    t181 = outer_32 * t158 + t160 * outer_35 - inner_45 * t177
+    t167 = t139 * t163 + t140 * t165 - t142 * outer_24 + rate_23 * outer_23
+    t168 = t163 * rate_14 - t165 * t152 - outer_24 * inner_44
+    t169 = rate_15 * t163 - t156 * t165 - inner_45 * outer_24
+    t170 = 0.0 + t94
+    t171 = ctheta23A * cpsi + stheta23A * t115
+    t172 = stheta23A * t77 + t119 * t171 / t120
+    t173 = ctheta23A * t76 - t127 * t171 / t128 - stheta23A * t129
+    t174 = outer_32 * t113 - t172 * t126 + t173 * inner_42
+    t175 = rate_23 * outer_33 - (outer_32 * t139 - t140 * t172 - t142 * t173)
+    t176 = outer_32 * rate_14 + t172 * t152 - t173 * inner_44
+    t177 = outer_32 * rate_15 + t156 * t172 - inner_45 * t173
     return (
-        t77 - s1 * t83 + t94,
-        t139 + t94,
-        t144 + t94,
-        -t157 + t94,
-        -(t162 + t159 * outer_13) + t94,
-        s1 * t163 + c1 * t166 + t94,
-        t167 + c1 * t83 + t94,
-        t171 + t94,
-        t172 + t94,
-        -t173 + t94,
-        -(t174 + t159 * outer_23) + t94,
-        s1 * t166 - c1 * t163 + t94,
-        t175,
-        t178 - rate_22 * t82 + t94,
-        t179 - rate_23 * t82 + t94,
-        t153 * t82 - t180 + t94,
-        t159 * t82 - t181 + t94,
-        ctheta23A * t165 - t65 * t164 + t94,
-        t175,
-        -t137 + t94,
-        -t143 + t94,
-        -t156 + t94,
+        t78 - s1 * t83 + t94,
+        t137 + rate_22 * outer_13 + t94,
+        t143 + t94,
+        -(t154 + t151 * outer_13) + t94,
+        -(t157 + t155 * outer_13) + t94,
+        s1 * t158 + c1 * t161 + t94,
+        t162 + c1 * t83 + t94,
+        t166 + rate_22 * outer_23 + t94,
+        t167 + t94,
+        -(t168 + t151 * outer_23) + t94,
+        -(t169 + t155 * outer_23) + t94,
+        s1 * t161 - c1 * t158 + t94,
+        t170,
+        rate_22 * outer_33 - t174 + t94,
+        t175 + t94,
+        t176 - t151 * outer_33 + t94,
+        t177 - t155 * outer_33 + t94,
+        stheta23A * t159 + ctheta23A * t160 + t94,
+        t170,
+        inner_42 + t94,
+        -t142 + t94,
+        inner_44 + t94,
         inner_45 + t94,
-        t175,
-        t175,
+        t170,
+        t170,
         -t126 + t94,
-        -t141 + t94,
-        -t154 + t94,
-        -t160 + t94,
-        t175,
-        t175,
-        t175,
-        t175,
-        t175,
-        t175,
+        -t140 + t94,
+        -t152 + t94,
+        -t156 + t94,
+        t170,
+        t170,
+        t170,
+        t170,
+        t170,
+        t170,
         1.0 + t94,
     )
 
@@ -941,45 +946,45 @@ def _determinant(
     out_virtual = ahead_1_virtual * r_I - t37 * t57
     t58 = ahead_1_virtual * t37 + r_I * t57
     norm_virtual = np.sqrt(out_virtual * out_virtual + t58 * t58)
-    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    ctheta2A = np.where(folded_virtual, t13, out_virtual / norm_virtual)
     bare_virtual = fore <= t41
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t59 = np.where(folded_virtual, 0.0, t58 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t59
-    t60 = c_relative_virtual * t59 - s_relative_virtual * ctheta2A
-    t61 = ctheta2A * ctheta23A + t59 * t60
-    t62 = d * d
-    t63 = t51 * ctheta23A - t52 * t60
-    tilted = np.sqrt(t62 + t63 * t63)
-    base = np.sqrt(t62 + gap)
-    t64 = base - (gs - al)
-    t65 = gs + al
-    t66 = t65 - base
-    wrist = np.sqrt(np.maximum(t64, 0.0)) * np.sqrt(np.maximum(t66, 0.0))
-    t67 = loff + lp * c + wrist
-    t68 = L2 + tilted / base * t67
-    t69 = t59 * ctheta23A - ctheta2A * t60
-    t70 = t63 / tilted * t67 * ((t51 * t60 + t52 * ctheta23A) / base)
-    t71 = a3 + lp * s * (d / tilted) + t70
-    t72 = d * (L1 * L1) * t7 * t14 * (t61 * t68 - t69 * t71)
-    t73 = t72 * (L1 * ctheta2A + ctheta23A * t71 - t60 * t68)
-    t74 = 4.0 * tilted * (L2 * t61 - a3 * t69) * (base * base)
-    t75 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t76 = t75 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t77 = t76 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t78 = t77 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t79 = t78 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t80 = t79 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t81 = t80 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t82 = -(_runtime.FEASIBILITY * (d * t40))
-    t83 = -(_runtime.FEASIBILITY * t65)
-    t84 = (t82 <= t53) & (t82 <= t55) & (t83 <= t66) & (t83 <= t64)
-    failed = np.logical_not(t81 & (0.0 <= lp)) | np.logical_not(t84)
+    stheta2A = np.where(folded_virtual, t9, -(t58 / norm_virtual))
+    ctheta23A = c_relative_virtual * ctheta2A - s_relative_virtual * stheta2A
+    stheta23A = c_relative_virtual * stheta2A + s_relative_virtual * ctheta2A
+    t59 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t60 = d * d
+    t61 = t51 * ctheta23A + t52 * stheta23A
+    tilted = np.sqrt(t60 + t61 * t61)
+    base = np.sqrt(t60 + gap)
+    t62 = base - (gs - al)
+    t63 = gs + al
+    t64 = t63 - base
+    wrist = np.sqrt(np.maximum(t62, 0.0)) * np.sqrt(np.maximum(t64, 0.0))
+    t65 = loff + lp * c + wrist
+    t66 = L2 + tilted / base * t65
+    t67 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t68 = t61 / tilted * t65 * ((t51 * stheta23A - t52 * ctheta23A) / base)
+    t69 = a3 + lp * s * (d / tilted) - t68
+    t70 = d * (L1 * L1) * t7 * t14 * (t59 * t66 + t67 * t69)
+    t71 = L1 * ctheta2A + ctheta23A * t69 + stheta23A * t66
+    t72 = 4.0 * tilted * (L2 * t59 + a3 * t67) * (base * base)
+    t73 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t74 = t73 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t75 = t74 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t76 = t75 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t77 = t76 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t78 = t77 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t79 = t78 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t80 = -(_runtime.FEASIBILITY * (d * t40))
+    t81 = -(_runtime.FEASIBILITY * t63)
+    t82 = (t80 <= t53) & (t80 <= t55) & (t81 <= t64) & (t81 <= t62)
+    failed = np.logical_not(t79 & (0.0 <= lp)) | np.logical_not(t82)
     return (
-        t73 / t74 + _runtime.poison(failed),
+        t70 * t71 / t72 + _runtime.poison(failed),
     )
 
 
@@ -1045,102 +1050,102 @@ def _singularities(
     t26 = L1 + fore
     t27 = t26 * _runtime.VANISHING
     folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t27
+    t28 = c2R_half * c2R_half - s2R_half * s2R_half
     short_virtual = L1 * fore <= _runtime.VANISHING * (t26 * t26)
-    t28 = s3L_half * c3L_half
-    t29 = t28 + t28
-    t30 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t29 + a3 * t30
-    t31 = 0.0 <= straight_left
-    t32 = L2 * t30 - a3 * t29
-    large_left = fore + np.where(t31, straight_left, -straight_left)
-    small_left = t32 * t32 / large_left
-    t33 = L1 * 2.0
-    t34 = np.where(t31, small_left, large_left) * t33 / 2.0
-    t35 = s3R_half * c3R_half
-    t36 = t35 + t35
-    t37 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t36 + a3 * t37
-    t38 = 0.0 <= straight_right
-    t39 = L2 * t37 - a3 * t36
-    t40 = np.where(t38, straight_right, -straight_right)
-    large_right = fore + t40
-    small_right = t39 * t39 / large_right
-    N_right = np.where(t38, small_right, large_right) * t33
-    t41 = s2L_half * t7 - c2L_half * t8
-    t42 = L1 * (t17 - t18)
-    t43 = t41 * t16 - t19 * t42
-    t44 = t24 * t41 + t25 * t42
-    gap = t43 * t43 + t44 * t44
-    t45 = t34 + N_right / 2.0 + gap
-    N_virtual = np.maximum(t45, 0.0)
-    t46 = np.where(t31, large_left, small_left) * t33 / 2.0
-    M_right = np.where(t38, large_right, small_right) * t33
-    t47 = t46 + M_right / 2.0 - gap
-    M_virtual = np.maximum(t47, 0.0)
+    t29 = s3L_half * c3L_half
+    t30 = t29 + t29
+    t31 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t30 + a3 * t31
+    t32 = 0.0 <= straight_left
+    t33 = L2 * t31 - a3 * t30
+    large_left = fore + np.where(t32, straight_left, -straight_left)
+    small_left = t33 * t33 / large_left
+    t34 = L1 * 2.0
+    t35 = np.where(t32, small_left, large_left) * t34 / 2.0
+    t36 = s3R_half * c3R_half
+    t37 = t36 + t36
+    t38 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t37 + a3 * t38
+    t39 = 0.0 <= straight_right
+    t40 = L2 * t38 - a3 * t37
+    t41 = np.where(t39, straight_right, -straight_right)
+    large_right = fore + t41
+    small_right = t40 * t40 / large_right
+    N_right = np.where(t39, small_right, large_right) * t34
+    t42 = s2L_half * t7 - c2L_half * t8
+    t43 = L1 * (t17 - t18)
+    t44 = t42 * t16 - t19 * t43
+    t45 = t24 * t42 + t25 * t43
+    gap = t44 * t44 + t45 * t45
+    t46 = t35 + N_right / 2.0 + gap
+    N_virtual = np.maximum(t46, 0.0)
+    t47 = np.where(t32, large_left, small_left) * t34 / 2.0
+    M_right = np.where(t39, large_right, small_right) * t34
+    t48 = t47 + M_right / 2.0 - gap
+    M_virtual = np.maximum(t48, 0.0)
     whole_virtual = N_virtual + M_virtual
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t48 = 2.0 * np.where(0.0 <= -t39, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t48 * np.sqrt(M_virtual) / whole_virtual)
-    t49 = fore * s_bend_virtual
-    out_virtual = ahead_1_virtual * r_I - t23 * t49
-    t50 = ahead_1_virtual * t23 + r_I * t49
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t50 * t50)
-    ctheta2A = np.where(folded_virtual, 1.0, out_virtual / norm_virtual)
+    t49 = 2.0 * np.where(0.0 <= -t40, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t49 * np.sqrt(M_virtual) / whole_virtual)
+    t50 = fore * s_bend_virtual
+    out_virtual = ahead_1_virtual * r_I - t23 * t50
+    t51 = ahead_1_virtual * t23 + r_I * t50
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
+    ctheta2A = np.where(folded_virtual, t28, out_virtual / norm_virtual)
     bare_virtual = fore <= t27
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    t51 = np.where(folded_virtual, 0.0, t50 / norm_virtual)
-    ctheta23A = c_relative_virtual * ctheta2A + s_relative_virtual * t51
-    t52 = d * d
-    t53 = c_relative_virtual * t51 - s_relative_virtual * ctheta2A
-    t54 = t43 * ctheta23A - t44 * t53
-    tilted = np.sqrt(t52 + t54 * t54)
-    base = np.sqrt(t52 + gap)
-    t55 = t54 / tilted * ((t43 * t53 + t44 * ctheta23A) / base)
-    t56 = base - (gs - al)
-    t57 = gs + al
-    t58 = t57 - base
-    wrist = np.sqrt(np.maximum(t56, 0.0)) * np.sqrt(np.maximum(t58, 0.0))
-    t59 = loff + lp * c + wrist
-    t60 = a3 + lp * s * (d / tilted) + t55 * t59
-    t61 = L2 + t59 * (tilted / base)
-    t62 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t63 = t62 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t64 = t63 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t65 = t64 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t66 = t65 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t67 = t66 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t68 = t67 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t69 = -(_runtime.FEASIBILITY * (d * t26))
-    t70 = -(_runtime.FEASIBILITY * t57)
-    t71 = (t69 <= t45) & (t69 <= t47) & (t70 <= t58) & (t70 <= t56)
-    failed = np.logical_not(t68 & (0.0 <= lp)) | np.logical_not(t71)
-    t72 = _runtime.poison(failed)
-    t73 = L1 * ctheta2A + ctheta23A * t60 - t53 * t61 + t72
-    t74 = ctheta2A * ctheta23A + t51 * t53
-    t75 = t51 * ctheta23A - ctheta2A * t53
-    t76 = s2R_half * c2R_half
-    t77 = t76 + t76
-    t78 = c2R_half * c2R_half - s2R_half * s2R_half
-    s2R3R = t37 * t77 + t36 * t78
-    c2R3R = t37 * t78 - t36 * t77
-    t79 = L2 * (t77 * s2R3R + t78 * c2R3R) + a3 * (t77 * c2R3R - t78 * s2R3R)
-    t80 = s2L_half * c2L_half
-    t81 = t80 + t80
-    t82 = c2L_half * c2L_half - s2L_half * s2L_half
-    s2L3L = t30 * t81 + t29 * t82
-    c2L3L = t30 * t82 - t29 * t81
-    t83 = L2 * (t81 * s2L3L + t82 * c2L3L) + a3 * (t81 * c2L3L - t82 * s2L3L)
+    t52 = s2R_half * c2R_half
+    t53 = t52 + t52
+    stheta2A = np.where(folded_virtual, t53, -(t51 / norm_virtual))
+    ctheta23A = c_relative_virtual * ctheta2A - s_relative_virtual * stheta2A
+    t54 = d * d
+    stheta23A = c_relative_virtual * stheta2A + s_relative_virtual * ctheta2A
+    t55 = t44 * ctheta23A + t45 * stheta23A
+    tilted = np.sqrt(t54 + t55 * t55)
+    base = np.sqrt(t54 + gap)
+    t56 = t55 / tilted * ((t44 * stheta23A - t45 * ctheta23A) / base)
+    t57 = base - (gs - al)
+    t58 = gs + al
+    t59 = t58 - base
+    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
+    t60 = loff + lp * c + wrist
+    t61 = a3 + lp * s * (d / tilted) - t56 * t60
+    t62 = L2 + t60 * (tilted / base)
+    t63 = L1 * ctheta2A + ctheta23A * t61 + stheta23A * t62
+    t64 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t65 = t64 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t66 = t65 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t67 = t66 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t68 = t67 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t69 = t68 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t70 = t69 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t71 = -(_runtime.FEASIBILITY * (d * t26))
+    t72 = -(_runtime.FEASIBILITY * t58)
+    t73 = (t71 <= t46) & (t71 <= t48) & (t72 <= t59) & (t72 <= t57)
+    failed = np.logical_not(t70 & (0.0 <= lp)) | np.logical_not(t73)
+    t74 = _runtime.poison(failed)
+    t75 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t76 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    s2R3R = t38 * t53 + t37 * t28
+    c2R3R = t38 * t28 - t37 * t53
+    t77 = L2 * (t53 * s2R3R + t28 * c2R3R) + a3 * (t53 * c2R3R - t28 * s2R3R)
+    t78 = s2L_half * c2L_half
+    t79 = t78 + t78
+    t80 = c2L_half * c2L_half - s2L_half * s2L_half
+    s2L3L = t31 * t79 + t30 * t80
+    c2L3L = t31 * t80 - t30 * t79
+    t81 = L2 * (t79 * s2L3L + t80 * c2L3L) + a3 * (t79 * c2L3L - t80 * s2L3L)
     return (
-        t73,
-        t74 * t61 - t75 * t60 + t72,
-        t79 + t72,
-        t83 + t72,
-        L2 * t74 - a3 * t75 + t72,
-        wrist + t72,
+        t63 + t74,
+        t75 * t62 + t76 * t61 + t74,
+        t77 + t74,
+        t81 + t74,
+        L2 * t75 + a3 * t76 + t74,
+        wrist + t74,
     )
 
 
@@ -1300,25 +1305,26 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t80 = t66 - point_11
     t81 = _runtime.VANISHING * t43
     folded_right = np.sqrt(t79 * t79 + t80 * t80) <= t81
+    t82 = np.arctan2(stheta2A, ctheta2A)
     short_right = L1 * fore_arm <= _runtime.VANISHING * (t43 * t43)
-    t82 = 2.0 * np.where(0.0 <= -t64, 1.0, -1.0)
-    t83 = _runtime.VANISHING * (_runtime.VANISHING * (t44 * 16.0))
-    N_right = np.maximum(t71, t83)
+    t83 = 2.0 * np.where(0.0 <= -t64, 1.0, -1.0)
+    t84 = _runtime.VANISHING * (_runtime.VANISHING * (t44 * 16.0))
+    N_right = np.maximum(t71, t84)
     rN_right = np.sqrt(N_right)
-    M_right = np.maximum(t72, t83)
+    M_right = np.maximum(t72, t84)
     rM_right = np.sqrt(M_right)
     whole_right = N_right + M_right
-    s_bend_right = np.where(short_right, 0.0, t82 * rN_right * rM_right / whole_right)
-    t84 = fore_arm * s_bend_right
+    s_bend_right = np.where(short_right, 0.0, t83 * rN_right * rM_right / whole_right)
+    t85 = fore_arm * s_bend_right
     c_bend_right = np.where(short_right, 1.0, -((N_right - M_right) / whole_right))
     ahead_1_right = L1 + fore_arm * c_bend_right
-    t85 = np.arctan2(t80 * t84 - t79 * ahead_1_right, -(t80 * ahead_1_right + t79 * t84))
-    t86 = _runtime.wrap(np.where(folded_right, 0.0, t85))
-    t87 = t86 + t77
+    t86 = np.arctan2(t80 * t85 - t79 * ahead_1_right, -(t80 * ahead_1_right + t79 * t85))
+    t87 = _runtime.wrap(np.where(folded_right, t82, t86))
+    t88 = t87 + t77
     bare_right = fore_arm <= t81
-    t88 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
-    t89 = np.where(short_right, 0.0, t82 * np.arctan2(rN_right, rM_right))
-    t90 = _runtime.wrap(t88 + t89) + t77
+    t89 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
+    t90 = np.where(short_right, 0.0, t83 * np.arctan2(rN_right, rM_right))
+    t91 = _runtime.wrap(t89 + t90) + t77
     h_left = t68 + point_21
     r_left = t66 + point_11
     folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t81
@@ -1327,416 +1333,419 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     whole_left = N_left + M_left
     c_bend_left = np.where(short_right, 1.0, -((N_left - M_left) / whole_left))
     ahead_1_left = L1 + fore_arm * c_bend_left
-    t91 = h_left * ahead_1_left
+    t92 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = np.where(short_right, 0.0, t82 * rN_left * rM_left / whole_left)
-    t92 = fore_arm * s_bend_left
-    t93 = r_left * t92
-    t94 = r_left * ahead_1_left
-    t95 = h_left * t92
-    t96 = np.where(folded_left, 0.0, np.arctan2(t91 - t93, t94 + t95))
-    t97 = np.where(short_right, 0.0, t82 * np.arctan2(rN_left, rM_left))
-    t98 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    t99 = t98 + t77
-    t100 = np.where(folded_left, 0.0, np.arctan2(t91 + t93, t94 - t95))
+    s_bend_left = np.where(short_right, 0.0, t83 * rN_left * rM_left / whole_left)
+    t93 = fore_arm * s_bend_left
+    t94 = r_left * t93
+    t95 = r_left * ahead_1_left
+    t96 = h_left * t93
+    t97 = np.where(folded_left, t82, np.arctan2(t92 - t94, t95 + t96))
+    t98 = np.where(short_right, 0.0, t83 * np.arctan2(rN_left, rM_left))
+    t99 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
+    t100 = t99 + t77
+    t101 = np.where(folded_left, t82, np.arctan2(t92 + t94, t95 - t96))
     stheta2A_front_elbow_down_alike = t51 - t52
     ctheta2A_front_elbow_down_alike = t53 + t54
     c_relative_front_elbow_down_alike = t57 - t58
-    t101 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t102 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
     s_relative_front_elbow_down_alike = t59 + t60
-    t102 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t101 - t102
-    t103 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t104 = c_relative_front_elbow_down_alike * stheta2A_front_elbow_down_alike
-    t105 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t104 + t105
-    t106 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t107 = t103 - t106
-    t108 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t109 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t108 + t109
-    t110 = L2 * t107 - a3 * c_elbow_front_elbow_down_alike
-    t111 = 0.0 <= -t110
-    t112 = L2 * c_elbow_front_elbow_down_alike + a3 * t107
-    large_front_elbow_down_alike = fore_arm + np.where(t111, -t110, t110)
-    small_front_elbow_down_alike = t112 * t112 / large_front_elbow_down_alike
-    t113 = np.where(t111, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    N_front_elbow_down_alike = t46 * t113
-    t114 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t115 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t116 = d * (t114 - t115)
-    t117 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t118 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t119 = d * (t117 + t118)
-    gap_front_elbow_down_alike = t116 * t116 + t119 * t119
-    t120 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t120 + a3 * ctheta23A_front_elbow_down_alike
-    t121 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t121 + a3 * stheta23A_front_elbow_down_alike
-    t122 = 2.0 * t116 * point_11_front_elbow_down_alike + 2.0 * t119 * point_21_front_elbow_down_alike
-    t123 = gap_front_elbow_down_alike - t122
-    t124 = N_front_elbow_down_alike - t123
-    t125 = np.where(t111, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    M_front_elbow_down_alike = t46 * t125
-    t126 = M_front_elbow_down_alike + t123
-    t127 = gap_front_elbow_down_alike + t122
-    t128 = N_front_elbow_down_alike - t127
-    t129 = t42 & (t45 <= t124) & (t45 <= t126) & (t45 <= t128)
-    t130 = M_front_elbow_down_alike + t127
-    unreachable_2 = np.logical_not(t129 & (t45 <= t130))
-    t131 = _runtime.poison(invalid | unreachable_2)
-    t132 = t16 + t131
-    t133 = t119 - point_21_front_elbow_down_alike
-    t134 = t116 - point_11_front_elbow_down_alike
-    folded_right_front_elbow_down_alike = np.sqrt(t133 * t133 + t134 * t134) <= t81
-    t135 = 2.0 * np.where(0.0 <= -t112, 1.0, -1.0)
-    N_right_front_elbow_down_alike = np.maximum(t124, t83)
+    t103 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t102 - t103
+    t104 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t105 = c_relative_front_elbow_down_alike * stheta2A_front_elbow_down_alike
+    t106 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t105 + t106
+    t107 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t108 = t104 - t107
+    t109 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t110 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t109 + t110
+    t111 = L2 * t108 - a3 * c_elbow_front_elbow_down_alike
+    t112 = 0.0 <= -t111
+    t113 = L2 * c_elbow_front_elbow_down_alike + a3 * t108
+    large_front_elbow_down_alike = fore_arm + np.where(t112, -t111, t111)
+    small_front_elbow_down_alike = t113 * t113 / large_front_elbow_down_alike
+    t114 = np.where(t112, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    N_front_elbow_down_alike = t46 * t114
+    t115 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t116 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t117 = d * (t115 - t116)
+    t118 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t119 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t120 = d * (t118 + t119)
+    gap_front_elbow_down_alike = t117 * t117 + t120 * t120
+    t121 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t121 + a3 * ctheta23A_front_elbow_down_alike
+    t122 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t122 + a3 * stheta23A_front_elbow_down_alike
+    t123 = 2.0 * t117 * point_11_front_elbow_down_alike + 2.0 * t120 * point_21_front_elbow_down_alike
+    t124 = gap_front_elbow_down_alike - t123
+    t125 = N_front_elbow_down_alike - t124
+    t126 = np.where(t112, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    M_front_elbow_down_alike = t46 * t126
+    t127 = M_front_elbow_down_alike + t124
+    t128 = gap_front_elbow_down_alike + t123
+    t129 = N_front_elbow_down_alike - t128
+    t130 = t42 & (t45 <= t125) & (t45 <= t127) & (t45 <= t129)
+    t131 = M_front_elbow_down_alike + t128
+    unreachable_2 = np.logical_not(t130 & (t45 <= t131))
+    t132 = _runtime.poison(invalid | unreachable_2)
+    t133 = t16 + t132
+    t134 = t120 - point_21_front_elbow_down_alike
+    t135 = t117 - point_11_front_elbow_down_alike
+    folded_right_front_elbow_down_alike = np.sqrt(t134 * t134 + t135 * t135) <= t81
+    t136 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    t137 = 2.0 * np.where(0.0 <= -t113, 1.0, -1.0)
+    N_right_front_elbow_down_alike = np.maximum(t125, t84)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(t126, t83)
+    M_right_front_elbow_down_alike = np.maximum(t127, t84)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t136 = t135 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    t138 = t137 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = N_right_front_elbow_down_alike + M_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t136 / whole_right_front_elbow_down_alike)
-    t137 = fore_arm * s_bend_right_front_elbow_down_alike
-    t138 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
-    c_bend_right_front_elbow_down_alike = np.where(short_right, 1.0, -(t138 / whole_right_front_elbow_down_alike))
-    t139 = fore_arm * c_bend_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = L1 + t139
-    up_right_front_elbow_down_alike = t134 * t137 - t133 * ahead_1_right_front_elbow_down_alike
-    t140 = t134 * ahead_1_right_front_elbow_down_alike + t133 * t137
-    t141 = np.arctan2(up_right_front_elbow_down_alike, -t140)
-    t142 = np.where(folded_right_front_elbow_down_alike, 0.0, t141)
-    t143 = _runtime.wrap(t142) + t131
-    t144 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t145 = t88 + np.where(short_right, 0.0, t135 * t144)
-    t146 = _runtime.wrap(t145) + t131
-    h_left_front_elbow_down_alike = t119 + point_21_front_elbow_down_alike
-    t147 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = t116 + point_11_front_elbow_down_alike
-    t148 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    folded_left_front_elbow_down_alike = np.sqrt(t147 + t148) <= t81
-    N_left_front_elbow_down_alike = np.maximum(t128, 0.0)
-    M_left_front_elbow_down_alike = np.maximum(t130, 0.0)
-    t149 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t138 / whole_right_front_elbow_down_alike)
+    t139 = fore_arm * s_bend_right_front_elbow_down_alike
+    t140 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
+    c_bend_right_front_elbow_down_alike = np.where(short_right, 1.0, -(t140 / whole_right_front_elbow_down_alike))
+    t141 = fore_arm * c_bend_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = L1 + t141
+    up_right_front_elbow_down_alike = t135 * t139 - t134 * ahead_1_right_front_elbow_down_alike
+    t142 = t135 * ahead_1_right_front_elbow_down_alike + t134 * t139
+    t143 = np.arctan2(up_right_front_elbow_down_alike, -t142)
+    t144 = np.where(folded_right_front_elbow_down_alike, t136, t143)
+    t145 = _runtime.wrap(t144) + t132
+    t146 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t147 = t89 + np.where(short_right, 0.0, t137 * t146)
+    t148 = _runtime.wrap(t147) + t132
+    h_left_front_elbow_down_alike = t120 + point_21_front_elbow_down_alike
+    t149 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = t117 + point_11_front_elbow_down_alike
+    t150 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    folded_left_front_elbow_down_alike = np.sqrt(t149 + t150) <= t81
+    N_left_front_elbow_down_alike = np.maximum(t129, 0.0)
+    M_left_front_elbow_down_alike = np.maximum(t131, 0.0)
+    t151 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
     whole_left_front_elbow_down_alike = N_left_front_elbow_down_alike + M_left_front_elbow_down_alike
-    c_bend_left_front_elbow_down_alike = np.where(short_right, 1.0, -(t149 / whole_left_front_elbow_down_alike))
-    t150 = fore_arm * c_bend_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = L1 + t150
-    t151 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    c_bend_left_front_elbow_down_alike = np.where(short_right, 1.0, -(t151 / whole_left_front_elbow_down_alike))
+    t152 = fore_arm * c_bend_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = L1 + t152
+    t153 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t152 = t135 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t152 / whole_left_front_elbow_down_alike)
-    t153 = fore_arm * s_bend_left_front_elbow_down_alike
-    t154 = r_left_front_elbow_down_alike * t153
-    t155 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t156 = h_left_front_elbow_down_alike * t153
-    t157 = np.where(folded_left_front_elbow_down_alike, 0.0, np.arctan2(t151 - t154, t155 + t156))
-    t158 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t159 = np.where(short_right, 0.0, t135 * t158)
-    t160 = t98 + t131
-    t161 = np.where(folded_left_front_elbow_down_alike, 0.0, np.arctan2(t151 + t154, t155 - t156))
-    t162 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
-    t163 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
-    outward_rear_elbow_up_alike = t163 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
-    t164 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t31 + t164)
-    t165 = t28 - reach_rear_elbow_up_alike
-    t166 = reach_rear_elbow_up_alike + t39
-    t167 = reach_rear_elbow_up_alike - t39
-    t168 = t27 & (t29 <= t165) & (t29 <= t166) & (t29 <= t167)
+    t154 = t137 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t154 / whole_left_front_elbow_down_alike)
+    t155 = fore_arm * s_bend_left_front_elbow_down_alike
+    t156 = r_left_front_elbow_down_alike * t155
+    t157 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t158 = h_left_front_elbow_down_alike * t155
+    t159 = np.where(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 - t156, t157 + t158))
+    t160 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t161 = np.where(short_right, 0.0, t137 * t160)
+    t162 = t99 + t132
+    t163 = np.where(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 + t156, t157 - t158))
+    t164 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
+    t165 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
+    outward_rear_elbow_up_alike = t165 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
+    t166 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t31 + t166)
+    t167 = t28 - reach_rear_elbow_up_alike
+    t168 = reach_rear_elbow_up_alike + t39
+    t169 = reach_rear_elbow_up_alike - t39
+    t170 = t27 & (t29 <= t167) & (t29 <= t168) & (t29 <= t169)
     folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t47
     s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t30 / reach_rear_elbow_up_alike)
-    t169 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t165, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t167, 0.0)
-    t170 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    t171 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t167, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t169, 0.0)
+    t172 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
     S_rear_elbow_up_alike = t28 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t166, 0.0)
-    t171 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t170 + t171
-    t172 = -((t170 - t171) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = np.where(t169, 1.0, t172)
-    t173 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t174 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t174)
-    t175 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t175 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t176 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = np.where(t169, 0.0, t176)
-    t177 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t173 - t177
-    t178 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t179 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t178 + t179
-    t180 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t181 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t180 + t181
-    t182 = -((t180 - t181) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t182)
-    t183 = c_lag * c_bend_rear_elbow_up_alike
-    t184 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t184)
-    t185 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t183 - t185
-    t186 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t187 = s_lag * c_bend_rear_elbow_up_alike
-    t188 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t187 + t188
-    t189 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t186 - t189
-    t190 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t191 = c_relative_rear_elbow_up_alike * stheta2A_rear_elbow_up_alike
-    t192 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t191 + t192
-    t193 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t194 = t190 - t193
-    t195 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t196 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t195 + t196
-    t197 = L2 * t194 - a3 * c_elbow_rear_elbow_up_alike
-    t198 = 0.0 <= -t197
-    t199 = L2 * c_elbow_rear_elbow_up_alike + a3 * t194
-    large_rear_elbow_up_alike = fore_arm + np.where(t198, -t197, t197)
-    small_rear_elbow_up_alike = t199 * t199 / large_rear_elbow_up_alike
-    t200 = np.where(t198, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    N_rear_elbow_up_alike = t46 * t200
-    t201 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t202 = t201 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t203 = d * t202
-    t204 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t205 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t204
-    t206 = d * t205
-    gap_rear_elbow_up_alike = t203 * t203 + t206 * t206
-    t207 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t207 + a3 * ctheta23A_rear_elbow_up_alike
-    t208 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t208 + a3 * stheta23A_rear_elbow_up_alike
-    t209 = 2.0 * t203 * point_11_rear_elbow_up_alike + 2.0 * t206 * point_21_rear_elbow_up_alike
-    t210 = gap_rear_elbow_up_alike - t209
-    t211 = N_rear_elbow_up_alike - t210
-    t212 = np.where(t198, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    M_rear_elbow_up_alike = t46 * t212
-    t213 = M_rear_elbow_up_alike + t210
-    t214 = gap_rear_elbow_up_alike + t209
-    t215 = N_rear_elbow_up_alike - t214
-    t216 = t168 & (t45 <= t211) & (t45 <= t213) & (t45 <= t215)
-    t217 = M_rear_elbow_up_alike + t214
-    unreachable_3 = np.logical_not(t216 & (t45 <= t217))
-    t218 = _runtime.poison(invalid | unreachable_3)
-    t219 = t162 + t218
-    t220 = t206 - point_21_rear_elbow_up_alike
-    t221 = t203 - point_11_rear_elbow_up_alike
-    folded_right_rear_elbow_up_alike = np.sqrt(t220 * t220 + t221 * t221) <= t81
-    t222 = 2.0 * np.where(0.0 <= -t199, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t211, t83)
+    B_rear_elbow_up_alike = np.maximum(t168, 0.0)
+    t173 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t172 + t173
+    t174 = -((t172 - t173) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = np.where(t171, 1.0, t174)
+    t175 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t176 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t176)
+    t177 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t177 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t178 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = np.where(t171, 0.0, t178)
+    t179 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t175 - t179
+    t180 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t181 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t180 + t181
+    t182 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t183 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t182 + t183
+    t184 = -((t182 - t183) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t184)
+    t185 = c_lag * c_bend_rear_elbow_up_alike
+    t186 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t186)
+    t187 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t185 - t187
+    t188 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t189 = s_lag * c_bend_rear_elbow_up_alike
+    t190 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t189 + t190
+    t191 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t188 - t191
+    t192 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t193 = c_relative_rear_elbow_up_alike * stheta2A_rear_elbow_up_alike
+    t194 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t193 + t194
+    t195 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t196 = t192 - t195
+    t197 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t198 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t197 + t198
+    t199 = L2 * t196 - a3 * c_elbow_rear_elbow_up_alike
+    t200 = 0.0 <= -t199
+    t201 = L2 * c_elbow_rear_elbow_up_alike + a3 * t196
+    large_rear_elbow_up_alike = fore_arm + np.where(t200, -t199, t199)
+    small_rear_elbow_up_alike = t201 * t201 / large_rear_elbow_up_alike
+    t202 = np.where(t200, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    N_rear_elbow_up_alike = t46 * t202
+    t203 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t204 = t203 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t205 = d * t204
+    t206 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t207 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t206
+    t208 = d * t207
+    gap_rear_elbow_up_alike = t205 * t205 + t208 * t208
+    t209 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t209 + a3 * ctheta23A_rear_elbow_up_alike
+    t210 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t210 + a3 * stheta23A_rear_elbow_up_alike
+    t211 = 2.0 * t205 * point_11_rear_elbow_up_alike + 2.0 * t208 * point_21_rear_elbow_up_alike
+    t212 = gap_rear_elbow_up_alike - t211
+    t213 = N_rear_elbow_up_alike - t212
+    t214 = np.where(t200, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    M_rear_elbow_up_alike = t46 * t214
+    t215 = M_rear_elbow_up_alike + t212
+    t216 = gap_rear_elbow_up_alike + t211
+    t217 = N_rear_elbow_up_alike - t216
+    t218 = t170 & (t45 <= t213) & (t45 <= t215) & (t45 <= t217)
+    t219 = M_rear_elbow_up_alike + t216
+    unreachable_3 = np.logical_not(t218 & (t45 <= t219))
+    t220 = _runtime.poison(invalid | unreachable_3)
+    t221 = t164 + t220
+    t222 = t208 - point_21_rear_elbow_up_alike
+    t223 = t205 - point_11_rear_elbow_up_alike
+    folded_right_rear_elbow_up_alike = np.sqrt(t222 * t222 + t223 * t223) <= t81
+    t224 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    t225 = 2.0 * np.where(0.0 <= -t201, 1.0, -1.0)
+    N_right_rear_elbow_up_alike = np.maximum(t213, t84)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(t213, t83)
+    M_right_rear_elbow_up_alike = np.maximum(t215, t84)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t223 = t222 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    t226 = t225 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = N_right_rear_elbow_up_alike + M_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t223 / whole_right_rear_elbow_up_alike)
-    t224 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t225 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
-    c_bend_right_rear_elbow_up_alike = np.where(short_right, 1.0, -(t225 / whole_right_rear_elbow_up_alike))
+    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t226 / whole_right_rear_elbow_up_alike)
+    t227 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t228 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
+    c_bend_right_rear_elbow_up_alike = np.where(short_right, 1.0, -(t228 / whole_right_rear_elbow_up_alike))
     ahead_1_right_rear_elbow_up_alike = L1 + fore_arm * c_bend_right_rear_elbow_up_alike
-    up_right_rear_elbow_up_alike = t221 * t224 - t220 * ahead_1_right_rear_elbow_up_alike
-    t226 = t221 * ahead_1_right_rear_elbow_up_alike + t220 * t224
-    t227 = np.arctan2(up_right_rear_elbow_up_alike, -t226)
-    t228 = np.where(folded_right_rear_elbow_up_alike, 0.0, t227)
-    t229 = _runtime.wrap(t228) + t218
-    t230 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t231 = t88 + np.where(short_right, 0.0, t222 * t230)
-    t232 = _runtime.wrap(t231) + t218
-    h_left_rear_elbow_up_alike = t206 + point_21_rear_elbow_up_alike
-    t233 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = t203 + point_11_rear_elbow_up_alike
-    t234 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    folded_left_rear_elbow_up_alike = np.sqrt(t233 + t234) <= t81
-    N_left_rear_elbow_up_alike = np.maximum(t215, 0.0)
-    M_left_rear_elbow_up_alike = np.maximum(t217, 0.0)
-    t235 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
+    up_right_rear_elbow_up_alike = t223 * t227 - t222 * ahead_1_right_rear_elbow_up_alike
+    t229 = t223 * ahead_1_right_rear_elbow_up_alike + t222 * t227
+    t230 = np.arctan2(up_right_rear_elbow_up_alike, -t229)
+    t231 = np.where(folded_right_rear_elbow_up_alike, t224, t230)
+    t232 = _runtime.wrap(t231) + t220
+    t233 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t234 = t89 + np.where(short_right, 0.0, t225 * t233)
+    t235 = _runtime.wrap(t234) + t220
+    h_left_rear_elbow_up_alike = t208 + point_21_rear_elbow_up_alike
+    t236 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = t205 + point_11_rear_elbow_up_alike
+    t237 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    folded_left_rear_elbow_up_alike = np.sqrt(t236 + t237) <= t81
+    N_left_rear_elbow_up_alike = np.maximum(t217, 0.0)
+    M_left_rear_elbow_up_alike = np.maximum(t219, 0.0)
+    t238 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
     whole_left_rear_elbow_up_alike = N_left_rear_elbow_up_alike + M_left_rear_elbow_up_alike
-    c_bend_left_rear_elbow_up_alike = np.where(short_right, 1.0, -(t235 / whole_left_rear_elbow_up_alike))
+    c_bend_left_rear_elbow_up_alike = np.where(short_right, 1.0, -(t238 / whole_left_rear_elbow_up_alike))
     ahead_1_left_rear_elbow_up_alike = L1 + fore_arm * c_bend_left_rear_elbow_up_alike
-    t236 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t239 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t237 = t222 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t237 / whole_left_rear_elbow_up_alike)
-    t238 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t239 = r_left_rear_elbow_up_alike * t238
-    t240 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t241 = h_left_rear_elbow_up_alike * t238
-    t242 = np.where(folded_left_rear_elbow_up_alike, 0.0, np.arctan2(t236 - t239, t240 + t241))
-    t243 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t244 = np.where(short_right, 0.0, t222 * t243)
-    t245 = t98 + t218
-    t246 = np.where(folded_left_rear_elbow_up_alike, 0.0, np.arctan2(t236 + t239, t240 - t241))
-    stheta2A_rear_elbow_down_alike = t173 + t177
-    ctheta2A_rear_elbow_down_alike = t178 - t179
-    c_relative_rear_elbow_down_alike = t183 + t185
-    t247 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t187 - t188
-    t248 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t247 - t248
-    t249 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t250 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    t251 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t250 + t251
-    t252 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t253 = t249 - t252
-    t254 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t255 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t254 + t255
-    t256 = L2 * t253 - a3 * c_elbow_rear_elbow_down_alike
-    t257 = 0.0 <= -t256
-    t258 = L2 * c_elbow_rear_elbow_down_alike + a3 * t253
-    large_rear_elbow_down_alike = fore_arm + np.where(t257, -t256, t256)
-    small_rear_elbow_down_alike = t258 * t258 / large_rear_elbow_down_alike
-    t259 = np.where(t257, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    N_rear_elbow_down_alike = t46 * t259
-    t260 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t261 = t260 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t262 = d * t261
-    t263 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t264 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t263
+    t240 = t225 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t240 / whole_left_rear_elbow_up_alike)
+    t241 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t242 = r_left_rear_elbow_up_alike * t241
+    t243 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t244 = h_left_rear_elbow_up_alike * t241
+    t245 = np.where(folded_left_rear_elbow_up_alike, t224, np.arctan2(t239 - t242, t243 + t244))
+    t246 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t247 = np.where(short_right, 0.0, t225 * t246)
+    t248 = t99 + t220
+    t249 = np.where(folded_left_rear_elbow_up_alike, t224, np.arctan2(t239 + t242, t243 - t244))
+    stheta2A_rear_elbow_down_alike = t175 + t179
+    ctheta2A_rear_elbow_down_alike = t180 - t181
+    c_relative_rear_elbow_down_alike = t185 + t187
+    t250 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t189 - t190
+    t251 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t250 - t251
+    t252 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t253 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t254 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t253 + t254
+    t255 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t256 = t252 - t255
+    t257 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t258 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t257 + t258
+    t259 = L2 * t256 - a3 * c_elbow_rear_elbow_down_alike
+    t260 = 0.0 <= -t259
+    t261 = L2 * c_elbow_rear_elbow_down_alike + a3 * t256
+    large_rear_elbow_down_alike = fore_arm + np.where(t260, -t259, t259)
+    small_rear_elbow_down_alike = t261 * t261 / large_rear_elbow_down_alike
+    t262 = np.where(t260, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    N_rear_elbow_down_alike = t46 * t262
+    t263 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t264 = t263 - s_psi * stheta23A_rear_elbow_down_alike / t4
     t265 = d * t264
-    gap_rear_elbow_down_alike = t262 * t262 + t265 * t265
-    t266 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t266 + a3 * ctheta23A_rear_elbow_down_alike
-    t267 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t267 + a3 * stheta23A_rear_elbow_down_alike
-    t268 = 2.0 * t262 * point_11_rear_elbow_down_alike + 2.0 * t265 * point_21_rear_elbow_down_alike
-    t269 = gap_rear_elbow_down_alike - t268
-    t270 = N_rear_elbow_down_alike - t269
-    t271 = np.where(t257, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    M_rear_elbow_down_alike = t46 * t271
-    t272 = M_rear_elbow_down_alike + t269
-    t273 = gap_rear_elbow_down_alike + t268
-    t274 = N_rear_elbow_down_alike - t273
-    t275 = t168 & (t45 <= t270) & (t45 <= t272) & (t45 <= t274)
-    t276 = M_rear_elbow_down_alike + t273
-    unreachable_4 = np.logical_not(t275 & (t45 <= t276))
-    t277 = _runtime.poison(invalid | unreachable_4)
-    t278 = t162 + t277
-    t279 = t265 - point_21_rear_elbow_down_alike
-    t280 = t262 - point_11_rear_elbow_down_alike
-    folded_right_rear_elbow_down_alike = np.sqrt(t279 * t279 + t280 * t280) <= t81
-    t281 = 2.0 * np.where(0.0 <= -t258, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t270, t83)
+    t266 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t267 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t266
+    t268 = d * t267
+    gap_rear_elbow_down_alike = t265 * t265 + t268 * t268
+    t269 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t269 + a3 * ctheta23A_rear_elbow_down_alike
+    t270 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t270 + a3 * stheta23A_rear_elbow_down_alike
+    t271 = 2.0 * t265 * point_11_rear_elbow_down_alike + 2.0 * t268 * point_21_rear_elbow_down_alike
+    t272 = gap_rear_elbow_down_alike - t271
+    t273 = N_rear_elbow_down_alike - t272
+    t274 = np.where(t260, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    M_rear_elbow_down_alike = t46 * t274
+    t275 = M_rear_elbow_down_alike + t272
+    t276 = gap_rear_elbow_down_alike + t271
+    t277 = N_rear_elbow_down_alike - t276
+    t278 = t170 & (t45 <= t273) & (t45 <= t275) & (t45 <= t277)
+    t279 = M_rear_elbow_down_alike + t276
+    unreachable_4 = np.logical_not(t278 & (t45 <= t279))
+    t280 = _runtime.poison(invalid | unreachable_4)
+    t281 = t164 + t280
+    t282 = t268 - point_21_rear_elbow_down_alike
+    t283 = t265 - point_11_rear_elbow_down_alike
+    folded_right_rear_elbow_down_alike = np.sqrt(t282 * t282 + t283 * t283) <= t81
+    t284 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    t285 = 2.0 * np.where(0.0 <= -t261, 1.0, -1.0)
+    N_right_rear_elbow_down_alike = np.maximum(t273, t84)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(t272, t83)
+    M_right_rear_elbow_down_alike = np.maximum(t275, t84)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t282 = t281 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    t286 = t285 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
     whole_right_rear_elbow_down_alike = N_right_rear_elbow_down_alike + M_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t282 / whole_right_rear_elbow_down_alike)
-    t283 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t284 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
-    c_bend_right_rear_elbow_down_alike = np.where(short_right, 1.0, -(t284 / whole_right_rear_elbow_down_alike))
-    t285 = fore_arm * c_bend_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = L1 + t285
-    up_right_rear_elbow_down_alike = t280 * t283 - t279 * ahead_1_right_rear_elbow_down_alike
-    t286 = t280 * ahead_1_right_rear_elbow_down_alike + t279 * t283
-    t287 = np.arctan2(up_right_rear_elbow_down_alike, -t286)
-    t288 = np.where(folded_right_rear_elbow_down_alike, 0.0, t287)
-    t289 = _runtime.wrap(t288) + t277
-    t290 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t291 = t88 + np.where(short_right, 0.0, t281 * t290)
-    t292 = _runtime.wrap(t291) + t277
-    h_left_rear_elbow_down_alike = t265 + point_21_rear_elbow_down_alike
-    t293 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = t262 + point_11_rear_elbow_down_alike
-    t294 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    folded_left_rear_elbow_down_alike = np.sqrt(t293 + t294) <= t81
-    N_left_rear_elbow_down_alike = np.maximum(t274, 0.0)
-    M_left_rear_elbow_down_alike = np.maximum(t276, 0.0)
-    t295 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t286 / whole_right_rear_elbow_down_alike)
+    t287 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t288 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
+    c_bend_right_rear_elbow_down_alike = np.where(short_right, 1.0, -(t288 / whole_right_rear_elbow_down_alike))
+    t289 = fore_arm * c_bend_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = L1 + t289
+    up_right_rear_elbow_down_alike = t283 * t287 - t282 * ahead_1_right_rear_elbow_down_alike
+    t290 = t283 * ahead_1_right_rear_elbow_down_alike + t282 * t287
+    t291 = np.arctan2(up_right_rear_elbow_down_alike, -t290)
+    t292 = np.where(folded_right_rear_elbow_down_alike, t284, t291)
+    t293 = _runtime.wrap(t292) + t280
+    t294 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t295 = t89 + np.where(short_right, 0.0, t285 * t294)
+    t296 = _runtime.wrap(t295) + t280
+    h_left_rear_elbow_down_alike = t268 + point_21_rear_elbow_down_alike
+    t297 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = t265 + point_11_rear_elbow_down_alike
+    t298 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    folded_left_rear_elbow_down_alike = np.sqrt(t297 + t298) <= t81
+    N_left_rear_elbow_down_alike = np.maximum(t277, 0.0)
+    M_left_rear_elbow_down_alike = np.maximum(t279, 0.0)
+    t299 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
     whole_left_rear_elbow_down_alike = N_left_rear_elbow_down_alike + M_left_rear_elbow_down_alike
-    c_bend_left_rear_elbow_down_alike = np.where(short_right, 1.0, -(t295 / whole_left_rear_elbow_down_alike))
+    c_bend_left_rear_elbow_down_alike = np.where(short_right, 1.0, -(t299 / whole_left_rear_elbow_down_alike))
     ahead_1_left_rear_elbow_down_alike = L1 + fore_arm * c_bend_left_rear_elbow_down_alike
-    t296 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t300 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t297 = t281 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t297 / whole_left_rear_elbow_down_alike)
-    t298 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t299 = r_left_rear_elbow_down_alike * t298
-    t300 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t301 = h_left_rear_elbow_down_alike * t298
-    t302 = np.where(folded_left_rear_elbow_down_alike, 0.0, np.arctan2(t296 - t299, t300 + t301))
-    t303 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t304 = np.where(short_right, 0.0, t281 * t303)
-    t305 = t98 + t277
-    t306 = np.where(folded_left_rear_elbow_down_alike, 0.0, np.arctan2(t296 + t299, t300 - t301))
-    t307 = nowhere | folded | short
-    t308 = t307 | folded_right | short_right | folded_left
-    t309 = _runtime.status(invalid, unreachable, t308)
-    t310 = t307 | folded_right_front_elbow_down_alike | short_right
-    t311 = _runtime.status(invalid, unreachable_2, t310 | folded_left_front_elbow_down_alike)
-    t312 = nowhere | folded_rear_elbow_up_alike | short
-    t313 = t312 | folded_right_rear_elbow_up_alike | short_right
-    t314 = _runtime.status(invalid, unreachable_3, t313 | folded_left_rear_elbow_up_alike)
-    t315 = t312 | folded_right_rear_elbow_down_alike | short_right
-    t316 = _runtime.status(invalid, unreachable_4, t315 | folded_left_rear_elbow_down_alike)
+    t301 = t285 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t301 / whole_left_rear_elbow_down_alike)
+    t302 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t303 = r_left_rear_elbow_down_alike * t302
+    t304 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t305 = h_left_rear_elbow_down_alike * t302
+    t306 = np.where(folded_left_rear_elbow_down_alike, t284, np.arctan2(t300 - t303, t304 + t305))
+    t307 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t308 = np.where(short_right, 0.0, t285 * t307)
+    t309 = t99 + t280
+    t310 = np.where(folded_left_rear_elbow_down_alike, t284, np.arctan2(t300 + t303, t304 - t305))
+    t311 = nowhere | folded | short
+    t312 = t311 | folded_right | short_right | folded_left
+    t313 = _runtime.status(invalid, unreachable, t312)
+    t314 = t311 | folded_right_front_elbow_down_alike | short_right
+    t315 = _runtime.status(invalid, unreachable_2, t314 | folded_left_front_elbow_down_alike)
+    t316 = nowhere | folded_rear_elbow_up_alike | short
+    t317 = t316 | folded_right_rear_elbow_up_alike | short_right
+    t318 = _runtime.status(invalid, unreachable_3, t317 | folded_left_rear_elbow_up_alike)
+    t319 = t316 | folded_right_rear_elbow_down_alike | short_right
+    t320 = _runtime.status(invalid, unreachable_4, t319 | folded_left_rear_elbow_down_alike)
     return (
         t78,
-        t87,
-        t90,
-        _runtime.wrap(t96) + t77,
-        _runtime.wrap(t88 + t97) + t77,
-        t99,
+        t88,
+        t91,
+        _runtime.wrap(t97) + t77,
+        _runtime.wrap(t89 + t98) + t77,
+        t100,
         t78,
-        t87,
-        t90,
-        _runtime.wrap(t100) + t77,
-        _runtime.wrap(t88 - t97) + t77,
-        t99,
-        t132,
-        t143,
-        t146,
-        _runtime.wrap(t157) + t131,
-        _runtime.wrap(t88 + t159) + t131,
-        t160,
-        t132,
-        t143,
-        t146,
-        _runtime.wrap(t161) + t131,
-        _runtime.wrap(t88 - t159) + t131,
-        t160,
-        t219,
-        t229,
+        t88,
+        t91,
+        _runtime.wrap(t101) + t77,
+        _runtime.wrap(t89 - t98) + t77,
+        t100,
+        t133,
+        t145,
+        t148,
+        _runtime.wrap(t159) + t132,
+        _runtime.wrap(t89 + t161) + t132,
+        t162,
+        t133,
+        t145,
+        t148,
+        _runtime.wrap(t163) + t132,
+        _runtime.wrap(t89 - t161) + t132,
+        t162,
+        t221,
         t232,
-        _runtime.wrap(t242) + t218,
-        _runtime.wrap(t88 + t244) + t218,
-        t245,
-        t219,
-        t229,
+        t235,
+        _runtime.wrap(t245) + t220,
+        _runtime.wrap(t89 + t247) + t220,
+        t248,
+        t221,
         t232,
-        _runtime.wrap(t246) + t218,
-        _runtime.wrap(t88 - t244) + t218,
-        t245,
-        t278,
-        t289,
-        t292,
-        _runtime.wrap(t302) + t277,
-        _runtime.wrap(t88 + t304) + t277,
-        t305,
-        t278,
-        t289,
-        t292,
-        _runtime.wrap(t306) + t277,
-        _runtime.wrap(t88 - t304) + t277,
-        t305,
+        t235,
+        _runtime.wrap(t249) + t220,
+        _runtime.wrap(t89 - t247) + t220,
+        t248,
+        t281,
+        t293,
+        t296,
+        _runtime.wrap(t306) + t280,
+        _runtime.wrap(t89 + t308) + t280,
         t309,
+        t281,
+        t293,
+        t296,
+        _runtime.wrap(t310) + t280,
+        _runtime.wrap(t89 - t308) + t280,
         t309,
-        t311,
-        t311,
-        t314,
-        t314,
-        t316,
-        t316,
+        t313,
+        t313,
+        t315,
+        t315,
+        t318,
+        t318,
+        t320,
+        t320,
     )
 
 
@@ -1761,9 +1770,10 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
         rear_elbow_down_mixed.
     UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
         axis than L_theta, or an arm is out of reach.
-    SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (the
-        link at the shoulder is returned horizontal), or a link without length.
-    A stretched right arm is returned bent by 1e-7, so that fk can read the side.
+    SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
+        upper arm is returned beside that of the virtual arm), or a link without length.
+    A straight right arm is returned bent by a few units in the last place, so that fk can read
+        the side.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return _runtime.Solutions(*result)

@@ -124,9 +124,9 @@ class Stage:
 class Chain:
     """An inverse that is too large for one Groebner basis, certified lemma by lemma.
 
-    ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas``.  The equations of
-    the lemmas, multiplied by the invertible matrix ``combination``, are those of the inverse: so both
-    have the same solutions, and each lemma is proved to give all of its own.  Where a side
+    ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas``.  The equations
+    of the lemmas, multiplied by the invertible matrix ``combination``, are those of the inverse: so
+    both have the same solutions, and each lemma is proved to give all of its own.  Where a side
     condition keeps one in ``kept_of`` of them, ``because`` says why.
     """
 
@@ -150,9 +150,9 @@ class Inverse:
     are inputs with a known solution.  ``stages`` count the solutions step by step.
 
     Where the equations that are solved are not the forward map itself, targets are expressions in
-    the inputs (such as ``tan(psi)``), and ``forward`` may hold inputs too; then ``chain`` proves the
-    inverse lemma by lemma, a step shows that the map named by ``images`` satisfies the equations,
-    and the cross-check puts the answers into that map.
+    the inputs (such as ``tan(psi)``), and ``forward`` may hold inputs too; then ``chain`` proves
+    the inverse lemma by lemma, a step shows that the map named by ``images`` satisfies the
+    equations, and the cross-check puts the answers into that map.
     """
 
     function: str

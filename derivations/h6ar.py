@@ -110,9 +110,11 @@ d.step(
 )
 d.step(
     "Invariant point",
-    "The paper gives it twice: as the middle of the tips in (6), and with the averages of the angles "
+    "The paper gives it twice: as the middle of the tips in (6), and with the "
+    "averages of the angles "
     "in (7), which this model takes.  The links of the middle are shortened by the cosines "
-    "of the half differences, so that it is off by at most L1 (1 - cos(alpha)) + f (1 - cos(beta)), f "
+    "of the half differences, so that it is off by at most L1 (1 - cos(alpha)) + f "
+    "(1 - cos(beta)), f "
     "the length of a fore-arm: of second order.",
     {"(r, h)_I": invariant, "(r, h)_6": ((right + left) / 2).xreplace(halves)},
     published=("(6)", "(7)"),

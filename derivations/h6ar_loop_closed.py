@@ -1,4 +1,6 @@
-"""The H6AR of Rao and Raju as a mechanism whose loop closes: the wrist spans the tips of the arms."""
+"""The H6AR as a mechanism whose loop closes: the wrist spans the tips of the arms."""
+
+"the tips of the arms."
 
 import sympy as sp
 from closedform.derivations.h6ar_mechanism import (
@@ -49,9 +51,11 @@ d = Derivation(
     RAO_RAJU,
     "A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist "
     "of two links and a gear set, which yaws (psi) and rolls (phi) as the arms move apart, and an "
-    "actuator that pitches (theta).  In this model the loop closes: the base line of the wrist joins "
+    "actuator that pitches (theta).  In this model the loop closes: the base line of "
+    "the wrist joins "
     "the tips, and the invariant point is its middle.  A virtual arm in the mid-plane, bent to the "
-    "side of the right arm, reaches that point; yaw and roll are measured against its fore-arm, roll "
+    "side of the right arm, reaches that point; yaw and roll are measured against "
+    "its fore-arm, roll "
     "with the sign of (9): the right tip goes down.",
     task=["x", "y", "z", "psi", "phi", "theta"],
     singularities=(
@@ -112,7 +116,8 @@ length = real("wrist", positive=True)
 link = axis * sp.Matrix([0, m.gs, length]) - wrist_line
 d.step(
     "The four-bar of the wrist closes",
-    "The gears are g_s beside the axis of the wrist and l_W along it; a wrist link joins each to its "
+    "The gears are g_s beside the axis of the wrist and l_W along it; a wrist link "
+    "joins each to its "
     "tip.  Its length is al if l_W^2 = al^2 - (b - g_s)^2, on the right as on the left.",
     {"b": base, "l_W^2": m.al**2 - (base - m.gs) ** 2},
     published=("(8)",),
@@ -421,11 +426,13 @@ d.function(
     result="Solutions",
     source="eqs. (11), (13) and (14), then each arm by itself",
     notes=(
-        "UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist "
+        "UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer "
+        "to the waist "
         "axis than L_theta, or an arm is out of reach.",
         "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder "
         "(its upper arm is returned beside that of the virtual arm), or a link without length.",
-        "A straight right arm is returned bent by a few units in the last place, so that fk can read "
+        "A straight right arm is returned bent by a few units in the last place, so that "
+        "fk can read "
         "the side.",
     ),
 )

@@ -285,7 +285,7 @@ def test_the_wrist_limit(model) -> None:
     off = model.fk(solutions.q[solutions.status == OK]) - x
     assert np.abs(off[:, 3:]).max() < TOL
     assert np.abs(off).max() < 1e-8  # l_W goes with a root: joints are no finer than that
-    assert (model.ik(x + [0, 0, 0, 1e-9, 0, 0]).status == UNREACHABLE).all()
+    assert (model.ik(x + 1e-9 * np.eye(6)[3]).status == UNREACHABLE).all()
     assert model.wrist_length(limit - 1e-9, 0.0) > 0
     assert np.isnan(model.wrist_length(limit + 1e-9, 0.0))
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from closedform.generated.numpy import h6ar, h6ar_loop_closed
 
 PAGE = Path(__file__).parent.parent / "docs" / "decisions" / "h6ar-models.md"

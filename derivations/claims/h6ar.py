@@ -75,7 +75,8 @@ def tips(d: Derivation, r: Robot) -> None:
 
     claim(
         "mid-plane offset",
-        r"“The mid-plane offset, d, is related to these parameters by the equation $d = d_2 + d_3$.”",
+        r"“The mid-plane offset, d, is related to these parameters by the equation $d = "
+        r"d_2 + d_3$.”",
         Identity(ends(d2 + d3, sp.S.Zero), ends(d2, d3)),
     )
     names = (("(1a)", "x_R"), ("(1b)", "y_R"), ("(1c)", "z_R"))
@@ -175,7 +176,8 @@ def invariant(d: Derivation, r: Robot) -> None:
 
     claim(
         "virtual mechanism",
-        "“the link lengths of this virtual mechanism are $L_1$ and $L_2$ and [...] its joint angles are "
+        "“the link lengths of this virtual mechanism are $L_1$ and $L_2$ and [...] its "
+        "joint angles are "
         "the averages of the respective actual joint angles”",
         Identity(list(r.arm(r.A, r.B)), list(middle)),
         where="3.3 Equivalent serial mechanism",
@@ -183,7 +185,8 @@ def invariant(d: Derivation, r: Robot) -> None:
     gap = (r.arm(*moved["R"]) - r.arm(*moved["L"])) / 2
     claim(
         "unique angles",
-        "“unique shoulders' and elbows' joint angles can be found that yield the given yaw and roll "
+        "“unique shoulders' and elbows' joint angles can be found that yield the given "
+        "yaw and roll "
         "angles”, read as: one pair of half differences alpha, beta for given averages",
         Count(list(gap - point), (r.alpha, r.beta), 1),
     )
@@ -200,7 +203,8 @@ def wrist(d: Derivation, r: Robot) -> None:
     right, left = sp.Matrix([m.gs - half, length]), sp.Matrix([half - m.gs, length])
     d.claim(
         "symmetric wrist",
-        "“The gearset also ensures that the wrist assembly remains symmetric during the yaw and roll "
+        "“The gearset also ensures that the wrist assembly remains symmetric during the "
+        "yaw and roll "
         "motions.”",
         Identity(right.dot(right), left.dot(left)),
         where="2 Description of the H6AR",
@@ -383,7 +387,8 @@ def inverse(d: Derivation, r: Robot) -> None:
     by_average = r.arm(A - r.alpha, B - r.beta)
     claim(
         "only one set of angles",
-        "“Since the average of the twin shoulder and elbow angles [...] are known, it is sufficient "
+        "“Since the average of the twin shoulder and elbow angles [...] are known, it is "
+        "sufficient "
         "to find only one set of angles”",
         Identity(
             by_average, mirrored

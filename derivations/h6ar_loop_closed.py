@@ -1,7 +1,5 @@
 """The H6AR as a mechanism whose loop closes: the wrist spans the tips of the arms."""
 
-"the tips of the arms."
-
 import sympy as sp
 from closedform.derivations.h6ar_mechanism import (
     ELBOW,

@@ -9,7 +9,7 @@ nothing else.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
@@ -58,6 +58,8 @@ class Joint:
     kind: Literal["revolute", "prismatic"]
     passive: bool = False
     coupling: sp.Expr | None = None
+    beside: sp.Symbol | None = None
+    """A joint that this one stays close to, as in a twin arm; samples are drawn accordingly."""
 
     @property
     def name(self) -> str:
@@ -115,7 +117,8 @@ class Stage:
     ``equations`` are places in the system; they hold no unknowns but those of this stage and of
     earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
     equations of those earlier stages hold identically whose unknowns occur.  ``mixed``, an
-    orthogonal matrix in the earlier unknowns, multiplies the equations where that makes them simpler.
+    orthogonal matrix in the earlier unknowns, multiplies the equations where that makes them
+    simpler.
 
     An inverse that is solved in the same stages is proved sound in them, if its stages say which
     names of the program are ``carried`` into them, and what these are in the earlier unknowns: the
@@ -130,6 +133,23 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class Chain:
+    """An inverse that is too large for one Groebner basis, certified lemma by lemma.
+
+    ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas``.  The equations
+    of the lemmas, multiplied by the invertible matrix ``combination``, are those of the inverse: so
+    both have the same solutions, and each lemma is proved to give all of its own.  Where a side
+    condition keeps one in ``kept_of`` of them, ``because`` says why.
+    """
+
+    lemmas: tuple[Lemma, ...]
+    joints: Mapping[sp.Symbol, sp.Expr]
+    combination: sp.Matrix
+    kept_of: int = 1
+    because: str = ""
+
+
+@dataclass(frozen=True)
 class Inverse:
     """What an inverse must satisfy: ``forward`` in the ``unknowns`` equals the ``targets``.
 
@@ -140,17 +160,27 @@ class Inverse:
     A closed loop gives equations in unknowns and inputs together: they are ``forward``, the
     ``targets`` are zeros, and ``images`` names the function whose values, in each assembly mode,
     are inputs with a known solution.  ``stages`` count the solutions step by step.
+
+    Where the equations that are solved are not the forward map itself, targets are expressions in
+    the inputs (such as ``tan(psi)``), and ``forward`` may hold inputs too; then ``chain`` proves
+    the inverse lemma by lemma, a step shows that the map named by ``images`` satisfies the
+    equations, and the cross-check puts the answers into that map.
     """
 
     function: str
     unknowns: tuple[sp.Symbol, ...]
-    targets: tuple[sp.Symbol, ...]
+    targets: tuple[Any, ...]
     forward: tuple[sp.Expr, ...]
     continua: tuple[Continuum, ...] = ()
     parametrisation: tuple[sp.Expr, ...] = ()
     angles: tuple[sp.Symbol, ...] = ()
     images: str = ""
     stages: tuple[Stage, ...] = ()
+    chain: Chain | None = None
+
+    def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
+        """The same inverse with the forward map, ``image``, for its equations."""
+        return replace(self, targets=inputs, forward=image, images="")
 
     @property
     def equations(self) -> tuple[sp.Expr, ...]:
@@ -239,6 +269,7 @@ class Derivation:
         *,
         passive: bool = False,
         coupling: sp.Expr | None = None,
+        beside: sp.Symbol | None = None,
     ) -> sp.Symbol:
         """Declare a joint variable.
 
@@ -247,7 +278,7 @@ class Derivation:
         """
         self._check_new(name)
         symbol = real(name)
-        self.joints.append(Joint(symbol, kind, passive, coupling))
+        self.joints.append(Joint(symbol, kind, passive, coupling, beside))
         return symbol
 
     def couple(self, expr: Any) -> Any:

@@ -7,8 +7,9 @@ that does not hold gets its verdict.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -17,7 +18,7 @@ import sympy as sp
 
 from closedform.algebra import Decision, Undecided, decide, normal
 from closedform.claims import VERDICTS
-from closedform.derivation import Continuum, Derivation, Inverse, Stage
+from closedform.derivation import Chain, Continuum, Derivation, Inverse, Stage
 from closedform.functions import Array, Bound, Function, Let, Program, substitute
 from closedform.lemmas import Lemma
 from closedform.refute import Counterexample
@@ -143,6 +144,8 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
 def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     """Sound: each branch satisfies the equations.  Complete: there are no other solutions."""
     function = derivation[inverse.function]
+    if inverse.chain:
+        return _prove_chained(derivation, function, inverse, inverse.chain)
     assumptions = _prove_sound(derivation, function, inverse)
     for continuum in inverse.continua:
         _prove_continuum(derivation, function, inverse, continuum)
@@ -163,6 +166,72 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
         tuple(str(a) for a in assumptions),
         lemmas,
     )
+
+
+def _prove_chained(
+    derivation: Derivation, function: Function, inverse: Inverse, chain: Chain
+) -> InverseResult:
+    """The lemmas have all their solutions; their equations are equivalent to the system."""
+    where = f"{derivation.name}.{function.name}"
+    known, equations = _meanings(function, chain), []
+    for lemma in chain.lemmas:
+        prove_lemma(lemma, Program(list(lemma.body)))
+        for name, meaning in lemma.premises.items():
+            stated = substitute(meaning, known)
+            for found in _cases(known[name]):
+                _require(found - stated, (), f"{where}: what {name} stands for")
+        equations += [substitute(e, known) for e in lemma.equations]
+    graph = dict(chain.joints)
+    system = sp.Matrix([substitute(e, graph) for e in inverse.equations])
+    combined = chain.combination * sp.Matrix(equations)
+    _require(system - combined, (), f"{where}: the lemmas' equations do not combine to the system")
+    if not normal(chain.combination.det()).is_nonzero:
+        raise ProofError(f"{where}: the matrix that combines the lemmas' equations is singular")
+    solution = {u: _generic(e) for lemma in chain.lemmas for u, e in lemma.solution.items()}
+    answers = [_generic(e) for a in function.outputs for e in a.entries]
+    for joint, answer in zip(inverse.unknowns, answers, strict=True):
+        difference = substitute(chain.joints[joint], solution) - answer
+        if sp.expand(difference) != 0:
+            raise ProofError(f"{where}: {joint} is not what the lemmas give: {difference}")
+    count = math.prod(lemma.branches for lemma in chain.lemmas)
+    branches = len(function.branches) if function.branches else 1
+    if count != branches * chain.kept_of:
+        raise ProofError(f"{where}: the lemmas give {count} solutions, not {branches}")
+    names = tuple(dict.fromkeys(lemma.name for lemma in chain.lemmas))
+    method = "lemma by lemma" + (f"; {chain.because}" if chain.because else "")
+    return InverseResult(function.name, branches, 0, branches, method, (), names)
+
+
+def _meanings(function: Function, chain: Chain) -> dict[sp.Basic, sp.Basic]:
+    """What the names of a program stand for, in inputs, parameters and unknowns of the lemmas."""
+    known: dict[sp.Basic, sp.Basic] = {}
+    inside: set[int] = set()
+    for lemma in chain.lemmas:
+        for unknown, (cosine, sine) in lemma.pairs.items():
+            known |= {cosine: sp.cos(unknown), sine: sp.sin(unknown)}
+        inside |= {id(s) for s in lemma.body}
+    for statement in function.body:
+        if isinstance(statement, (Let, Bound)) and id(statement) not in inside:
+            known[statement.symbol] = substitute(statement.value, known)
+    return known
+
+
+def _cases(expr: sp.Expr) -> Iterator[sp.Expr]:
+    """The values of an expression for every outcome of its choices between sides."""
+    choices = [c for p in expr.atoms(sp.Piecewise) for _, c in p.args if c.is_Relational]
+    if not choices:
+        yield expr
+        return
+    for holds in (sp.true, sp.false):
+        yield from _cases(expr.xreplace({choices[0]: holds}))
+
+
+def _generic(expr: sp.Expr) -> sp.Expr:
+    """The first case of every choice between sides, the last of every choice by a flag."""
+    cases = {
+        p: p.args[0 if p.args[0][1].is_Relational else -1][0] for p in expr.atoms(sp.Piecewise)
+    }
+    return _generic(expr.xreplace(cases)) if cases else expr
 
 
 def _targets(inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:
@@ -339,21 +408,25 @@ def prove_lemma(
 ) -> None:
     """Prove a lemma for the coefficients it was applied to: symbols, so for all.
 
-    Its solutions satisfy its equations for either sign, and the equations have no others.
-    ``given`` writes dependent coefficients in free parameters.
+    Its solutions satisfy its equations for either sign, its pairs are their cosines and sines, and
+    the equations have no others.  ``given`` writes dependent coefficients in free parameters.
     """
     given = dict(given or {})
-    outputs = tuple(lemma.solution.values())
-    steps = [s.value for s in program.body if isinstance(s, (Let, Bound))]
+    pairs = [value for pair in lemma.pairs.values() for value in pair]
+    outputs = (*lemma.solution.values(), *pairs)
+    premises = [Bound(name, meaning, sp.S.One, "") for name, meaning in lemma.premises.items()]
+    body = [*premises, *program.body]
+    steps = [s.value for s in body if isinstance(s, (Let, Bound))]
     free = {s for e in (*outputs, *steps) for s in e.free_symbols}
     sign = next((s for s in free if s.name.startswith("sigma")), None)
-    function = Function(
-        "lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(program.body)
-    )
+    function = Function("lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(body))
     for value in (1, -1) if sign else (1,):
         signs = {sign: value} if sign else {}
-        solution = dict(zip(lemma.solution, function.values(signs), strict=True))
-        vanishing = sp.Matrix([substitute(e, solution) for e in lemma.equations])
+        values = function.values(signs)
+        solution = dict(zip(lemma.solution, values, strict=False))
+        circle = [f(solution[x]) for x in lemma.pairs for f in (sp.cos, sp.sin)]
+        named = [a - b for a, b in zip(circle, values[len(solution) :], strict=True)]
+        vanishing = sp.Matrix([*(substitute(e, solution) for e in lemma.equations), *named])
         bounds = tuple(substitute(b, given) for b in function.bounds(signs))
         _require(substitute(vanishing, given), bounds, f"the lemma {lemma.name!r}")
     count = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given).count

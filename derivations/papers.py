@@ -36,3 +36,10 @@ STANFORD_TEXTBOOKS = Paper(
     ("R. P. Paul", "M. W. Spong", "S. Hutchinson", "M. Vidyasagar"),
     "Paul: Robot Manipulators; Spong, Hutchinson, Vidyasagar: Robot Modeling and Control",
 )
+
+RAO_RAJU = Paper(
+    "rao-raju",
+    "Forward and inverse kinematics of a hybrid series-parallel manipulator",
+    ("Sachit Rao", "Jagannath Raju"),
+    "15th National Conference on Machines and Mechanisms, NaCoMM2011-134",
+)

@@ -20,7 +20,16 @@ from closedform.crosscheck import (
 from closedform.derivation import Derivation
 from closedform.tolerances import DOUBLE
 
-ROBOTS = ("hybrid_five_bar", "irb260", "planar_2r", "puma560", "spherical_wrist", "stanford_arm")
+ROBOTS = (
+    "h6ar",
+    "h6ar_loop_closed",
+    "hybrid_five_bar",
+    "irb260",
+    "planar_2r",
+    "puma560",
+    "spherical_wrist",
+    "stanford_arm",
+)
 GENERATED = Path(__file__).parent.parent / "generated"
 
 

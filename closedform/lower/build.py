@@ -158,7 +158,7 @@ class Builder:
     def _suggest_names(self, angle: sp.Add, sine: Node, cosine: Node) -> None:
         """``s12`` and ``c12`` for the sine and the cosine of theta1 + theta2."""
         terms = [str(t) for t in angle.as_ordered_terms()]
-        if all(t.startswith("theta") for t in terms):
+        if all(t.startswith("theta") and t.isalnum() for t in terms):
             label = "".join(t.removeprefix("theta") for t in terms)
             self.names.setdefault(sine.id, f"s{label}")
             self.names.setdefault(cosine.id, f"c{label}")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from closedform.functions import Branches, Function, Number, Program, array, real
+from closedform.functions import Branches, Function, Number, Program, Statement, array, real
 
 if TYPE_CHECKING:
     from closedform.claims import Check
@@ -111,8 +111,8 @@ class Stage:
 
     ``equations`` are places in the system; they hold no unknowns but those of this stage and of
     earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
-    equations of the earlier stages hold identically.  ``mixed``, a matrix with orthonormal rows that
-    holds no unknowns but earlier ones, multiplies the equations where that makes them simpler.
+    equations of the earlier stages hold identically.  ``mixed``, a matrix with orthonormal rows
+    that holds no unknowns but earlier ones, multiplies the equations where that makes them simpler.
 
     An inverse that is solved in the same stages is proved sound in them, if its stages say which
     names of the program are ``carried`` into them, and what these are in the earlier unknowns: the
@@ -127,6 +127,30 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class Degenerate:
+    """A flagged case of a lemma: on ``locus``, for its coefficients, the joint ``free`` is free."""
+
+    flags: tuple[sp.Symbol, ...]
+    locus: Mapping[sp.Symbol, sp.Expr]
+    free: sp.Symbol | None
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """A lemma in a chain: the statements it added, and what its names ``means`` at a posture.
+
+    ``given`` writes coefficients that depend on each other in free symbols.
+    """
+
+    lemma: Lemma
+    body: tuple[Statement, ...]
+    means: Mapping[sp.Symbol, sp.Expr]
+    given: Mapping[sp.Symbol, sp.Expr]
+    degenerate: tuple[Degenerate, ...] = ()
+
+
+@dataclass(frozen=True)
 class Inverse:
     """What an inverse must satisfy: ``forward`` in the ``unknowns`` equals the ``targets``.
 
@@ -136,7 +160,8 @@ class Inverse:
 
     A closed loop gives equations in unknowns and inputs together: they are ``forward``, the
     ``targets`` are zeros, and ``images`` names the function whose values, in each assembly mode,
-    are inputs with a known solution.  ``stages`` count the solutions step by step.
+    are inputs with a known solution.  ``stages`` count the solutions step by step.  An inverse
+    with a ``chain`` is proved lemma by lemma.
     """
 
     function: str
@@ -148,6 +173,17 @@ class Inverse:
     angles: tuple[sp.Symbol, ...] = ()
     images: str = ""
     stages: tuple[Stage, ...] = ()
+    nonnegative: tuple[sp.Symbol, ...] = ()
+    """Unknowns that are lengths: of two solutions that differ in their sign one counts."""
+    chain: tuple[Link, ...] = ()
+    meaning: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """What names of the program stand for at a posture, in the unknowns."""
+    defined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """Auxiliary angles: sums of the unknowns."""
+    lengths: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """Auxiliary lengths, at a posture."""
+    units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
+    """Sines and cosines of free choices, and the names that may have any value in them."""
 
     @property
     def equations(self) -> tuple[sp.Expr, ...]:

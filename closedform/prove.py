@@ -18,7 +18,7 @@ import sympy as sp
 from closedform.algebra import Decision, Undecided, decide, normal
 from closedform.claims import VERDICTS
 from closedform.derivation import Continuum, Derivation, Inverse, Stage
-from closedform.functions import Array, Bound, Function, Let, Program, substitute
+from closedform.functions import Array, Bound, Function, Let, Program, real, substitute
 from closedform.lemmas import Lemma
 from closedform.refute import Counterexample
 from closedform.solutions import InfinitelyManyError, count_solutions
@@ -143,6 +143,8 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
 def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     """Sound: each branch satisfies the equations.  Complete: there are no other solutions."""
     function = derivation[inverse.function]
+    if inverse.chain:
+        return _prove_by_chain(derivation, function, inverse)
     assumptions = _prove_sound(derivation, function, inverse)
     for continuum in inverse.continua:
         _prove_continuum(derivation, function, inverse, continuum)
@@ -162,6 +164,27 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
         method,
         tuple(str(a) for a in assumptions),
         lemmas,
+    )
+
+
+def _prove_by_chain(derivation: Derivation, function: Function, inverse: Inverse) -> InverseResult:
+    from closedform.prove_chain import prove_chain
+
+    count, assumptions, continua = prove_chain(derivation, inverse)
+    branches = len(function.branches) if function.branches else 1
+    if count != branches:
+        raise ProofError(
+            f"{derivation.name}.{function.name}: the lemmas have {count} solutions together, "
+            f"but {branches} branches are given"
+        )
+    return InverseResult(
+        function.name,
+        branches,
+        continua,
+        count,
+        "lemma by lemma",
+        tuple(str(a) for a in assumptions),
+        tuple(dict.fromkeys(link.lemma.name for link in inverse.chain)),
     )
 
 
@@ -291,8 +314,14 @@ def _count(inverse: Inverse) -> tuple[int, str]:
             equations.append(equation)
         else:
             _require(equation, (), f"{inverse.function}: a target that no joint moves")
+    squares = {u: sp.sqrt(real(f"{u}_squared")) for u in inverse.nonnegative}
+    equations = [sp.expand(e).xreplace({u**2: s**2 for u, s in squares.items()}) for e in equations]
+    if odd := [u for u in squares if any(e.has(u) for e in equations)]:
+        raise ProofError(f"{inverse.function}: the sign of {odd[0]} matters in the equations")
+    unknowns = [s**2 for s in squares.values()]
+    unknowns += [u for u in inverse.unknowns if u not in squares]
     try:
-        counted = count_solutions(equations, inverse.unknowns)
+        counted = count_solutions(equations, unknowns)
     except InfinitelyManyError as error:
         raise ProofError(f"{inverse.function}: {error}") from error
     return counted.count, counted.method

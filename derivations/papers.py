@@ -20,3 +20,9 @@ CHABLAT_WENGER_ANGELES = Paper(
     ("Damien Chablat", "Philippe Wenger", "Jorge Angeles"),
     "Integrated Design and Manufacturing in Mechanical Engineering, Compiègne, 1998",
 )
+
+TEXTBOOK = Paper(
+    "textbook",
+    "Arms of common structure, by the lemmas that solve them",
+    ("The closedform authors",),
+)

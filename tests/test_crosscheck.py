@@ -19,7 +19,15 @@ from closedform.crosscheck import (
 from closedform.derivation import Derivation
 from closedform.tolerances import DOUBLE
 
-ROBOTS = ("hybrid_five_bar", "irb260", "planar_2r", "spherical_wrist")
+ROBOTS = (
+    "hybrid_five_bar",
+    "irb260",
+    "planar_2r",
+    "rpr_planar",
+    "scara",
+    "spherical_wrist",
+    "ur_arm",
+)
 GENERATED = Path(__file__).parent.parent / "generated"
 
 

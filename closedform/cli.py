@@ -136,6 +136,11 @@ def parser() -> argparse.ArgumentParser:
     derive.add_argument(
         "--backend", action="append", choices=pipeline.BACKENDS, help="repeatable; all by default"
     )
+    derive.add_argument(
+        "--no-crosscheck",
+        action="store_true",
+        help="with -o: do not compare the printed code with the symbolic source",
+    )
     check = command("check", check_command)
     for added in (derive, check):
         added.add_argument("-j", "--jobs", type=_positive, metavar="N", help="processes to use")
@@ -185,12 +190,37 @@ def derive_command(options: argparse.Namespace) -> None:
     result = _run(options, chosen, backends, pipeline.sources() if own else chosen)
     printed = result.files if own else pipeline.standalone(result.files)
     _write(root, printed)
+    for failure in result.neighbours:
+        print(f"closedform: warning: {failure}", file=sys.stderr)
+    if result.neighbours:
+        print(
+            "closedform: warning: the files that all robots share were left as they are",
+            file=sys.stderr,
+        )
+    if not own and not options.no_crosscheck:
+        _crosscheck(root, chosen, backends)
     width = max(len(robot.name) for robot in result.robots)
     for robot in result.robots:
         print(robot.line(width))
     if own and not options.names:
         for path in pipeline.extra_files(root, printed, backends):
             (root / path).unlink()
+
+
+def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
+    """Compare what was printed with the symbolic source, and write down what was found."""
+    from closedform.report import report
+
+    with Progress() as progress:
+        for source in chosen:
+            progress(source.name, "cross-check")
+            text, failures = report(pipeline.load(source), root, backends)
+            _write(root, {Path(f"{source.name}-crosscheck.md"): text})
+            if failures:
+                raise CommandError(
+                    f"{source.name}: the generated code differs from its symbolic source; see "
+                    f"{root / f'{source.name}-crosscheck.md'}: {failures[0]}"
+                )
 
 
 def check_command(options: argparse.Namespace) -> None:

@@ -398,6 +398,8 @@ def _check_known(
     condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
     spread = max(parameters) / min(parameters) if parameters else 1.0
     nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
+    if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, sample):
+        return
     allowed = backend.eps * spread / condition
     if nearest > 1e3 * allowed:  # a joint that is nearly free turns far for an ulp of the target
         allowed += _movement(truth, backend, sample, solutions)
@@ -407,11 +409,29 @@ def _check_known(
 
 def _movement(truth: _Truth, backend: Backend, sample: Sample, solutions: NDArray[Any]) -> float:
     """How far the answers move when every coordinate of the target moves by an ulp."""
-    columns = np.arange(sample.values.shape[1])
-    signs = np.array([(-1) ** ((pattern >> (columns % 2)) & 1) for pattern in range(4)])
-    nearby = Sample(sample.name, sample.values * (1 + signs * backend.eps), sample.parameters)
+    nearby = _nearby(backend, sample)
     moved = truth.gap(_call(backend, truth.function, nearby)[0], solutions)
     return float(np.max(moved, initial=0.0, where=np.isfinite(moved)))
+
+
+def _leaves_the_workspace(truth: _Truth, backend: Backend, sample: Sample) -> bool:
+    """Whether a target an ulp away is out of reach by more than the tolerance in all branches.
+
+    Where a large offset is taken from a large distance, an ulp of the target is far inside.
+    """
+    slack = backend.tolerances.feasibility
+    branches = range(len(list(truth.function.cases())))
+    return any(
+        all(truth.feasible(row, sample.parameters, b, slack) is False for b in branches)
+        for row in _nearby(backend, sample).values
+    )
+
+
+def _nearby(backend: Backend, sample: Sample) -> Sample:
+    """Targets that are off one target by an ulp of every coordinate."""
+    columns = np.arange(sample.values.shape[1])
+    signs = np.array([(-1) ** ((pattern >> (columns % 2)) & 1) for pattern in range(4)])
+    return Sample(sample.name, sample.values * (1 + signs * backend.eps), sample.parameters)
 
 
 def table(findings: Sequence[Finding]) -> Iterator[str]:

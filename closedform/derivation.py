@@ -111,8 +111,8 @@ class Stage:
 
     ``equations`` are places in the system; they hold no unknowns but those of this stage and of
     earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
-    equations of the earlier stages hold identically.  ``mixed``, a matrix with orthonormal rows
-    that holds no unknowns but earlier ones, multiplies the equations where that makes them simpler.
+    equations of the earlier stages hold identically.  ``mixed``, an orthogonal matrix in the
+    earlier unknowns, multiplies the equations where that makes them simpler.
 
     An inverse that is solved in the same stages is proved sound in them, if its stages say which
     names of the program are ``carried`` into them, and what these are in the earlier unknowns: the

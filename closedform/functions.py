@@ -304,6 +304,16 @@ class Program:
     def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
         self.body.append(Require(tuple(values), sp.sympify(scale), meaning))
 
+    def explicit(self, value: Any) -> Any:
+        """An expression or a matrix in the names of the program, written out."""
+        known: dict[sp.Basic, sp.Basic] = {}
+        for statement in self.body:
+            if isinstance(statement, (Let, Bound)):
+                known[statement.symbol] = substitute(statement.value, known)
+        if isinstance(value, sp.MatrixBase):
+            return value.applyfunc(lambda e: substitute(e, known))
+        return substitute(value, known)
+
     def matrix(self, name: str, matrix: sp.Matrix) -> sp.Matrix:
         """Name the entries that are sums or products, so that later products stay short."""
         named = sp.zeros(*matrix.shape)

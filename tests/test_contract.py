@@ -58,6 +58,21 @@ ROBOTS = {
         },
         "branches": 4,
     },
+    "puma560": {
+        "fields": ("a2", "a3", "d3", "d4"),
+        "joints": tuple(f"theta{i}" for i in range(1, 7)),
+        "task": tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)),
+        "shapes": {
+            "fk": (4, 4),
+            "pose": (4, 4),
+            "jacobian": (6, 6),
+            "jacobian_space": (6, 6),
+            "jacobian_body": (6, 6),
+            "determinant": (),
+            "singularities": (3,),
+        },
+        "branches": 8,
+    },
     "hybrid_five_bar": {
         "fields": ("L0", "L1", "L2"),
         "joints": ("theta1", "theta2", "theta3"),

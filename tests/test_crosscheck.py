@@ -23,6 +23,7 @@ ROBOTS = (
     "hybrid_five_bar",
     "irb260",
     "planar_2r",
+    "puma560",
     "rpr_planar",
     "scara",
     "spherical_wrist",

@@ -66,7 +66,7 @@ class Graph:
                 kept.remove(opposite)
             elif not is_const(term, 0):
                 kept.append(term)
-        kept = self._constants_together(kept, sp.Add)
+        kept = self._constants_together(kept, sp.Add, 0)
         if not kept:
             return self.const(0)
         kept.sort(key=lambda t: strip_sign(t).id)
@@ -87,7 +87,7 @@ class Graph:
                 return factor
             if not is_const(factor, 1):
                 kept.append(factor)
-        kept = self._constants_together(kept, sp.Mul)
+        kept = self._constants_together(kept, sp.Mul, 1)
         kept.sort(key=lambda f: f.id)
         if not kept:
             result = self.const(1)
@@ -105,7 +105,7 @@ class Graph:
         if b.op == "neg":
             return self.neg(self.div(a, b.args[0]))
         if a.op == b.op == "const":
-            return self.const(a.payload / b.payload)
+            return self.const(sp.sympify(a.payload) / sp.sympify(b.payload))
         return self.node("div", a, b)
 
     def select(self, condition: Node, a: Node, b: Node) -> Node:
@@ -145,7 +145,9 @@ class Graph:
         """An even function: the sign goes away."""
         return self.node(op, strip_sign(a))
 
-    def _constants_together(self, operands: list[Node], combine: type) -> list[Node]:
+    def _constants_together(
+        self, operands: list[Node], combine: Callable[..., sp.Expr], neutral: int
+    ) -> list[Node]:
         """Several constants as one, with their exact value; the neutral one goes away."""
         values = [constant_of(n) for n in operands]
         found = [v for v in values if v is not None]
@@ -153,7 +155,7 @@ class Graph:
             return operands
         others = [n for n, v in zip(operands, values, strict=True) if v is None]
         value = combine(*found)
-        return others if value == combine.identity else [*others, self.const(value)]
+        return others if value == neutral else [*others, self.const(value)]
 
     def _fold(self, op: str, conditions: Sequence[Node], neutral: str, absorbing: str) -> Node:
         kept: list[Node] = []

@@ -175,7 +175,7 @@ def from_dh(
                 f"{d.name}: row {i} of the Denavit-Hartenberg table: the symbol {unknown[0]} is "
                 f"neither a parameter nor a joint; declare it with d.parameter or d.joint"
             )
-        here = [s for e in entries for s in e.free_symbols if s in joints]
+        here = sorted({s for e in entries for s in e.free_symbols if s in joints}, key=str)
         if len(here) != 1:
             raise RowError(
                 f"{d.name}: row {i} of the Denavit-Hartenberg table must hold exactly one joint, "

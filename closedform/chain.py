@@ -14,21 +14,18 @@ every robot (see :mod:`closedform.prove_chain`):
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import sympy as sp
 
 from closedform.derivation import Derivation, Inverse, Link, Solved
-from closedform.functions import SINGLE, Program, Statement, branches, real, substitute
+from closedform.functions import SINGLE, Let, Program, Statement, branches, real, substitute
 from closedform.lemmas import Lemma
-from closedform.linklemmas import Applied, Pair
+from closedform.linklemmas import Applied
+from closedform.shapes import ShapeError
 
 Choice = Mapping[int, str]
-
-
-class LemmaShapeError(ValueError):
-    """A lemma applied to an equation of another shape."""
 
 
 @dataclass
@@ -127,6 +124,7 @@ class Chain:
         body: tuple[Statement, ...] = tuple(self.program.body[start:])
         for unknown in applied.lemma.solution:
             self._check_unknown(unknown, applied.lemma)
+        self._check_coefficients(applied.lemma)
         self.links.append(
             Link(applied.lemma, body, dict(applied.means), dict(applied.given), applied.degenerate)
         )
@@ -138,14 +136,30 @@ class Chain:
 
     def _check_unknown(self, unknown: sp.Symbol, lemma: Lemma) -> None:
         if unknown not in {*self.joints, *self.defined, *self.lengths}:
-            raise LemmaShapeError(
+            raise ShapeError(
                 f"{self.d.name}: the lemma {lemma.name!r} solves for {unknown}, which is neither "
                 f"a joint nor an auxiliary angle or length of the chain"
             )
         if unknown in self.values:
-            raise LemmaShapeError(
+            raise ShapeError(
                 f"{self.d.name}: the lemma {lemma.name!r} solves for {unknown}, which an earlier "
                 f"lemma has solved"
+            )
+
+    def _check_coefficients(self, lemma: Lemma) -> None:
+        names: dict[sp.Basic, sp.Basic] = dict(self.meaning)
+        for statement in self.program.body:
+            if isinstance(statement, Let) and statement.symbol not in names:
+                names[statement.symbol] = substitute(statement.value, names)
+        held = {s for e in lemma.equations for s in substitute(e, names).free_symbols}
+        solvable = {*self.joints, *self.defined, *self.lengths}
+        early = sorted((held & solvable) - {*lemma.solution, *self.values}, key=str)
+        if early:
+            unknowns = ", ".join(map(str, lemma.solution))
+            raise ShapeError(
+                f"{self.d.name}: the lemma {lemma.name!r} for {unknowns} "
+                f"is applied to an equation of another shape: {early[0]} stands in it, which no "
+                f"lemma has solved yet"
             )
 
     # The end
@@ -169,7 +183,7 @@ class Chain:
         self._solve_sums()
         missing = [j for j in self.joints if j not in self.values]
         if missing:
-            raise LemmaShapeError(f"{d.name}: no lemma solves for {missing[0]}")
+            raise ShapeError(f"{d.name}: no lemma solves for {missing[0]}")
         choices = branches(*self.choices) if self.choices else SINGLE
         if self.name == "ik":
             d.branches = choices.labels if self.choices else ()
@@ -205,4 +219,4 @@ class Chain:
         return inverse
 
 
-__all__ = ["Chain", "Choice", "LemmaShapeError", "Pair", "replace"]
+__all__ = ["Chain", "Choice"]

@@ -10,11 +10,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from closedform.functions import Branches, Function, Number, Program, Statement, array, real
+from closedform.functions import (
+    Branches,
+    Function,
+    Number,
+    Program,
+    Statement,
+    array,
+    real,
+    reject_floats,
+)
 
 if TYPE_CHECKING:
     from closedform.claims import Check
@@ -261,7 +271,8 @@ class Derivation:
         symbol = real(name, positive=True) if nonnegative else real(name)
         exact = sp.sympify(value)
         if not exact.is_Rational:
-            raise TypeError(f"{self.name}: the value of {name} must be an exact rational")
+            hint = f": write sympy.Rational('{value}')" if isinstance(value, float) else ""
+            raise TypeError(f"{self.name}: the value of {name} must be an exact rational{hint}")
         self.parameters.append(Parameter(symbol, unit, exact, meaning, source, nonnegative))
         return symbol
 
@@ -306,6 +317,8 @@ class Derivation:
 
         Each pair in ``equal`` is proved equal; the build fails where the proof does.
         """
+        for value in (*shown.values(), *(e for pair in equal for e in pair)):
+            self._reject_floats(value, f"{self.name}, step {title!r}")
         self.steps.append(
             Step(
                 title,
@@ -365,10 +378,24 @@ class Derivation:
 
         return notebook(self)
 
+    def _reject_floats(self, value: Any, where: str) -> None:
+        for part in value if isinstance(value, list | tuple) else [value]:
+            if isinstance(part, float):
+                raise TypeError(
+                    f"{where}: {part} is a float; write an integer or sympy.Rational('{part}')"
+                )
+            if isinstance(part, sp.Basic | sp.MatrixBase):
+                for entry in part if isinstance(part, sp.MatrixBase) else [part]:
+                    reject_floats(entry, where)
+
     def _check_new(self, name: str) -> None:
-        taken = {p.name for p in self.parameters} | {j.name for j in self.joints}
-        if name in taken:
-            raise ValueError(f"{self.name}: the name {name} is declared twice")
+        kinds = {p.name: "parameter" for p in self.parameters}
+        kinds |= {j.name: "joint" for j in self.joints}
+        if name in kinds:
+            raise ValueError(
+                f"{self.name}: the name {name} is declared twice: there is a {kinds[name]} {name} "
+                f"already; every joint and parameter needs a name of its own"
+            )
 
     def _check_symbols(self, function: Function) -> None:
         known: set[sp.Basic] = {p.symbol for p in self.parameters} | set(function.symbols)
@@ -387,7 +414,12 @@ class Derivation:
     def _require_known(self, function: Function, unknown: set[sp.Basic]) -> None:
         if unknown:
             name = sorted(map(str, unknown))[0]
+            declared = [p.name for p in self.parameters] + [j.name for j in self.joints]
+            close = get_close_matches(name, [*declared, *map(str, function.symbols)], 1)
+            hint = f"; did you mean {close[0]}?" if close and close[0] != name else ""
+            if name in declared and name not in map(str, function.symbols):
+                hint = f"; it is a joint: name it among the inputs of {function.name}"
             raise ValueError(
                 f"{self.name}.{function.name}: the symbol {name} is neither a parameter nor an "
-                f"input nor defined by an earlier statement"
+                f"input nor defined by an earlier statement{hint}"
             )

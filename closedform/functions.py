@@ -283,6 +283,7 @@ class Program:
 
     def bound(self, name: str, value: sp.Expr, scale: sp.Expr, meaning: str) -> sp.Symbol:
         symbol = real(name, nonnegative=True)
+        reject_floats(sp.sympify(value), name)
         self.body.append(Bound(symbol, value, scale, meaning))
         return symbol
 

@@ -8,7 +8,7 @@ that does not hold gets its verdict.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -21,7 +21,10 @@ from closedform.derivation import Continuum, Derivation, Inverse, Stage
 from closedform.functions import Array, Bound, Function, Let, Program, real, substitute
 from closedform.lemmas import Lemma
 from closedform.refute import Counterexample
+from closedform.shapes import ShapeError, require_shape
 from closedform.solutions import InfinitelyManyError, count_solutions
+from closedform.tower import shortened
+from closedform.witness import uncovered
 
 Progress = Callable[[str], None]
 
@@ -153,8 +156,9 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     branches = len(function.branches) if function.branches else 1
     if count != branches:
         raise ProofError(
-            f"{derivation.name}.{function.name}: the system has {count} solutions, "
-            f"but {branches} branches are given"
+            f"{derivation.name}.{function.name}: the system has {count} solutions "
+            f"({_how_counted(method)}), but {branches} branches are given. "
+            f"{uncovered(derivation, function, inverse)}".rstrip()
         )
     return InverseResult(
         function.name,
@@ -173,9 +177,10 @@ def _prove_by_chain(derivation: Derivation, function: Function, inverse: Inverse
     count, assumptions, continua = prove_chain(derivation, inverse)
     branches = len(function.branches) if function.branches else 1
     if count != branches:
+        lost = uncovered(derivation, function, inverse)
         raise ProofError(
             f"{derivation.name}.{function.name}: the lemmas have {count} solutions together, "
-            f"but {branches} branches are given"
+            f"but {branches} branches are given. {lost}".rstrip()
         )
     return InverseResult(
         function.name,
@@ -186,6 +191,10 @@ def _prove_by_chain(derivation: Derivation, function: Function, inverse: Inverse
         tuple(str(a) for a in assumptions),
         tuple(dict.fromkeys(link.lemma.name for link in inverse.chain)),
     )
+
+
+def _how_counted(method: str) -> str:
+    return "counted step by step" if method == "step by step" else "counted from a Groebner basis"
 
 
 def _targets(inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:
@@ -245,7 +254,7 @@ def _prove_case(function: Function, inverse: Inverse, case: _Case) -> tuple[sp.E
         [substitute(substitute(e, solution), case.given) for e in inverse.equations]
     )
     bounds = tuple(substitute(b, case.given) for b in function.bounds(case.signs))
-    return _require(difference, bounds, case.where).assumptions
+    return _require(difference, bounds, case.where, _names_of(inverse)).assumptions
 
 
 def _prove_case_in_stages(
@@ -281,6 +290,15 @@ def _prove_case_in_stages(
     return assumptions
 
 
+def _names_of(inverse: Inverse) -> list[str]:
+    """What each equation of an inverse is about, to tell a user which one fails."""
+    names = []
+    for k, x in enumerate(inverse.targets, 1):
+        name = str(x) if isinstance(x, sp.Symbol) else f"equation {k}"
+        names += [f"cos({name})", f"sin({name})"] if x in inverse.angles else [name]
+    return names
+
+
 def _equations_of(inverse: Inverse, stage: Stage) -> list[sp.Expr]:
     """The equations of a stage, multiplied by its matrix."""
     equations = sp.Matrix([inverse.equations[i] for i in stage.equations])
@@ -298,6 +316,10 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
             f"{derivation.name}.{inverse.function}: the equation solved for {solved.unknown} by "
             f"the lemma {solved.lemma.name!r} must follow from the forward map"
         )
+        try:
+            require_shape(solved.lemma.name, solved.equation, solved.unknown)
+        except ShapeError as error:
+            raise ProofError(f"{derivation.name}.{inverse.function}: {error}") from error
         posture = graph if solved.posture is None else solved.posture
         _require(substitute(solved.equation, posture), (), where)
         lemmas.append(solved.lemma.name)
@@ -396,12 +418,27 @@ def _decide(difference: sp.ImmutableMatrix, nonnegative: tuple[sp.Expr, ...]) ->
     return decide(difference, nonnegative)
 
 
-def _require(difference: Any, nonnegative: tuple[sp.Expr, ...], where: str) -> Decision:
+def _require(
+    difference: Any, nonnegative: tuple[sp.Expr, ...], where: str, names: Sequence[str] = ()
+) -> Decision:
+    """Prove that a difference vanishes, or say what is left of it and at which simple point.
+
+    ``names`` say what the entries are about.
+    """
     try:
         decision = _decide(sp.ImmutableMatrix([difference]), nonnegative)
     except Undecided as error:
         raise ProofError(f"{where}: {error}") from error
     if not decision.holds:
         assert isinstance(decision.counterexample, Counterexample)
-        raise ProofError(f"{where}: does not vanish. {decision.counterexample.describe()}")
+        entry = decision.counterexample.entry
+        about = f" in {names[entry]}" if entry < len(names) else ""
+        residual = sp.Matrix([difference])[entry]
+        if decision.proof is not None and entry < len(decision.proof.remainders):
+            short = decision.proof.remainders[entry]
+            residual = min((residual, short), key=sp.count_ops) if short != 0 else residual
+        raise ProofError(
+            f"{where}: does not vanish. {decision.counterexample.describe()}; "
+            f"the residual{about} is {shortened(residual)}"
+        )
     return decision

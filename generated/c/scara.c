@@ -10,7 +10,7 @@
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   singularities: 1 sincos
- *   ik: 30 add, 49 compare and select, 4 atan2, 11 divide, 19 multiply, 1 sincos, 5 sqrt
+ *   ik: 28 add, 49 compare and select, 4 atan2, 10 divide, 19 multiply, 1 sincos, 5 sqrt
  */
 #include "scara.h"
 
@@ -504,62 +504,61 @@ CF_INLINE void scara_ik_kernel(const scara_params *params, const real_t x[4], co
     const real_t c_x_yaw = cosines[0];
     const real_t r_elbow = cf_sqrt(x_x * x_x + x_y * x_y);
     const real_t t1 = l1 + l2;
-    const real_t t2 = h + t1;
-    const int folded_elbow = r_elbow <= CLOSEDFORM_VANISHING * t2;
-    const int no_link_elbow = l1 * l2 <= CLOSEDFORM_VANISHING * (t2 * t2);
-    const real_t t3 = t1 - r_elbow;
-    const real_t A_elbow = cf_max(t3, CLOSEDFORM_C(0.0));
-    const real_t t4 = l1 - l2;
-    const real_t t5 = r_elbow - t4;
-    const real_t C_elbow = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t t6 = A_elbow * C_elbow;
+    const int folded_elbow = r_elbow <= CLOSEDFORM_VANISHING * t1;
+    const int no_link_elbow = l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1);
+    const real_t t2 = t1 - r_elbow;
+    const real_t A_elbow = cf_max(t2, CLOSEDFORM_C(0.0));
+    const real_t t3 = l1 - l2;
+    const real_t t4 = r_elbow - t3;
+    const real_t C_elbow = cf_max(t4, CLOSEDFORM_C(0.0));
+    const real_t t5 = A_elbow * C_elbow;
     const real_t S_elbow = r_elbow + t1;
-    const real_t t7 = r_elbow + t4;
-    const real_t B_elbow = cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t8 = S_elbow * B_elbow;
-    const real_t width_elbow = t6 + t8;
-    const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t6 - t8) / width_elbow));
-    const real_t t9 = x_y * c_base_elbow / r_elbow;
-    const real_t t10 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow) * cf_sqrt(S_elbow);
-    const real_t area_elbow = t10 * cf_sqrt(B_elbow) * cf_sqrt(C_elbow);
+    const real_t t6 = r_elbow + t3;
+    const real_t B_elbow = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t7 = S_elbow * B_elbow;
+    const real_t width_elbow = t5 + t7;
+    const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t5 - t7) / width_elbow));
+    const real_t t8 = x_y * c_base_elbow / r_elbow;
+    const real_t t9 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow) * cf_sqrt(S_elbow);
+    const real_t area_elbow = t9 * cf_sqrt(B_elbow) * cf_sqrt(C_elbow);
     const real_t s_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow / width_elbow);
-    const real_t t11 = x_x * s_base_elbow / r_elbow;
-    const real_t s1 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t9 - t11);
-    const real_t t12 = x_x * c_base_elbow / r_elbow;
-    const real_t t13 = x_y * s_base_elbow / r_elbow;
-    const real_t c1 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t12 + t13);
-    const real_t t14 = cf_atan2(s1, c1);
-    const int t15 = cf_is_finite(x_x) & cf_is_finite(x_y) & cf_is_finite(x_z);
-    const int t16 = t15 & cf_is_finite(x_yaw) & cf_is_finite(l1) & cf_is_finite(l2);
-    const int t17 = t16 & cf_is_finite(h) & (CLOSEDFORM_C(0.0) <= l1);
-    const int t18 = t17 & (CLOSEDFORM_C(0.0) <= l2) & (CLOSEDFORM_C(0.0) <= h);
-    const int invalid = !t18;
-    const real_t t19 = h / CLOSEDFORM_C(2.0) + l1 / CLOSEDFORM_C(2.0);
-    const real_t t20 = CLOSEDFORM_FEASIBILITY * (t19 + l2 / CLOSEDFORM_C(2.0));
-    const int unreachable = !((-t20 <= t3) & (-t20 <= t7) & (-t20 <= t5));
-    const real_t t21 = cf_poison(invalid | unreachable);
-    const real_t t22 = A_elbow * S_elbow;
-    const real_t t23 = C_elbow * B_elbow;
-    const real_t sum_elbow = t22 + t23;
+    const real_t t10 = x_x * s_base_elbow / r_elbow;
+    const real_t s1 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t8 - t10);
+    const real_t t11 = x_x * c_base_elbow / r_elbow;
+    const real_t t12 = x_y * s_base_elbow / r_elbow;
+    const real_t c1 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t11 + t12);
+    const real_t t13 = cf_atan2(s1, c1);
+    const int t14 = cf_is_finite(x_x) & cf_is_finite(x_y) & cf_is_finite(x_z);
+    const int t15 = t14 & cf_is_finite(x_yaw) & cf_is_finite(l1) & cf_is_finite(l2);
+    const int t16 = t15 & cf_is_finite(h) & (CLOSEDFORM_C(0.0) <= l1);
+    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= l2) & (CLOSEDFORM_C(0.0) <= h);
+    const int invalid = !t17;
+    const real_t t18 = l1 / CLOSEDFORM_C(2.0) + l2 / CLOSEDFORM_C(2.0);
+    const real_t t19 = -(CLOSEDFORM_FEASIBILITY * t18);
+    const int unreachable = !((t19 <= t2) & (t19 <= t6) & (t19 <= t4));
+    const real_t t20 = cf_poison(invalid | unreachable);
+    const real_t t21 = A_elbow * S_elbow;
+    const real_t t22 = C_elbow * B_elbow;
+    const real_t sum_elbow = t21 + t22;
     const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow / sum_elbow);
-    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t22 - t23) / sum_elbow));
-    const real_t t24 = cf_atan2(s2, c2);
-    const real_t t25 = h - x_z + t21;
-    const real_t t26 = cf_atan2(s_x_yaw, c_x_yaw);
-    const real_t s1_right = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t9 + t11);
-    const real_t c1_right = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t12 - t13);
-    const real_t t27 = cf_atan2(s1_right, c1_right);
-    const real_t t28 = cf_status(invalid, unreachable, no_link_elbow | folded_elbow);
-    q[0] = cf_wrap(t14) + t21;
-    q[1] = cf_wrap(t24) + t21;
-    q[2] = t25;
-    q[3] = cf_wrap(t24 - (t26 - t14)) + t21;
-    q[4] = cf_wrap(t27) + t21;
-    q[5] = cf_wrap(-t24) + t21;
-    q[6] = t25;
-    q[7] = cf_wrap(t27 - (t26 + t24)) + t21;
-    status[0] = t28;
-    status[1] = t28;
+    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t21 - t22) / sum_elbow));
+    const real_t t23 = cf_atan2(s2, c2);
+    const real_t t24 = h - x_z + t20;
+    const real_t t25 = cf_atan2(s_x_yaw, c_x_yaw);
+    const real_t s1_right = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t8 + t10);
+    const real_t c1_right = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t11 - t12);
+    const real_t t26 = cf_atan2(s1_right, c1_right);
+    const real_t t27 = cf_status(invalid, unreachable, no_link_elbow | folded_elbow);
+    q[0] = cf_wrap(t13) + t20;
+    q[1] = cf_wrap(t23) + t20;
+    q[2] = t24;
+    q[3] = cf_wrap(t23 - (t25 - t13)) + t20;
+    q[4] = cf_wrap(t26) + t20;
+    q[5] = cf_wrap(-t23) + t20;
+    q[6] = t24;
+    q[7] = cf_wrap(t26 - (t25 + t23)) + t20;
+    status[0] = t27;
+    status[1] = t27;
 }
 
 CLOSEDFORM_DISPATCHED

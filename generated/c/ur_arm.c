@@ -10,7 +10,7 @@
  *   jacobian_body: 34 add, 64 multiply, 5 sincos
  *   determinant: 6 add, 15 multiply, 4 sincos
  *   singularities: 6 add, 11 multiply, 4 sincos
- *   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 231 multiply, 47 sqrt
+ *   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 233 multiply, 47 sqrt
  */
 #include "ur_arm.h"
 
@@ -934,7 +934,7 @@ CF_INLINE void ur_arm_ik_kernel(const ur_arm_params *params, const real_t T[16],
     const real_t t66 = cf_poison(invalid | unreachable);
     const real_t t67 = t14 + t66;
     const int folded_elbow = r_elbow <= t3;
-    const int no_link_elbow = L2 * L3 <= t47;
+    const int no_link_elbow = L2 * L3 <= CLOSEDFORM_VANISHING * (t1 * t1);
     const real_t C_elbow = cf_max(t64, CLOSEDFORM_C(0.0));
     const real_t A_elbow = cf_max(t62, CLOSEDFORM_C(0.0));
     const real_t t68 = C_elbow * A_elbow;

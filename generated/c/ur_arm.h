@@ -10,7 +10,7 @@
  *   jacobian_body: 34 add, 64 multiply, 5 sincos
  *   determinant: 6 add, 15 multiply, 4 sincos
  *   singularities: 6 add, 11 multiply, 4 sincos
- *   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 231 multiply, 47 sqrt
+ *   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 233 multiply, 47 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not

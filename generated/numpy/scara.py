@@ -9,7 +9,7 @@
 #   jacobian: 4 add, 8 multiply, 2 sincos
 #   determinant: 2 multiply, 1 sincos
 #   singularities: 1 sincos
-#   ik: 30 add, 49 compare and select, 4 atan2, 11 divide, 19 multiply, 1 sincos, 5 sqrt
+#   ik: 28 add, 49 compare and select, 4 atan2, 10 divide, 19 multiply, 1 sincos, 5 sqrt
 """SCARA arm (RRPR).
 
 Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a
@@ -363,57 +363,56 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     s_x_yaw, c_x_yaw = _runtime.sincos(x_yaw)
     r_elbow = np.sqrt(x_x * x_x + x_y * x_y)
     t1 = l1 + l2
-    t2 = h + t1
-    folded_elbow = r_elbow <= _runtime.VANISHING * t2
-    no_link_elbow = l1 * l2 <= _runtime.VANISHING * (t2 * t2)
-    t3 = t1 - r_elbow
-    A_elbow = np.maximum(t3, 0.0)
-    t4 = l1 - l2
-    t5 = r_elbow - t4
-    C_elbow = np.maximum(t5, 0.0)
-    t6 = A_elbow * C_elbow
+    folded_elbow = r_elbow <= _runtime.VANISHING * t1
+    no_link_elbow = l1 * l2 <= _runtime.VANISHING * (t1 * t1)
+    t2 = t1 - r_elbow
+    A_elbow = np.maximum(t2, 0.0)
+    t3 = l1 - l2
+    t4 = r_elbow - t3
+    C_elbow = np.maximum(t4, 0.0)
+    t5 = A_elbow * C_elbow
     S_elbow = r_elbow + t1
-    t7 = r_elbow + t4
-    B_elbow = np.maximum(t7, 0.0)
-    t8 = S_elbow * B_elbow
-    width_elbow = t6 + t8
-    c_base_elbow = np.where(no_link_elbow, 1.0, -((t6 - t8) / width_elbow))
-    t9 = x_y * c_base_elbow / r_elbow
-    t10 = 2.0 * np.sqrt(A_elbow) * np.sqrt(S_elbow) * np.sqrt(B_elbow)
-    area_elbow = t10 * np.sqrt(C_elbow)
+    t6 = r_elbow + t3
+    B_elbow = np.maximum(t6, 0.0)
+    t7 = S_elbow * B_elbow
+    width_elbow = t5 + t7
+    c_base_elbow = np.where(no_link_elbow, 1.0, -((t5 - t7) / width_elbow))
+    t8 = x_y * c_base_elbow / r_elbow
+    t9 = 2.0 * np.sqrt(A_elbow) * np.sqrt(S_elbow) * np.sqrt(B_elbow)
+    area_elbow = t9 * np.sqrt(C_elbow)
     s_base_elbow = np.where(no_link_elbow, 0.0, area_elbow / width_elbow)
-    t11 = x_x * s_base_elbow / r_elbow
-    t12 = x_x * c_base_elbow / r_elbow
-    t13 = x_y * s_base_elbow / r_elbow
-    t14 = np.arctan2(np.where(folded_elbow, 0.0, t9 - t11), np.where(folded_elbow, 1.0, t12 + t13))
-    t15 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z)
-    t16 = t15 & np.isfinite(x_yaw) & np.isfinite(l1) & np.isfinite(l2)
-    t17 = t16 & np.isfinite(h) & (0.0 <= l1) & (0.0 <= l2)
-    invalid = np.logical_not(t17 & (0.0 <= h))
-    t18 = _runtime.FEASIBILITY * (h / 2.0 + l1 / 2.0 + l2 / 2.0)
-    unreachable = np.logical_not((-t18 <= t3) & (-t18 <= t7) & (-t18 <= t5))
-    t19 = _runtime.poison(invalid | unreachable)
-    t20 = A_elbow * S_elbow
-    t21 = C_elbow * B_elbow
-    sum_elbow = t20 + t21
+    t10 = x_x * s_base_elbow / r_elbow
+    t11 = x_x * c_base_elbow / r_elbow
+    t12 = x_y * s_base_elbow / r_elbow
+    t13 = np.arctan2(np.where(folded_elbow, 0.0, t8 - t10), np.where(folded_elbow, 1.0, t11 + t12))
+    t14 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z)
+    t15 = t14 & np.isfinite(x_yaw) & np.isfinite(l1) & np.isfinite(l2)
+    t16 = t15 & np.isfinite(h) & (0.0 <= l1) & (0.0 <= l2)
+    invalid = np.logical_not(t16 & (0.0 <= h))
+    t17 = -(_runtime.FEASIBILITY * (l1 / 2.0 + l2 / 2.0))
+    unreachable = np.logical_not((t17 <= t2) & (t17 <= t6) & (t17 <= t4))
+    t18 = _runtime.poison(invalid | unreachable)
+    t19 = A_elbow * S_elbow
+    t20 = C_elbow * B_elbow
+    sum_elbow = t19 + t20
     s2 = np.where(no_link_elbow, 0.0, area_elbow / sum_elbow)
-    c2 = np.where(no_link_elbow, 1.0, -((t20 - t21) / sum_elbow))
-    t22 = np.arctan2(s2, c2)
-    t23 = h - x_z + t19
-    t24 = np.arctan2(s_x_yaw, c_x_yaw)
-    t25 = np.arctan2(np.where(folded_elbow, 0.0, t9 + t11), np.where(folded_elbow, 1.0, t12 - t13))
-    t26 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
+    c2 = np.where(no_link_elbow, 1.0, -((t19 - t20) / sum_elbow))
+    t21 = np.arctan2(s2, c2)
+    t22 = h - x_z + t18
+    t23 = np.arctan2(s_x_yaw, c_x_yaw)
+    t24 = np.arctan2(np.where(folded_elbow, 0.0, t8 + t10), np.where(folded_elbow, 1.0, t11 - t12))
+    t25 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
     return (
-        _runtime.wrap(t14) + t19,
-        _runtime.wrap(t22) + t19,
-        t23,
-        _runtime.wrap(t22 - (t24 - t14)) + t19,
-        _runtime.wrap(t25) + t19,
-        _runtime.wrap(-t22) + t19,
-        t23,
-        _runtime.wrap(t25 - (t24 + t22)) + t19,
-        t26,
-        t26,
+        _runtime.wrap(t13) + t18,
+        _runtime.wrap(t21) + t18,
+        t22,
+        _runtime.wrap(t21 - (t23 - t13)) + t18,
+        _runtime.wrap(t24) + t18,
+        _runtime.wrap(-t21) + t18,
+        t22,
+        _runtime.wrap(t24 - (t23 + t21)) + t18,
+        t25,
+        t25,
     )
 
 

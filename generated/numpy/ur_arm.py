@@ -9,7 +9,7 @@
 #   jacobian_body: 34 add, 64 multiply, 5 sincos
 #   determinant: 6 add, 15 multiply, 4 sincos
 #   singularities: 6 add, 11 multiply, 4 sincos
-#   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 231 multiply, 47 sqrt
+#   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 233 multiply, 47 sqrt
 """UR-type arm (three parallel axes).
 
 theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and
@@ -667,7 +667,7 @@ def _ik(
     t60 = _runtime.poison(invalid | unreachable)
     t61 = t14 + t60
     folded_elbow = r_elbow <= t3
-    no_link_elbow = L2 * L3 <= t41
+    no_link_elbow = L2 * L3 <= _runtime.VANISHING * (t1 * t1)
     C_elbow = np.maximum(t58, 0.0)
     A_elbow = np.maximum(t56, 0.0)
     t62 = C_elbow * A_elbow

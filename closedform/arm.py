@@ -47,6 +47,10 @@ class Serial:
     moves: tuple[sp.Matrix, ...]
     middle: sp.Matrix
     """The twists in the frame, somewhere along the chain, where they are shortest."""
+    groups: tuple[Group, ...]
+    """The joints by parallel axes, between the frames ``lead`` and ``last``."""
+    lead: sp.Matrix
+    last: sp.Matrix
 
     @property
     def position(self) -> sp.Matrix:
@@ -59,18 +63,44 @@ class Serial:
         """
         return _determinant(self.middle)
 
-    def export(self, d: Derivation, *, fk: bool = True) -> None:
-        """Record the pose and the Jacobians as proved steps, and export them as functions.
+    def coordinates(self) -> Coordinates | None:
+        """As many task coordinates as joints: of x, y, z and the yaw those that the joints move.
 
-        The ``fk`` of an arm whose task is the whole pose is the pose.
+        None where the whole pose is the task, or where no such choice is plain.
         """
-        q = self.joints
+        n = len(self.joints)
+        moved = [i for i in range(6) if any(e != 0 for e in self.geometric.row(i))]
+        linear = [i for i in moved if i < 3]
+        rows = next((r for r in (moved, linear) if len(r) == n and set(r) <= {0, 1, 2, 5}), None)
+        if rows is None:
+            return None
+        values = [self.position[i] if i < 3 else self._yaw() for i in rows]
+        names = tuple(("x", "y", "z", "roll", "pitch", "yaw")[i] for i in rows)
+        return Coordinates(names, sp.Matrix(values), self.geometric.extract(rows, list(range(n))))
+
+    def _yaw(self) -> sp.Expr:
+        """The angle of the tool about z, for an arm whose joints turn it about z alone."""
+        turns = self.geometric.row(5)
+        home = self.pose[:3, :3].subs(dict.fromkeys(self.joints, 0))
+        return sum(
+            (w * joint for w, joint in zip(turns, self.joints, strict=True)),
+            sp.atan2(home[1, 0], home[0, 0]),
+        )
+
+    def export(self, d: Derivation) -> Any:
+        """Record pose, Jacobians and determinant as proved steps, and export them as functions.
+
+        Returns the forward map that an inverse must solve: the task coordinates in the joints
+        where the arm has as many (see :meth:`coordinates`), else the pose.
+        """
+        q, task = self.joints, self.coordinates()
         d.step(
             "Pose",
             "The product of the motions from link to link, the angles of parallel axes added.",
             {**{f"A_{i}": A for i, A in enumerate(self.moves, 1)}, "T": self.pose},
             equal=[(sp.prod(self.moves), self.pose)],
         )
+        d.function("pose", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
         d.step(
             "Jacobians",
             "The columns are the twists (v; omega) of the joints as they stand: that of a revolute "
@@ -88,60 +118,83 @@ class Serial:
                 )
             ],
         )
-        if fk:
-            d.function("fk", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
-            d.function(
-                "jacobian",
-                "Velocity of the tool over its angular velocity, in base axes, per joint rate.",
-                {"q": q},
-                {"J": self.geometric},
-                notes=("The geometric Jacobian: rows (v; omega), v of the origin of the tool.",),
+        if task is None:
+            self._export_pose_task(d)
+        else:
+            self._export_coordinates(d, task)
+        for name, J, frame in (
+            ("jacobian_space", self.space, "the base frame"),
+            ("jacobian_body", self.body, "its own frame"),
+        ):
+            summary = f"Twist (v; omega) of the tool in {frame} per joint rate."
+            d.function(name, summary, {"q": q}, {"J": J})
+        return self.pose if task is None else task.values
+
+    def _export_pose_task(self, d: Derivation) -> None:
+        q = self.joints
+        if not d.task:
+            d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
+        d.function("fk", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
+        d.function(
+            "jacobian",
+            "Velocity of the tool over its angular velocity, in base axes, per joint rate.",
+            {"q": q},
+            {"J": self.geometric},
+            notes=("The geometric Jacobian: rows (v; omega), v of the origin of the tool.",),
+        )
+        if len(q) == 6:
+            self._export_determinant(d, self.determinant(), ())
+
+    def _export_coordinates(self, d: Derivation, task: Coordinates) -> None:
+        q, values = self.joints, list(task.values)
+        if not d.task:
+            d.task = list(task.names)
+        if "yaw" in task.names:
+            turn = values[-1]
+            d.step(
+                "Task coordinates",
+                "The joints turn the tool about z alone: its yaw is the direction of its x axis.",
+                {r"\psi": turn},
+                equal=[(self.pose[:2, 0], sp.Matrix([sp.cos(turn), sp.sin(turn)]))],
             )
-        d.function("pose", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
-        d.function(
-            "jacobian_space",
-            "Twist (v; omega) of the tool in the base frame per joint rate.",
-            {"q": q},
-            {"J": self.space},
-        )
-        d.function(
-            "jacobian_body",
-            "Twist (v; omega) of the tool in its own frame per joint rate.",
-            {"q": q},
-            {"J": self.body},
-        )
+            values[-1] = sp.atan2(sp.sin(turn), sp.cos(turn))
+        shown = ", ".join(task.names)
+        notes = ("The yaw is reduced to (-pi, pi].",) if "yaw" in task.names else ()
+        d.function("fk", f"Task coordinates ({shown}).", {"q": q}, {"x": values}, notes=notes)
+        d.function("jacobian", f"Derivative of ({shown}) by the joints.", {"q": q}, {"J": task.J})
+        det = _determinant(task.J)
+        check = [
+            (task.values.jacobian(q), task.J),
+            (task.J.det(method="berkowitz"), det),
+        ]
+        self._export_determinant(d, det, check)
 
-    def export_determinant(
-        self, d: Derivation, J: sp.Matrix | None = None, factors: Sequence[sp.Expr] | None = None
-    ) -> sp.Expr:
-        """Record the determinant, of ``J`` or of the six rows, and export it and its factors.
-
-        ``factors`` (by default those that hold a joint) are proved to make up the determinant, up
-        to a factor without joints.
-        """
-        det = self.determinant() if J is None else _determinant(J)
-        found = joint_factors(det, self.joints) if factors is None else list(factors)
-        rest = sp.cancel(det / sp.prod(found))
-        if rest.has(*self.joints):
-            raise ValueError(f"{d.name}: the factors leave {rest} of the determinant {det}")
+    def _export_determinant(
+        self, d: Derivation, det: sp.Expr, equal: Sequence[tuple[Any, Any]]
+    ) -> None:
+        q = self.joints
+        factors = joint_factors(det, q)
         d.step(
             "Determinant and singular set",
             "The arm is singular exactly where a factor that holds a joint vanishes (for links "
             "that have a length): the joints then cannot move the tool in some direction.",
             {r"\det J": det},
-            equal=[(det, rest * sp.prod(found))]
-            + ([] if J is None else [(J.det(method="berkowitz"), det)]),
+            equal=[*equal, (det, sp.cancel(det / sp.prod(factors)) * sp.prod(factors))],
         )
-        d.function("determinant", "Determinant of the Jacobian.", {"q": self.joints}, {"det": det})
-        d.function(
-            "singularities",
-            "The factors of the determinant that hold a joint.",
-            {"q": self.joints},
-            {"factors": found},
-        )
-        if not d.singularities:
-            d.singularities = tuple(f"{f} = 0".replace("**", "^") for f in found)
-        return det
+        d.function("determinant", "Determinant of the Jacobian.", {"q": q}, {"det": det})
+        summary = "The factors of the determinant that hold a joint."
+        d.function("singularities", summary, {"q": q}, {"factors": factors})
+        if len(d.singularities) != len(factors):
+            d.singularities = tuple(f"{f} = 0".replace("**", "^") for f in factors)
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """Task coordinates: their names, their values in the joints, and their derivative."""
+
+    names: tuple[str, ...]
+    values: sp.Matrix
+    J: sp.Matrix
 
 
 def joint_factors(det: sp.Expr, joints: Sequence[sp.Symbol]) -> list[sp.Expr]:
@@ -231,8 +284,8 @@ def from_screws(
     home = sp.Matrix(home)
     frame = _frame_along(directions[0])
     lead = homogeneous(frame, tuple(points[0]))
-    groups: list[_Group] = []
-    current: list[_Row] = []
+    groups: list[Group] = []
+    current: list[Row] = []
     for i, (joint, kind) in enumerate(motions):
         sign = 1 if frame[:, 2] == directions[i] else -1
         last = i == len(motions) - 1
@@ -240,10 +293,10 @@ def from_screws(
         slides = kind == "prismatic"
         turn = sp.S.Zero if slides else sign * joint
         shift = tuple(step + sp.Matrix([0, 0, sign * joint if slides else 0]))
-        current.append(_Row(sign, turn, shift, slides))
+        current.append(Row(sign, turn, shift, slides))
         if last or directions[i + 1] not in (frame[:, 2], -frame[:, 2]):
             after = home[:3, :3] if last else _frame_along(directions[i + 1])
-            groups.append(_Group(tuple(current), frame.T * after))
+            groups.append(Group(tuple(current), frame.T * after))
             frame, current = after, []
     return _assembled(motions, groups, lead, sp.eye(4), (*moves, home))
 
@@ -259,7 +312,7 @@ def _frame_along(w: sp.Matrix) -> sp.Matrix:
 
 def _assembled(
     motions: Sequence[tuple[sp.Symbol, str]],
-    groups: Sequence[_Group],
+    groups: Sequence[Group],
     lead: sp.Matrix,
     last: sp.Matrix,
     moves: tuple[sp.Matrix, ...],
@@ -283,10 +336,13 @@ def _assembled(
         sp.Matrix.hstack(*(_at_tool(k, j, groups, lead, last) for k, j in places)),
         moves,
         middle,
+        tuple(groups),
+        lead,
+        last,
     )
 
 
-class _Row(NamedTuple):
+class Row(NamedTuple):
     """The sign of an axis along z, its turn, the shift to the next axis, and whether it slides."""
 
     sign: int
@@ -296,13 +352,13 @@ class _Row(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Group:
+class Group:
     """Consecutive joints with parallel axes, and the constant rotation that ends them.
 
     What turns in a plane adds up, so no product of two sines of one group ever occurs.
     """
 
-    rows: tuple[_Row, ...]
+    rows: tuple[Row, ...]
     end: sp.Matrix
 
     def angle(self, start: int, stop: int | None = None) -> sp.Expr:
@@ -339,24 +395,24 @@ class _Group:
 
 def _groups(
     rows: Sequence[tuple[sp.Expr, ...]], motions: Sequence[tuple[sp.Symbol, str]]
-) -> list[_Group]:
+) -> list[Group]:
     """The rows of a distal table by parallel axes; a half turn about x mirrors what follows."""
-    groups: list[_Group] = []
-    current: list[_Row] = []
+    groups: list[Group] = []
+    current: list[Row] = []
     sign = 1
     for i, ((a, alpha, offset, theta), (_, kind)) in enumerate(zip(rows, motions, strict=True)):
         shift = (a, sp.S.Zero, sign * offset)
-        current.append(_Row(sign, sign * theta, shift, kind == "prismatic"))
+        current.append(Row(sign, sign * theta, shift, kind == "prismatic"))
         flipped = alpha in (sp.pi, -sp.pi)
         sign = -sign if flipped else sign
         if i == len(rows) - 1 or not (flipped or alpha == 0):
             total = (sp.S.Zero if flipped else alpha) + (sp.pi if sign < 0 else 0)
-            groups.append(_Group(tuple(current), rotation("x", total)))
+            groups.append(Group(tuple(current), rotation("x", total)))
             current, sign = [], 1
     return groups
 
 
-def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[_Group], lead: sp.Matrix) -> sp.Matrix:
+def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[Group], lead: sp.Matrix) -> sp.Matrix:
     """A twist in the frame where the ``groups`` end, in the base frame."""
     for T in [*(group.transform() for group in reversed(groups)), lead]:
         w, v = T[:3, :3] * w, T[:3, :3] * v
@@ -364,7 +420,7 @@ def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[_Group], lead: sp.Matr
     return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
 
 
-def _to_frame(k: int, j: int, groups: Sequence[_Group], cut: int, last: sp.Matrix) -> sp.Matrix:
+def _to_frame(k: int, j: int, groups: Sequence[Group], cut: int, last: sp.Matrix) -> sp.Matrix:
     """The axis ``j`` of group ``k`` where group ``cut`` starts, seen from the frame ``last``."""
     w, v = groups[k].twist_at_end(j)
     for group in groups[k + 1 : cut]:
@@ -376,7 +432,7 @@ def _to_frame(k: int, j: int, groups: Sequence[_Group], cut: int, last: sp.Matri
 
 
 def _at_tool(
-    k: int, j: int, groups: Sequence[_Group], lead: sp.Matrix, last: sp.Matrix
+    k: int, j: int, groups: Sequence[Group], lead: sp.Matrix, last: sp.Matrix
 ) -> sp.Matrix:
     """The velocity that an axis gives to the tool, and the axis, in base axes."""
     tool = last[:3, 3]
@@ -392,7 +448,7 @@ def _at_tool(
     return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
 
 
-def _seen_from(k: int, j: int, groups: Sequence[_Group], cut: int) -> sp.Matrix:
+def _seen_from(k: int, j: int, groups: Sequence[Group], cut: int) -> sp.Matrix:
     """The axis ``j`` of group ``k`` where group ``cut`` starts, before or after it."""
     if k < cut:
         return _to_frame(k, j, groups, cut, sp.eye(4))
@@ -426,4 +482,13 @@ def _polynomial_determinant(J: sp.Matrix) -> sp.Expr:
     return matrix.domain.to_sympy(matrix.charpoly()[-1]) * (-1) ** J.rows
 
 
-__all__ = ["RowError", "Serial", "from_dh", "from_screws", "joint_factors"]
+__all__ = [
+    "Coordinates",
+    "Group",
+    "Row",
+    "RowError",
+    "Serial",
+    "from_dh",
+    "from_screws",
+    "joint_factors",
+]

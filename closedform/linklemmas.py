@@ -42,6 +42,11 @@ class Pair:
         return Pair(-self.s, self.c)
 
 
+def turned(pair: Pair) -> sp.Matrix:
+    """The rotation about z by the angle of a pair."""
+    return sp.Matrix([[pair.c, -pair.s, 0], [pair.s, pair.c, 0], [0, 0, 1]])
+
+
 @dataclass(frozen=True)
 class Applied:
     """A lemma applied: what it hands on, and what the names it made stand for."""
@@ -278,9 +283,11 @@ def zyz(
     p = chain.program
     sigma = chain.sign(name, choice)
     h = p.let(f"h_{name}", sp.sqrt(R[0, 2] ** 2 + R[1, 2] ** 2), nonnegative=True)
-    free = next(a for a in (first, last) if a in chain.joints)
+    free = next((a for a in (first, last) if a in chain.joints), None)
+    if free is None:
+        free = next(j for j in chain.joints if chain.defined[last].has(j))
     aligned = p.vanishes(
-        f"aligned_{name}", h, 4, "the first and the last axis are parallel", free=(free,)
+        f"aligned_{name}", h, 16, "the first and the last axis are parallel", free=(free,)
     )
     raw = Pair(sigma * R[1, 2] / h, sigma * R[0, 2] / h)
     start, unit, near = Pair(sp.S.Zero, sp.S.One), {}, None

@@ -202,7 +202,7 @@ def _follows(link: Link, graph: Graph, where: str) -> None:
     _require(sp.Matrix([graph(e) for e in lemma.equations]), (), place)
 
 
-def _random_posture(graph: Graph, draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, Expr]:
+def _random_posture(draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, Expr]:
     return {
         s: sp.Rational(draw.randint(1, 40), draw.randint(7, 20)) for s in sorted(symbols, key=str)
     }
@@ -215,7 +215,7 @@ def _not_degenerate(link: Link, graph: Graph, where: str) -> None:
         if not (isinstance(statement, Vanishes) and statement.free):
             continue
         value = _without_signs(graph(statement.value))
-        point = _random_posture(graph, draw, list(value.free_symbols))
+        point = _random_posture(draw, list(value.free_symbols))
         (ball,) = Evaluator(list(point), [value])(list(point.values()))
         if ball.contains(0):
             raise ProofError(
@@ -248,33 +248,39 @@ def _determines_target(inverse: Inverse, graph: Graph, where: str) -> None:
         for e in link.lemma.equations
     ]
     equations += [x - value for x, value in required.items()]
-    held = set(columns)
-    free = {s for e in equations for s in e.free_symbols} - held
-    # rational points of the unit circle, so that the rank is that of rational numbers
-    angles = sorted(
-        {s for e in equations for f in e.atoms(sp.sin, sp.cos) for s in f.free_symbols}, key=str
-    )
-    exact: dict[Expr, Expr] = {}
-    for angle in angles:
-        t = sp.Rational(draw.randint(1, 30), draw.randint(31, 60))
-        exact |= {sp.cos(angle): (1 - t**2) / (1 + t**2), sp.sin(angle): 2 * t / (1 + t**2)}
-    point = _random_posture(graph, draw, [s for s in free if s not in angles])
     rows = []
     for e in equations:
-        at = sp.expand(sp.expand_trig(e).xreplace(exact).xreplace(point))
-        try:
-            polynomial = sp.Poly(at, *columns)
-        except sp.PolynomialError as error:
-            raise ProofError(f"{where}: {e} is not linear in the target") from error
-        if polynomial.total_degree() > 1:
+        slopes = [e.diff(x) for x in columns]
+        if any(slope.has(*columns) for slope in slopes):
             raise ProofError(f"{where}: the equation {e} of a lemma is not linear in the target")
-        rows.append([polynomial.coeff_monomial(x) for x in columns])
-    rank = sp.Matrix(rows).rank()
-    if rank < len(columns):
+        rows.append(slopes)
+    entries = [slope for row in rows for slope in row]
+    point = _random_posture(draw, sorted({s for e in entries for s in e.free_symbols}, key=str))
+    balls = Evaluator(list(point), entries)(list(point.values()))
+    n = len(columns)
+    rank = _certain_rank([balls[i : i + n] for i in range(0, len(balls), n)])
+    if rank < n:
         raise ProofError(
-            f"{where}: the lemmas leave {len(columns) - rank} of the {len(columns)} coordinates of "
-            f"the target undetermined: an equation of the forward map is not used"
+            f"{where}: the lemmas leave {n - rank} of the {n} coordinates of the target "
+            f"undetermined: an equation of the forward map is not used"
         )
+
+
+def _certain_rank(rows: list[list[Any]]) -> int:
+    """The rank of a matrix of balls, counting only pivots that certainly differ from zero."""
+    rank = 0
+    for column in range(len(rows[0])):
+        certain = [row for row in rows[rank:] if not row[column].contains(0)]
+        if not certain:
+            continue
+        pivot = max(certain, key=lambda row: abs(float(row[column].mid())))
+        rows = [*rows[:rank], pivot, *(row for row in rows[rank:] if row is not pivot)]
+        rows[rank + 1 :] = [
+            [a - b * (row[column] / pivot[column]) for a, b in zip(row, pivot, strict=True)]
+            for row in rows[rank + 1 :]
+        ]
+        rank += 1
+    return rank
 
 
 def _constant_targets(inverse: Inverse) -> dict[Expr, Expr]:

@@ -2,12 +2,11 @@
 
 import sympy as sp
 from closedform.derivations.papers import TEXTBOOK
-from sympy import atan2, cos, pi, sin
+from sympy import pi
 
 from closedform.arm import from_dh
 from closedform.chain import Chain
 from closedform.derivation import Derivation
-from closedform.frames import jacobian
 from closedform.linklemmas import remainder, slide, two_links
 
 d = Derivation(
@@ -16,7 +15,6 @@ d = Derivation(
     TEXTBOOK,
     "Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a "
     "spindle slides down by d3 and turns by theta4, counter-clockwise seen from below.",
-    task=["x", "y", "z", "yaw"],
 )
 SOURCE = "the size of a common SCARA arm"
 l1 = d.parameter("l1", value=sp.Rational(13, 40), unit="m", meaning="first link", source=SOURCE)
@@ -26,30 +24,9 @@ h = d.parameter(
 )
 theta1, theta2 = d.joint("theta1"), d.joint("theta2")
 d3, theta4 = d.joint("d3", "prismatic"), d.joint("theta4")
-q = d.actuated
 
 arm = from_dh(d, [(l1, 0, h, theta1), (l2, pi, 0, theta2), (0, 0, d3, 0), (0, 0, 0, theta4)])
-arm.export(d, fk=False)
-turn = theta1 + theta2 - theta4
-task = sp.Matrix([*arm.position, turn])
-d.step(
-    "Task coordinates",
-    "The spindle stays vertical, its tool looks down.  The yaw is the direction of its x axis.",
-    {r"\psi": turn},
-    equal=[(arm.pose[:3, 0], sp.Matrix([cos(turn), sin(turn), 0]))],
-)
-d.function(
-    "fk",
-    "Position of the tool and its yaw.",
-    {"q": q},
-    {"x": [*arm.position, atan2(sin(turn), cos(turn))]},
-    notes=("The yaw theta1 + theta2 - theta4 is reduced to (-pi, pi].",),
-)
-J = jacobian(task, q)
-d.function("jacobian", "Derivative of (x, y, z, yaw) by the joints.", {"q": q}, {"J": J})
-arm.export_determinant(d, J)
-
-ik = Chain(d, task, angles=["yaw"])
+ik = Chain(d, arm.export(d), angles=["yaw"])
 x, y, z, yaw = ik.x
 ik.solve(two_links, theta1, theta2, x, y, l1, l2, {+1: "left", -1: "right"}, scale=l1 + l2)
 ik.solve(slide, d3, h - z)

@@ -16,7 +16,6 @@ d = Derivation(
     "theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and "
     "parallel; that of theta5 is normal to them and that of theta6 to the one of theta5.  No three "
     "axes meet in a point, so there is no spherical wrist.",
-    task=[f"T{i}{j}" for i in (1, 2, 3, 4) for j in (1, 2, 3, 4)],
     singularities=("shoulder", "elbow", "wrist"),
 )
 
@@ -45,10 +44,7 @@ arm = from_dh(
         (0, 0, d6, theta6),
     ],
 )
-arm.export(d)
-arm.export_determinant(d)
-
-ik = Chain(d, arm.pose)
+ik = Chain(d, arm.export(d))
 wrist = ik.vector("w", ik.p - d6 * ik.R[:, 2])
 shoulder = ik.solve(turn, theta1, wrist[0], -wrist[1], d4, {+1: "left", -1: "right"})
 d.step(

@@ -111,7 +111,7 @@ def test_ur_loses_no_pose_near_its_singular_sets(backend: str, small: float) -> 
         assert np.isin(status, (OK, SINGULAR)).any(axis=-1).all(), (joints, values)
         assert np.nanmax(np.abs(ur.fk(q_all) - T[:, None])) < 1e-12 * size
         if joints == (4,) and small == 0.0 and values[0] != np.pi / 2:
-            assert (status == SINGULAR).any(axis=-1).mean() > 0.99
+            assert (status == SINGULAR).any(axis=-1).mean() > 0.95
 
 
 def test_ur_at_the_shoulder_singularity(backend: str) -> None:

@@ -120,7 +120,8 @@ class Chain:
     def solve(self, lemma: Any, *arguments: Any, **options: Any) -> Any:
         """Apply a lemma of :mod:`closedform.linklemmas`; returns what it hands on."""
         start = len(self.program.body)
-        applied: Applied = lemma(self, *arguments, **options)
+        exact = [sp.Integer(a) if type(a) is int else a for a in arguments]
+        applied: Applied = lemma(self, *exact, **options)
         body: tuple[Statement, ...] = tuple(self.program.body[start:])
         for unknown in applied.lemma.solution:
             self._check_unknown(unknown, applied.lemma)

@@ -142,15 +142,20 @@ class _Maker:
             vectors.append(sum(shifts, sp.zeros(2, 1)))
         return vectors
 
-    def _two_links(self, joints: Sequence[Any], vectors: Sequence[Any], x: str, y: str) -> None:
-        """Joints, with their signs, and link vectors; the names of what is to be reached."""
+    def _two_links(
+        self, joints: Sequence[Any], vectors: Sequence[Any], x: str, y: str, alone: bool = False
+    ) -> None:
+        """Joints, with their signs, and link vectors; the names of what is to be reached.
+
+        Where this is a target as it is, the links are ``alone`` the scale of its rounding.
+        """
         (first, second), (u, v) = joints, vectors
         lengths = [_length(w) for w in (u, v)]
         self._require(0 not in lengths, "a link of the plane arm has no length")
         at = [sp.atan2(w[1], w[0]) for w in (u, v)]
         a = self.angle(first + at[0])
         b = self.angle(second + at[1] - at[0])
-        more = "" if self.arm.coordinates() is None else f", scale={source(sum(lengths))}"
+        more = f", scale={source(sum(lengths))}" if (x, y) == ("x", "y") and alone else ""
         names = []
         for i, value in enumerate(lengths, 1):
             if not value.is_Symbol:
@@ -177,7 +182,7 @@ class _Maker:
         vectors = self._links(group, turns)
         self._tool(group, vectors)
         self.add("x, y = ik.x[0], ik.x[1]")
-        self._two_links([group.rows[i].turn for i in turns], vectors, "x", "y")
+        self._two_links([group.rows[i].turn for i in turns], vectors, "x", "y", alone=True)
         return "planar arm of two links"
 
     def _plain_lead(self) -> bool:
@@ -210,7 +215,7 @@ class _Maker:
             self.add(f"wx = ik.let('wx', {source(x_ - carried[0])})")
             self.add(f"wy = ik.let('wy', {source(y_ - carried[1])})")
             x, y = "wx", "wy"
-        self._two_links(joints[:2], vectors[:2], x, y)
+        self._two_links(joints[:2], vectors[:2], x, y, alone=x == "x")
         for i in slides:
             symbol = _symbol(self.arm, rows, i)
             (value,) = sp.solve(self.arm.position[2] - sp.Symbol("z", real=True), symbol)

@@ -62,12 +62,12 @@ def sine_cosine_pair(
     scale: sp.Expr,
     *,
     suffix: str = "",
-) -> tuple[Lemma, Pair, sp.Expr]:
+) -> tuple[Lemma, Pair, sp.Expr, sp.Symbol]:
     """``a sin x + b cos x = c`` as in :func:`~closedform.lemmas.sine_cosine`, by pairs.
 
     Also returns ``a cos x - b sin x``, the other coordinate of the vector that x turns: it is
     ``-sigma`` times the root of ``(h - c)(h + c)``.  Where ``a = b = c = 0`` the joint x is free;
-    the convention is 0, and the flag is ``vertical``.
+    the convention is 0, and the flag is returned as well.
     """
     h = program.let(f"amplitude{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
     below = program.bound(f"below{suffix}", h - c, scale, "the amplitude is not smaller than c")
@@ -86,7 +86,7 @@ def sine_cosine_pair(
         {x: pair.angle},
         2,
     )
-    return lemma, pair, -sigma * root
+    return lemma, pair, -sigma * root, flag
 
 
 def triangle_pairs(

@@ -1,4 +1,4 @@
-"""Serial arms, link by link: pose, Jacobians, and arms that end in a spherical wrist.
+"""Serial arms, link by link: the pose and the Jacobians, derived, proved and exported.
 
 A link is a 4x4 transform of one joint, or of several with parallel axes, multiplied by
 :func:`closedform.frames.chain` so that their angles add.  Every product is named entry by entry in
@@ -7,26 +7,17 @@ a :class:`~closedform.functions.Program`, so that no chain is ever written out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import reduce
 
 import sympy as sp
 
-from closedform.derivation import Continuum, Inverse, Stage
+from closedform.derivation import Derivation
 from closedform.frames import hat, inverse, simplest, twist_of, vee
 from closedform.functions import Program, real
-from closedform.lemmas import Lemma, zyz_angles
-from closedform.pairs import Pair
-from closedform.solutions import rotation_parametrisation
 
 Links = Sequence[sp.Matrix]
 Joints = Sequence[sp.Symbol]
-
-_ROUNDINGS = 16
-"""How much rounding an arm puts on the rotation it leaves to its wrist, in units of that of the
-target.  A wrist within it counts as aligned, which turns the hand by 3e-14 at most; 98 of 100
-random postures whose wrist is aligned exactly are seen as such, of the others the angles that come
-back are right as well."""
 
 
 def product(links: Links) -> sp.Matrix:
@@ -125,63 +116,51 @@ def given_transform(program: Program) -> sp.Matrix:
     return T
 
 
-def wrist_angles(
-    program: Program,
-    T: sp.Matrix,
-    turned: Sequence[tuple[sp.Matrix, Mapping[sp.Expr, Pair]]],
-    joints: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
-    sigma: sp.Symbol,
-    turn: int,
-) -> Lemma:
-    """The spherical wrist that turns the hand from where the arm has left it into the pose T.
-
-    ``turned`` lists the links of the arm with the pairs of their angles.  The wrist is
-    ``Rz Ry(turn * middle) Rz``: a twist of +90 degrees before the middle joint makes ``turn`` -1.
-    """
-    R = T[:3, :3]
-    for k, (A, pairs) in enumerate(turned, 1):
-        known = {f: v for angle, pair in pairs.items() for f, v in pair.instead_of(angle).items()}
-        R = program.matrix(f"R{k}", A[:3, :3].xreplace(known).T * R)
-    return zyz_angles(program, R, *joints, sigma, turn=turn, scale=_ROUNDINGS)
-
-
-def wrist_partitioned(
-    function: str,
-    T: sp.Matrix,
-    arm: Links,
-    wrist: Links,
-    q: Joints,
-    pairs: Mapping[sp.Expr, Pair],
-    continua: Sequence[Continuum] = (),
-) -> Inverse:
-    """What the inverse of an arm with a spherical wrist must satisfy: position, then rotation.
-
-    The wrist has its centre at the end of ``arm`` and no offset.  ``pairs`` are handed on from the
-    position to the rotation.  ``continua`` of the wrist may be made by :func:`aligned`.
-    """
-    forward = product([*arm, *wrist])
-    R = product(arm)[:3, :3]
-    place = {e: k for k, e in enumerate(T)}
-    rotation = [place[e] for e in T[:3, :3]]
-    position = [k for k in range(16) if k not in rotation]
-    bottom = dict(zip(T[3, :], (0, 0, 0, 1), strict=True))
-    given = dict(zip(T[:3, :3], R * rotation_parametrisation(), strict=True))
-    moved = [x for x in q if any(A.has(x) for A in arm)]
-    carried = {v: f for angle, pair in pairs.items() for f, v in pair.instead_of(angle).items()}
-    return Inverse(
-        function,
-        tuple(q),
-        tuple(T),
-        tuple(forward),
-        tuple(continua),
-        stages=(
-            Stage(tuple(moved), tuple(position), {k: sp.sympify(v) for k, v in bottom.items()}),
-            Stage(
-                tuple(x for x in q if x not in moved),
-                tuple(rotation),
-                given,
-                sp.Matrix(sp.kronecker_product(R.T, sp.eye(3))),
-                carried,
-            ),
-        ),
+def export_pose(d: Derivation, links: Links, reason: str) -> sp.Matrix:
+    """The step and the functions ``fk`` and ``pose`` of an arm; returns the pose, written out."""
+    program = Program()
+    named = named_pose(program, links)
+    pose = product(links)
+    d.step(
+        "Pose",
+        f"{reason}  The pose is the product of the transforms of the links.",
+        {f"T_{k}": A for k, A in enumerate(links, 1)},
+        equal=[(pose, program.explicit(named))],
     )
+    inputs = {"q": d.actuated}
+    d.function("fk", "Pose of the hand in the base frame.", inputs, {"T": named}, program=program)
+    d.function("pose", "The same as fk.", inputs, {"T": named}, program=program)
+    return pose
+
+
+def export_jacobians(d: Derivation, links: Links) -> sp.Matrix:
+    """The step and the functions of the Jacobians of an arm; returns the geometric one."""
+    q, pose = d.actuated, product(links)
+    programs = {name: Program() for name in ("jacobian", "jacobian_space", "jacobian_body")}
+    makers = (geometric_jacobian, space_jacobian, body_jacobian)
+    named = [make(p, links, q) for make, p in zip(makers, programs.values(), strict=True)]
+    J, space, body = (p.explicit(m) for p, m in zip(programs.values(), named, strict=True))
+    R, v, w = pose[:3, :3], J[:3, :], J[3:, :]
+    rates = [vee(R.diff(x) * R.T) for x in q]
+    d.step(
+        "Jacobians",
+        "The geometric Jacobian is the velocity of the origin of the hand frame over the angular "
+        "velocity, in the axes of the base.  The spatial and the body Jacobian are the twists "
+        "(v; omega) of the hand frame in the base frame and in its own.",
+        {"v": v, r"\omega": w},
+        equal=[
+            (v, sp.Matrix(pose[:3, 3]).jacobian(list(q))),
+            (w, sp.Matrix.hstack(*rates)),
+            (space, sp.Matrix.vstack(v + hat(pose[:3, 3]) * w, w)),
+            (sp.Matrix.vstack(R * body[:3, :], R * body[3:, :]), J),
+        ],
+    )
+    summaries = (
+        "Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.",
+        "Twist (v; omega) of the hand in the base frame per joint rate.",
+        "Twist (v; omega) of the hand in its own frame per joint rate.",
+    )
+    for (name, program), matrix, summary in zip(programs.items(), named, summaries, strict=True):
+        notes = ("The geometric Jacobian, in the order (v; omega).",) if name == "jacobian" else ()
+        d.function(name, summary, {"q": q}, {"J": matrix}, program=program, notes=notes)
+    return J

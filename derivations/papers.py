@@ -35,3 +35,10 @@ PUMA_TEXTBOOKS = Paper(
     "Toolbox; Spong, Hutchinson, Vidyasagar: Robot Modeling and Control; Paul: Robot Manipulators; "
     "Lee, Ziegler: Geometric Approach in Solving Inverse Kinematics of PUMA Robots (1984)",
 )
+
+STANFORD_TEXTBOOKS = Paper(
+    "stanford-textbooks",
+    "The Stanford arm in the textbooks",
+    ("R. P. Paul", "M. W. Spong", "S. Hutchinson", "M. Vidyasagar"),
+    "Paul: Robot Manipulators; Spong, Hutchinson, Vidyasagar: Robot Modeling and Control",
+)

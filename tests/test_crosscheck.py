@@ -27,6 +27,7 @@ ROBOTS = (
     "rpr_planar",
     "scara",
     "spherical_wrist",
+    "stanford_arm",
     "ur_arm",
 )
 GENERATED = Path(__file__).parent.parent / "generated"

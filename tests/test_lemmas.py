@@ -17,6 +17,7 @@ from closedform.lemmas import (
     zyz_angles,
 )
 from closedform.loops import eliminate, velocity_matrices
+from closedform.pairs import sine_cosine_pair, triangle_pairs
 from closedform.prove import ProofError, prove_lemma
 from closedform.solutions import rotation_parametrisation
 from closedform.volumes import lens
@@ -37,6 +38,15 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         first, second = (real(n, positive=True) for n in ("l1", "l2"))
         reach = real("r", positive=True)
         return two_link_triangle(program, first, second, reach, x, y, sigma), program, {}
+    if name == "sine and cosine by pairs":
+        return sine_cosine_pair(program, x, a, b, c, sigma, a + b)[0], program, {}
+    if name == "triangle by pairs":
+        first, second = (real(n, positive=True) for n in ("l1", "l2"))
+        reach = real("r", positive=True)
+        lemma, *_ = triangle_pairs(
+            program, first, second, reach, x, y, sigma, first + second, free=(x, y)
+        )
+        return lemma, program, {}
     if name == "parallelogram":
         crank, coupler = (real(n, positive=True) for n in ("l", "a"))
         return parallelogram(crank, coupler, z, real("gamma"), x, y, sigma), program, {}
@@ -47,7 +57,8 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         return lemma, program, {}
     R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
     given = dict(zip(R, rotation_parametrisation(), strict=True))
-    return zyz_angles(program, R, x, y, z, sigma), program, given
+    turn = -1 if name == "zyz, middle axis reversed" else 1
+    return zyz_angles(program, R, x, y, z, sigma, turn=turn), program, given
 
 
 NAMES = [
@@ -55,7 +66,10 @@ NAMES = [
     "sine and cosine",
     "triangle",
     "parallelogram",
+    "sine and cosine by pairs",
+    "triangle by pairs",
     "zyz",
+    "zyz, middle axis reversed",
     "circles",
     "circles of one size",
 ]

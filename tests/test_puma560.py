@@ -2,12 +2,13 @@
 
 import importlib
 
+import arms
 import numpy as np
 import pytest
+from arms import INVALID, OK, SINGULAR, UNREACHABLE, differences, link, twists, wrapped
 
 from closedform.lower.program import lower
 
-OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 P = (0.4318, 0.0203, 0.15005, 0.4318)
 CENTRED = (0.4318, 0.0203, 0.0, 0.4318)
 EQUAL = (0.5, 0.3, 0.2, 0.4)
@@ -25,15 +26,6 @@ def q() -> np.ndarray:
     return np.random.default_rng(0).uniform(-np.pi, np.pi, (2000, 6))
 
 
-def link(a: float, alpha: float, d: float, theta: np.ndarray) -> np.ndarray:
-    c, s, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
-    T = np.zeros((*np.shape(theta), 4, 4))
-    T[..., 0, 0], T[..., 0, 1], T[..., 0, 2], T[..., 0, 3] = c, -s * ca, s * sa, a * c
-    T[..., 1, 0], T[..., 1, 1], T[..., 1, 2], T[..., 1, 3] = s, c * ca, -c * sa, a * s
-    T[..., 2, 1], T[..., 2, 2], T[..., 2, 3], T[..., 3, 3] = sa, ca, d, 1
-    return T
-
-
 def by_table(q: np.ndarray, params=P) -> np.ndarray:
     """The product of the six Denavit-Hartenberg matrices."""
     a2, a3, d3, d4 = params
@@ -45,10 +37,6 @@ def by_table(q: np.ndarray, params=P) -> np.ndarray:
     return T
 
 
-def wrapped(angle: np.ndarray) -> np.ndarray:
-    return np.angle(np.exp(1j * angle))
-
-
 def gaps(solutions: np.ndarray, q: np.ndarray) -> np.ndarray:
     """The distance of each branch from a posture, infinite where there is no branch."""
     difference = np.abs(wrapped(solutions - q[..., None, :])).max(axis=-1)
@@ -57,15 +45,7 @@ def gaps(solutions: np.ndarray, q: np.ndarray) -> np.ndarray:
 
 def misses(solutions, T: np.ndarray, params=P) -> tuple[float, float]:
     """The largest errors of all branches that were found: metres and radians."""
-    found = np.isin(solutions.status, (OK, SINGULAR))
-    reached = by_table(np.where(found[..., None], solutions.q, 0.0), params)
-    away = np.linalg.norm((reached - T[..., None, :, :])[..., :3, 3], axis=-1)
-    turned = reached[..., :3, :3].swapaxes(-1, -2) @ T[..., None, :3, :3]
-    skew = (turned - turned.swapaxes(-1, -2)) / 2
-    sine = np.linalg.norm(skew[..., [2, 0, 1], [1, 2, 0]], axis=-1)
-    trace = np.trace(turned, axis1=-2, axis2=-1)
-    angle = np.arctan2(sine, (trace - 1) / 2)
-    return float(away[found].max(initial=0)), float(angle[found].max(initial=0))
+    return arms.misses(by_table(np.nan_to_num(solutions.q), params), T, solutions.status)
 
 
 def test_names_and_defaults(robot) -> None:
@@ -94,23 +74,12 @@ def test_forward_by_the_table(robot, q, params) -> None:
 
 
 def test_jacobians_by_differences(robot, q) -> None:
-    h, T = 1e-6, by_table(q)
-    rates = [(by_table(q + s) - by_table(q - s)) / (2 * h) for s in h * np.eye(6)]
-    inverse = np.linalg.inv(T)
-
-    def twists(matrices) -> np.ndarray:
-        rows = [np.stack([V[..., 0, 3], V[..., 1, 3], V[..., 2, 3]], -1) for V in matrices]
-        turns = [np.stack([V[..., 2, 1], V[..., 0, 2], V[..., 1, 0]], -1) for V in matrices]
-        return np.concatenate([np.stack(rows, -1), np.stack(turns, -1)], axis=-2)
-
-    space = twists([dT @ inverse for dT in rates])
+    rates, inverse = differences(by_table, q), np.linalg.inv(by_table(q))
+    space, body = twists([r @ inverse for r in rates]), twists([inverse @ r for r in rates])
     np.testing.assert_allclose(robot.jacobian_space(q), space, atol=1e-8)
-    np.testing.assert_allclose(
-        robot.jacobian_body(q), twists([inverse @ r for r in rates]), atol=1e-8
-    )
+    np.testing.assert_allclose(robot.jacobian_body(q), body, atol=1e-8)
     J = robot.jacobian(q)
-    linear = np.stack([dT[:, :3, 3] for dT in rates], axis=-1)
-    np.testing.assert_allclose(J[:, :3], linear, atol=1e-8)
+    np.testing.assert_allclose(J[:, :3], np.stack([r[:, :3, 3] for r in rates], -1), atol=1e-8)
     np.testing.assert_allclose(J[:, 3:], space[:, 3:], atol=1e-8)
 
 

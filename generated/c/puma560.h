@@ -60,10 +60,10 @@ void puma560_pose_batch(size_t n, const puma560_params *params, const real_t
     *q, size_t q_stride, real_t *T, size_t T_stride);
 
 /*
- * Velocity of the centre of the wrist over the angular velocity, in base axes, per joint rate.
+ * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
  * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
  * Returns J: shape (..., 6, 6).
- * The geometric Jacobian: rows (v; omega), v of the origin of the hand frame.
+ * The geometric Jacobian, in the order (v; omega).
  */
 void puma560_jacobian(const puma560_params *params, const real_t q[6],
     real_t J[36]);
@@ -101,7 +101,7 @@ void puma560_determinant_batch(size_t n, const puma560_params *params, const rea
     *q, size_t q_stride, real_t *det, size_t det_stride);
 
 /*
- * The factors of the shoulder, the elbow and the wrist.
+ * The factors whose zeros are the singular set: shoulder, elbow, wrist.
  * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
  * Returns factors: shape (..., 3).
  */
@@ -112,20 +112,22 @@ void puma560_singularities_batch(size_t n, const puma560_params *params, const r
     factors_stride);
 
 /*
- * All eight configurations of a pose.
+ * All 8 configurations of a pose.
  * T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42,
  *     T43, T44.
  * Returns q: shape (..., 8, 6).
  * Branches: right_up_noflip, right_up_flip, right_down_noflip, right_down_flip, left_up_noflip,
  *     left_up_flip, left_down_noflip, left_down_flip.
  * right: X >= 0, the arm faces the wrist; left: X <= 0.  up: the elbow is above the line from
- *     the shoulder to the wrist; down: below.  noflip: sin(theta5) >= 0; flip: <= 0.
- * SINGULAR: the wrist is aligned, sin(theta5) = 0, theta4 = 0 is returned; the centre of the
- *     wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal links folded with the
- *     wrist on the shoulder, theta2 = 0 is returned; or a link without length, theta3 is free.
- * INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+ *     the shoulder to the wrist; down: below.
+ * SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
+ *     links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
+ *     length, theta3 is free.
  * Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
  *     digits, the pose does not.
+ * noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+ * SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
+ * INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  */
 void puma560_ik(const puma560_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8]);

@@ -1,0 +1,41 @@
+"""Serial arms in plain numbers, for the tests of arms that have a pose as their task."""
+
+import numpy as np
+
+OK, UNREACHABLE, SINGULAR, INVALID = range(4)
+
+
+def link(a: float, alpha: float, d: float, theta: np.ndarray) -> np.ndarray:
+    c, s, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+    T = np.zeros((*np.shape(theta), 4, 4))
+    T[..., 0, 0], T[..., 0, 1], T[..., 0, 2], T[..., 0, 3] = c, -s * ca, s * sa, a * c
+    T[..., 1, 0], T[..., 1, 1], T[..., 1, 2], T[..., 1, 3] = s, c * ca, -c * sa, a * s
+    T[..., 2, 1], T[..., 2, 2], T[..., 2, 3], T[..., 3, 3] = sa, ca, d, 1
+    return T
+
+
+def wrapped(angle: np.ndarray) -> np.ndarray:
+    return np.angle(np.exp(1j * angle))
+
+
+def misses(reached: np.ndarray, T: np.ndarray, status: np.ndarray) -> tuple[float, float]:
+    """The largest errors of all branches that were found: metres and radians."""
+    found = np.isin(status, (OK, SINGULAR))
+    away = np.linalg.norm((reached - T[..., None, :, :])[..., :3, 3], axis=-1)
+    turned = reached[..., :3, :3].swapaxes(-1, -2) @ T[..., None, :3, :3]
+    skew = (turned - turned.swapaxes(-1, -2)) / 2
+    sine = np.linalg.norm(skew[..., [2, 0, 1], [1, 2, 0]], axis=-1)
+    trace = np.trace(turned, axis1=-2, axis2=-1)
+    angle = np.arctan2(sine, (trace - 1) / 2)
+    return float(away[found].max(initial=0)), float(angle[found].max(initial=0))
+
+
+def differences(f, q: np.ndarray, h: float = 1e-6) -> list[np.ndarray]:
+    """The derivative of a pose by each joint, by central differences."""
+    return [(f(q + s) - f(q - s)) / (2 * h) for s in h * np.eye(q.shape[-1])]
+
+
+def twists(matrices: list[np.ndarray]) -> np.ndarray:
+    """Columns (v; omega) of matrices of se(3)."""
+    rows = [(0, 3), (1, 3), (2, 3), (2, 1), (0, 2), (1, 0)]
+    return np.stack([np.stack([V[..., i, j] for i, j in rows], -1) for V in matrices], -1)

@@ -1,0 +1,140 @@
+"""The Stanford arm by other routes: its table in numbers, differences, Newton, singular poses."""
+
+import importlib
+
+import arms
+import numpy as np
+import pytest
+from arms import INVALID, OK, SINGULAR, UNREACHABLE, differences, link, twists, wrapped
+
+D2 = 0.154
+EPSILONS = (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3)
+
+
+@pytest.fixture(params=["numpy", "c"])
+def robot(request: pytest.FixtureRequest):
+    return importlib.import_module(f"closedform.generated.{request.param}.stanford_arm")
+
+
+@pytest.fixture
+def q() -> np.ndarray:
+    return postures(2000)
+
+
+def postures(n: int, seed: int = 0) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-np.pi, np.pi, (n, 6))
+    q[:, 2] = rng.uniform(-1, 1, n)
+    return q
+
+
+def by_table(q: np.ndarray, d2: float = D2) -> np.ndarray:
+    """The product of the six Denavit-Hartenberg matrices."""
+    h, zero = np.pi / 2, np.zeros(q.shape[:-1])
+    rows = [(-h, zero, 0), (h, zero + d2, 1), (0, q[..., 2], None)]
+    rows += [(-h, zero, 3), (h, zero, 4), (0, zero, 5)]
+    T = np.eye(4)
+    for alpha, d, joint in rows:
+        T = T @ link(0, alpha, d, zero if joint is None else q[..., joint])
+    return T
+
+
+def distances(found: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Of each branch from a posture, the largest difference of a joint."""
+    difference = found - q[:, None]
+    turns = wrapped(difference)
+    turns[..., 2] = difference[..., 2]
+    return np.abs(turns).max(axis=-1)
+
+
+def misses(solutions, T: np.ndarray, d2: float = D2) -> tuple[float, float]:
+    return arms.misses(by_table(np.nan_to_num(solutions.q), d2), T, solutions.status)
+
+
+def test_forward_and_names(robot, q) -> None:
+    for d2 in (D2, 0.0, -0.3):
+        np.testing.assert_allclose(robot.fk(q, (d2,)), by_table(q, d2), atol=2e-15)
+    np.testing.assert_array_equal(robot.pose(q), robot.fk(q))
+    assert robot.Parameters() == pytest.approx((D2,), abs=0)
+    assert robot.JOINTS[2] == "d3" and len(robot.BRANCHES) == 8
+    assert robot.BRANCHES[0] == "right_out_noflip" and robot.BRANCHES[-1] == "left_back_flip"
+
+
+def test_jacobians_by_differences(robot, q) -> None:
+    rates, inverse = differences(by_table, q), np.linalg.inv(by_table(q))
+    space, body = twists([r @ inverse for r in rates]), twists([inverse @ r for r in rates])
+    np.testing.assert_allclose(robot.jacobian_space(q), space, atol=1e-8)
+    np.testing.assert_allclose(robot.jacobian_body(q), body, atol=1e-8)
+    J = robot.jacobian(q)
+    np.testing.assert_allclose(J[:, :3], np.stack([r[:, :3, 3] for r in rates], -1), atol=1e-8)
+    np.testing.assert_allclose(J[:, 3:], space[:, 3:], atol=1e-8)
+    det = np.linalg.det(J)
+    np.testing.assert_allclose(robot.determinant(q), det, atol=1e-14)
+    shoulder, boom, wrist = robot.singularities(q).T
+    np.testing.assert_allclose(np.abs(shoulder * boom**2 * wrist), np.abs(det), atol=1e-14)
+
+
+def test_no_branch_is_missing(robot) -> None:
+    q = postures(100_000, 1)
+    T = by_table(q)
+    solutions = robot.ik(T)
+    assert (solutions.status == OK).all()
+    assert max(misses(solutions, T)) < 1e-13
+    distance, det = distances(solutions.q, q), np.abs(robot.determinant(q))
+    assert (distance.min(axis=1) * det).max() < 1e-11
+    c1, s1 = np.cos(solutions.q[..., 0]), np.sin(solutions.q[..., 0])
+    ahead = T[:, None, 0, 3] * c1 + T[:, None, 1, 3] * s1
+    for branch, name in enumerate(robot.BRANCHES):
+        shoulder, boom, flip = name.split("_")
+        assert (ahead[:, branch] * {"right": 1, "left": -1}[shoulder] >= 0).all()
+        assert (solutions.q[:, branch, 2] * {"out": 1, "back": -1}[boom] >= 0).all()
+        assert (np.sin(solutions.q[:, branch, 4]) * {"noflip": 1, "flip": -1}[flip] >= 0).all()
+
+
+def test_newton_finds_the_same_eight_and_no_others(robot) -> None:
+    for target in by_table(postures(5, 2)):
+        q = postures(500, 3)
+        for _ in range(60):
+            error = (by_table(q) - target)[:, :3].reshape(-1, 12)
+            J = np.stack([r[:, :3] for r in differences(by_table, q)], -1).reshape(-1, 12, 6)
+            step = (np.linalg.pinv(J) @ error[..., None])[..., 0]
+            size = np.linalg.norm(step, axis=-1, keepdims=True)
+            q = q - step * np.minimum(1, 0.7 / np.maximum(size, 1e-300))
+        q = q[np.abs(by_table(q) - target).max(axis=(-1, -2)) < 1e-10]
+        distance = distances(np.broadcast_to(robot.ik(target).q, (len(q), 8, 6)), q)
+        assert distance.min(axis=1).max() < 1e-7
+        assert set(distance.argmin(axis=1)) == set(range(8))
+
+
+@pytest.mark.parametrize("epsilon", EPSILONS)
+@pytest.mark.parametrize("d2", [D2, 0.0])
+@pytest.mark.parametrize("kind", ["wrist", "shoulder", "boom", "shoulder wrist", "boom wrist"])
+def test_near_and_on_singularities(robot, kind: str, d2: float, epsilon: float) -> None:
+    q, rng = postures(500, 4), np.random.default_rng(5)
+    for joint, name in ((1, "shoulder"), (2, "boom"), (4, "wrist")):
+        if name in kind:
+            corner = 0 if name == "boom" else rng.choice([0, np.pi], 500)
+            q[:, joint] = corner + epsilon * rng.choice([-1, 1], 500)
+    T = by_table(q, d2)
+    solutions = robot.ik(T, (d2,))
+    assert np.isin(solutions.status, (OK, SINGULAR)).all()
+    assert max(misses(solutions, T, d2)) < 1e-12
+
+
+def test_statuses(robot, q) -> None:
+    T = by_table(q, 0.0)
+    T[:, :2, 3] = 0
+    on_axis = robot.ik(T, (0.0,))
+    assert (on_axis.status == SINGULAR).all() and (on_axis.q[..., 0] == 0).all()
+    assert max(misses(on_axis, T, 0.0)) < 1e-13
+    assert (robot.ik(T).status == UNREACHABLE).all() and np.isnan(robot.ik(T).q).all()
+    T[:, 2, 3] = 0
+    drawn_in = robot.ik(T, (0.0,))
+    assert (drawn_in.status == SINGULAR).all() and (drawn_in.q[..., :3] == 0).all()
+    pose = by_table(q[0])
+    bad = [pose @ np.diag([1, 1, -1, 1]), 1.01 * pose, pose * np.nan]
+    for i in range(4):
+        bad += [np.where(np.arange(16).reshape(4, 4) == 5 * i, np.inf, pose)]
+    assert (robot.ik(np.array(bad)).status == INVALID).all()
+    assert (robot.ik(pose, (np.nan,)).status == INVALID).all()
+    assert robot.ik(np.empty((0, 4, 4))).q.shape == (0, 8, 6)

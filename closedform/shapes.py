@@ -8,8 +8,10 @@ import sympy as sp
 
 from closedform.tower import shortened
 
-LINEAR = ("a sin x + b cos x = c", "atan2 of a linear pair")
-"""Lemmas for an equation that is linear in the sine and the cosine of the unknown."""
+LINEAR = "a sin x + b cos x = c"
+"""The lemma for an equation that is linear in the sine and the cosine of the unknown."""
+PAIR = "atan2 of a linear pair"
+"""The lemma that reads a direction; what it is read from may turn with other joints."""
 
 
 class ShapeError(ValueError):
@@ -18,14 +20,17 @@ class ShapeError(ValueError):
 
 def require_shape(lemma: str, equation: Any, unknown: sp.Symbol) -> None:
     """Raise :class:`ShapeError` if ``equation = 0`` is nothing that the lemma solves."""
-    if lemma in LINEAR:
-        coefficients(equation, unknown, lemma)
+    if lemma == LINEAR:
+        coefficients(equation, unknown)
+    elif lemma == PAIR and not equation.has(unknown):
+        raise ShapeError(
+            f"the lemma {lemma!r} for {unknown} needs an equation in sin({unknown}) and "
+            f"cos({unknown}); 0 = {shortened(equation)} does not hold {unknown} at all"
+        )
 
 
-def coefficients(
-    equation: Any, x: sp.Symbol, lemma: str = LINEAR[0]
-) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """``a, b, c`` of an equation ``a sin x + b cos x - c = 0``, for the lemma of this name.
+def coefficients(equation: Any, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """``a, b, c`` of an equation ``a sin x + b cos x - c = 0``.
 
     >>> l, y = sp.symbols("l y")
     >>> coefficients(2 * l * sp.sin(x := sp.Symbol("x")) - y, x)
@@ -34,7 +39,7 @@ def coefficients(
     s, c = sp.Dummy("s"), sp.Dummy("c")
     expanded = sp.expand(sp.expand_trig(sp.expand(equation)))
     renamed = expanded.xreplace({sp.sin(x): s, sp.cos(x): c})
-    needs = f"the lemma {lemma!r} for {x} needs an equation that is linear in sin({x}), cos({x})"
+    needs = f"the lemma {LINEAR!r} for {x} needs an equation that is linear in sin({x}), cos({x})"
     if renamed.has(x):
         raise ShapeError(f"{needs}; in 0 = {shortened(equation)} the unknown stands elsewhere")
     try:

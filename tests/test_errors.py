@@ -9,7 +9,7 @@ from closedform.arm import RowError, from_dh, from_screws
 from closedform.chain import Chain
 from closedform.derivation import Derivation, Inverse, Paper, Solved
 from closedform.functions import Program, branches, real
-from closedform.lemmas import linear_pair, two_link_triangle
+from closedform.lemmas import linear_pair, sine_cosine, two_link_triangle
 from closedform.linklemmas import remainder, slide, turn, two_links, zyz
 from closedform.prove import ProofError, prove
 from closedform.shapes import ShapeError, coefficients
@@ -189,19 +189,21 @@ def test_a_lemma_on_an_equation_of_another_shape() -> None:
     d = derivation()
     by_hand(d)
     x, y = real("x"), real("y")
+    lemma = sine_cosine(Program(), THETA1, x, y, x, real("sigma"))
     for equation, message in (
         (sp.sin(THETA1) ** 2 - y, r"linear in sin\(theta1\), cos\(theta1\).* has the term sin\(th"),
         (THETA1 - y, "the unknown stands elsewhere"),
         (x - y, "does not hold theta1 at all"),
         (sp.sin(2 * THETA1) - y, r"has the term 2\*sin\(theta1\)\*cos\(theta1\)"),
     ):
-        bad = dataclasses.replace(
-            d, solved=[Solved("ik", THETA1, linear_pair(THETA1, y, x), equation)]
-        )
+        bad = dataclasses.replace(d, solved=[Solved("ik", THETA1, lemma, equation)])
         with pytest.raises(ProofError, match=message):
             prove(bad)
         with pytest.raises(ShapeError, match=message):
             coefficients(equation, THETA1)
+    bad = dataclasses.replace(d, solved=[Solved("ik", THETA1, linear_pair(THETA1, y, x), x - y)])
+    with pytest.raises(ProofError, match="does not hold theta1 at all"):
+        prove(bad)
 
 
 def test_a_lemma_before_its_time() -> None:

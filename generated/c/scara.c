@@ -4,12 +4,12 @@
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 9 add, 16 multiply, 3 sincos
- *   jacobian_space: 4 add, 8 multiply, 2 sincos
- *   jacobian_body: 4 add, 8 multiply, 2 sincos
  *   fk: 9 add, 1 atan2, 16 multiply, 3 sincos, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   singularities: 1 sincos
+ *   jacobian_space: 4 add, 8 multiply, 2 sincos
+ *   jacobian_body: 4 add, 8 multiply, 2 sincos
  *   ik: 28 add, 49 compare and select, 4 atan2, 10 divide, 19 multiply, 1 sincos, 5 sqrt
  */
 #include "scara.h"
@@ -93,188 +93,6 @@ void scara_pose_batch(size_t n, const scara_params *params, const real_t
             T[13 * T_stride + start + i] = T_i[13];
             T[14 * T_stride + start + i] = T_i[14];
             T[15 * T_stride + start + i] = T_i[15];
-        }
-    }
-}
-
-CF_INLINE void scara_jacobian_space_kernel(const scara_params *params, const real_t *sines,
-    const real_t *cosines, real_t J[24])
-{
-    const real_t l1 = params->l1;
-    const real_t l2 = params->l2;
-    const real_t s1 = sines[0];
-    const real_t c1 = cosines[0];
-    const real_t s2 = sines[1];
-    const real_t c2 = cosines[1];
-    const real_t t1 = l1 * s1;
-    const real_t t2 = l1 * c1;
-    J[0] = CLOSEDFORM_C(0.0);
-    J[1] = t1;
-    J[2] = CLOSEDFORM_C(0.0);
-    J[3] = -(t1 + l2 * (s1 * c2 + c1 * s2));
-    J[4] = CLOSEDFORM_C(0.0);
-    J[5] = -t2;
-    J[6] = CLOSEDFORM_C(0.0);
-    J[7] = t2 + l2 * (c1 * c2 - s1 * s2);
-    J[8] = CLOSEDFORM_C(0.0);
-    J[9] = CLOSEDFORM_C(0.0);
-    J[10] = -CLOSEDFORM_C(1.0);
-    J[11] = CLOSEDFORM_C(0.0);
-    J[12] = CLOSEDFORM_C(0.0);
-    J[13] = CLOSEDFORM_C(0.0);
-    J[14] = CLOSEDFORM_C(0.0);
-    J[15] = CLOSEDFORM_C(0.0);
-    J[16] = CLOSEDFORM_C(0.0);
-    J[17] = CLOSEDFORM_C(0.0);
-    J[18] = CLOSEDFORM_C(0.0);
-    J[19] = CLOSEDFORM_C(0.0);
-    J[20] = CLOSEDFORM_C(1.0);
-    J[21] = CLOSEDFORM_C(1.0);
-    J[22] = CLOSEDFORM_C(0.0);
-    J[23] = -CLOSEDFORM_C(1.0);
-}
-
-CLOSEDFORM_DISPATCHED
-void scara_jacobian_space(const scara_params *params, const real_t q[4],
-    real_t J[24])
-{
-    real_t sines[2], cosines[2];
-    const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_block(2, lanes, sines, cosines);
-    scara_jacobian_space_kernel(params, sines, cosines, J);
-}
-
-CLOSEDFORM_DISPATCHED
-void scara_jacobian_space_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
-{
-    const scara_params local = *params;
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
-            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
-            real_t J_i[24];
-            scara_jacobian_space_kernel(&local, sines_i, cosines_i, J_i);
-            J[start + i] = J_i[0];
-            J[J_stride + start + i] = J_i[1];
-            J[2 * J_stride + start + i] = J_i[2];
-            J[3 * J_stride + start + i] = J_i[3];
-            J[4 * J_stride + start + i] = J_i[4];
-            J[5 * J_stride + start + i] = J_i[5];
-            J[6 * J_stride + start + i] = J_i[6];
-            J[7 * J_stride + start + i] = J_i[7];
-            J[8 * J_stride + start + i] = J_i[8];
-            J[9 * J_stride + start + i] = J_i[9];
-            J[10 * J_stride + start + i] = J_i[10];
-            J[11 * J_stride + start + i] = J_i[11];
-            J[12 * J_stride + start + i] = J_i[12];
-            J[13 * J_stride + start + i] = J_i[13];
-            J[14 * J_stride + start + i] = J_i[14];
-            J[15 * J_stride + start + i] = J_i[15];
-            J[16 * J_stride + start + i] = J_i[16];
-            J[17 * J_stride + start + i] = J_i[17];
-            J[18 * J_stride + start + i] = J_i[18];
-            J[19 * J_stride + start + i] = J_i[19];
-            J[20 * J_stride + start + i] = J_i[20];
-            J[21 * J_stride + start + i] = J_i[21];
-            J[22 * J_stride + start + i] = J_i[22];
-            J[23 * J_stride + start + i] = J_i[23];
-        }
-    }
-}
-
-CF_INLINE void scara_jacobian_body_kernel(const scara_params *params, const real_t *sines,
-    const real_t *cosines, real_t J[24])
-{
-    const real_t l1 = params->l1;
-    const real_t l2 = params->l2;
-    const real_t s2 = sines[0];
-    const real_t c2 = cosines[0];
-    const real_t s4 = sines[1];
-    const real_t c4 = cosines[1];
-    const real_t t1 = l2 * s4;
-    const real_t t2 = l2 * c4;
-    J[0] = l1 * (s2 * c4 - c2 * s4) - t1;
-    J[1] = -t1;
-    J[2] = CLOSEDFORM_C(0.0);
-    J[3] = CLOSEDFORM_C(0.0);
-    J[4] = -(l1 * (c2 * c4 + s2 * s4) + t2);
-    J[5] = -t2;
-    J[6] = CLOSEDFORM_C(0.0);
-    J[7] = CLOSEDFORM_C(0.0);
-    J[8] = CLOSEDFORM_C(0.0);
-    J[9] = CLOSEDFORM_C(0.0);
-    J[10] = CLOSEDFORM_C(1.0);
-    J[11] = CLOSEDFORM_C(0.0);
-    J[12] = CLOSEDFORM_C(0.0);
-    J[13] = CLOSEDFORM_C(0.0);
-    J[14] = CLOSEDFORM_C(0.0);
-    J[15] = CLOSEDFORM_C(0.0);
-    J[16] = CLOSEDFORM_C(0.0);
-    J[17] = CLOSEDFORM_C(0.0);
-    J[18] = CLOSEDFORM_C(0.0);
-    J[19] = CLOSEDFORM_C(0.0);
-    J[20] = -CLOSEDFORM_C(1.0);
-    J[21] = -CLOSEDFORM_C(1.0);
-    J[22] = CLOSEDFORM_C(0.0);
-    J[23] = CLOSEDFORM_C(1.0);
-}
-
-CLOSEDFORM_DISPATCHED
-void scara_jacobian_body(const scara_params *params, const real_t q[4],
-    real_t J[24])
-{
-    real_t sines[2], cosines[2];
-    const real_t lanes[2] = { q[1], q[3] };
-    cf_sincos_block(2, lanes, sines, cosines);
-    scara_jacobian_body_kernel(params, sines, cosines, J);
-}
-
-CLOSEDFORM_DISPATCHED
-void scara_jacobian_body_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
-{
-    const scara_params local = *params;
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 3 * q_stride + start, sines[1], cosines[1]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
-            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
-            real_t J_i[24];
-            scara_jacobian_body_kernel(&local, sines_i, cosines_i, J_i);
-            J[start + i] = J_i[0];
-            J[J_stride + start + i] = J_i[1];
-            J[2 * J_stride + start + i] = J_i[2];
-            J[3 * J_stride + start + i] = J_i[3];
-            J[4 * J_stride + start + i] = J_i[4];
-            J[5 * J_stride + start + i] = J_i[5];
-            J[6 * J_stride + start + i] = J_i[6];
-            J[7 * J_stride + start + i] = J_i[7];
-            J[8 * J_stride + start + i] = J_i[8];
-            J[9 * J_stride + start + i] = J_i[9];
-            J[10 * J_stride + start + i] = J_i[10];
-            J[11 * J_stride + start + i] = J_i[11];
-            J[12 * J_stride + start + i] = J_i[12];
-            J[13 * J_stride + start + i] = J_i[13];
-            J[14 * J_stride + start + i] = J_i[14];
-            J[15 * J_stride + start + i] = J_i[15];
-            J[16 * J_stride + start + i] = J_i[16];
-            J[17 * J_stride + start + i] = J_i[17];
-            J[18 * J_stride + start + i] = J_i[18];
-            J[19 * J_stride + start + i] = J_i[19];
-            J[20 * J_stride + start + i] = J_i[20];
-            J[21 * J_stride + start + i] = J_i[21];
-            J[22 * J_stride + start + i] = J_i[22];
-            J[23 * J_stride + start + i] = J_i[23];
         }
     }
 }
@@ -485,6 +303,188 @@ void scara_singularities_batch(size_t n, const scara_params *params, const real_
             real_t factors_i[1];
             scara_singularities_kernel(sines_i, factors_i);
             factors[start + i] = factors_i[0];
+        }
+    }
+}
+
+CF_INLINE void scara_jacobian_space_kernel(const scara_params *params, const real_t *sines,
+    const real_t *cosines, real_t J[24])
+{
+    const real_t l1 = params->l1;
+    const real_t l2 = params->l2;
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t t1 = l1 * s1;
+    const real_t t2 = l1 * c1;
+    J[0] = CLOSEDFORM_C(0.0);
+    J[1] = t1;
+    J[2] = CLOSEDFORM_C(0.0);
+    J[3] = -(t1 + l2 * (s1 * c2 + c1 * s2));
+    J[4] = CLOSEDFORM_C(0.0);
+    J[5] = -t2;
+    J[6] = CLOSEDFORM_C(0.0);
+    J[7] = t2 + l2 * (c1 * c2 - s1 * s2);
+    J[8] = CLOSEDFORM_C(0.0);
+    J[9] = CLOSEDFORM_C(0.0);
+    J[10] = -CLOSEDFORM_C(1.0);
+    J[11] = CLOSEDFORM_C(0.0);
+    J[12] = CLOSEDFORM_C(0.0);
+    J[13] = CLOSEDFORM_C(0.0);
+    J[14] = CLOSEDFORM_C(0.0);
+    J[15] = CLOSEDFORM_C(0.0);
+    J[16] = CLOSEDFORM_C(0.0);
+    J[17] = CLOSEDFORM_C(0.0);
+    J[18] = CLOSEDFORM_C(0.0);
+    J[19] = CLOSEDFORM_C(0.0);
+    J[20] = CLOSEDFORM_C(1.0);
+    J[21] = CLOSEDFORM_C(1.0);
+    J[22] = CLOSEDFORM_C(0.0);
+    J[23] = -CLOSEDFORM_C(1.0);
+}
+
+CLOSEDFORM_DISPATCHED
+void scara_jacobian_space(const scara_params *params, const real_t q[4],
+    real_t J[24])
+{
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_block(2, lanes, sines, cosines);
+    scara_jacobian_space_kernel(params, sines, cosines, J);
+}
+
+CLOSEDFORM_DISPATCHED
+void scara_jacobian_space_batch(size_t n, const scara_params *params, const real_t
+    *q, size_t q_stride, real_t *J, size_t J_stride)
+{
+    const scara_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            real_t J_i[24];
+            scara_jacobian_space_kernel(&local, sines_i, cosines_i, J_i);
+            J[start + i] = J_i[0];
+            J[J_stride + start + i] = J_i[1];
+            J[2 * J_stride + start + i] = J_i[2];
+            J[3 * J_stride + start + i] = J_i[3];
+            J[4 * J_stride + start + i] = J_i[4];
+            J[5 * J_stride + start + i] = J_i[5];
+            J[6 * J_stride + start + i] = J_i[6];
+            J[7 * J_stride + start + i] = J_i[7];
+            J[8 * J_stride + start + i] = J_i[8];
+            J[9 * J_stride + start + i] = J_i[9];
+            J[10 * J_stride + start + i] = J_i[10];
+            J[11 * J_stride + start + i] = J_i[11];
+            J[12 * J_stride + start + i] = J_i[12];
+            J[13 * J_stride + start + i] = J_i[13];
+            J[14 * J_stride + start + i] = J_i[14];
+            J[15 * J_stride + start + i] = J_i[15];
+            J[16 * J_stride + start + i] = J_i[16];
+            J[17 * J_stride + start + i] = J_i[17];
+            J[18 * J_stride + start + i] = J_i[18];
+            J[19 * J_stride + start + i] = J_i[19];
+            J[20 * J_stride + start + i] = J_i[20];
+            J[21 * J_stride + start + i] = J_i[21];
+            J[22 * J_stride + start + i] = J_i[22];
+            J[23 * J_stride + start + i] = J_i[23];
+        }
+    }
+}
+
+CF_INLINE void scara_jacobian_body_kernel(const scara_params *params, const real_t *sines,
+    const real_t *cosines, real_t J[24])
+{
+    const real_t l1 = params->l1;
+    const real_t l2 = params->l2;
+    const real_t s2 = sines[0];
+    const real_t c2 = cosines[0];
+    const real_t s4 = sines[1];
+    const real_t c4 = cosines[1];
+    const real_t t1 = l2 * s4;
+    const real_t t2 = l2 * c4;
+    J[0] = l1 * (s2 * c4 - c2 * s4) - t1;
+    J[1] = -t1;
+    J[2] = CLOSEDFORM_C(0.0);
+    J[3] = CLOSEDFORM_C(0.0);
+    J[4] = -(l1 * (c2 * c4 + s2 * s4) + t2);
+    J[5] = -t2;
+    J[6] = CLOSEDFORM_C(0.0);
+    J[7] = CLOSEDFORM_C(0.0);
+    J[8] = CLOSEDFORM_C(0.0);
+    J[9] = CLOSEDFORM_C(0.0);
+    J[10] = CLOSEDFORM_C(1.0);
+    J[11] = CLOSEDFORM_C(0.0);
+    J[12] = CLOSEDFORM_C(0.0);
+    J[13] = CLOSEDFORM_C(0.0);
+    J[14] = CLOSEDFORM_C(0.0);
+    J[15] = CLOSEDFORM_C(0.0);
+    J[16] = CLOSEDFORM_C(0.0);
+    J[17] = CLOSEDFORM_C(0.0);
+    J[18] = CLOSEDFORM_C(0.0);
+    J[19] = CLOSEDFORM_C(0.0);
+    J[20] = -CLOSEDFORM_C(1.0);
+    J[21] = -CLOSEDFORM_C(1.0);
+    J[22] = CLOSEDFORM_C(0.0);
+    J[23] = CLOSEDFORM_C(1.0);
+}
+
+CLOSEDFORM_DISPATCHED
+void scara_jacobian_body(const scara_params *params, const real_t q[4],
+    real_t J[24])
+{
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[1], q[3] };
+    cf_sincos_block(2, lanes, sines, cosines);
+    scara_jacobian_body_kernel(params, sines, cosines, J);
+}
+
+CLOSEDFORM_DISPATCHED
+void scara_jacobian_body_batch(size_t n, const scara_params *params, const real_t
+    *q, size_t q_stride, real_t *J, size_t J_stride)
+{
+    const scara_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            real_t J_i[24];
+            scara_jacobian_body_kernel(&local, sines_i, cosines_i, J_i);
+            J[start + i] = J_i[0];
+            J[J_stride + start + i] = J_i[1];
+            J[2 * J_stride + start + i] = J_i[2];
+            J[3 * J_stride + start + i] = J_i[3];
+            J[4 * J_stride + start + i] = J_i[4];
+            J[5 * J_stride + start + i] = J_i[5];
+            J[6 * J_stride + start + i] = J_i[6];
+            J[7 * J_stride + start + i] = J_i[7];
+            J[8 * J_stride + start + i] = J_i[8];
+            J[9 * J_stride + start + i] = J_i[9];
+            J[10 * J_stride + start + i] = J_i[10];
+            J[11 * J_stride + start + i] = J_i[11];
+            J[12 * J_stride + start + i] = J_i[12];
+            J[13 * J_stride + start + i] = J_i[13];
+            J[14 * J_stride + start + i] = J_i[14];
+            J[15 * J_stride + start + i] = J_i[15];
+            J[16 * J_stride + start + i] = J_i[16];
+            J[17 * J_stride + start + i] = J_i[17];
+            J[18 * J_stride + start + i] = J_i[18];
+            J[19 * J_stride + start + i] = J_i[19];
+            J[20 * J_stride + start + i] = J_i[20];
+            J[21 * J_stride + start + i] = J_i[21];
+            J[22 * J_stride + start + i] = J_i[22];
+            J[23 * J_stride + start + i] = J_i[23];
         }
     }
 }

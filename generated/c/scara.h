@@ -4,12 +4,12 @@
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 9 add, 16 multiply, 3 sincos
- *   jacobian_space: 4 add, 8 multiply, 2 sincos
- *   jacobian_body: 4 add, 8 multiply, 2 sincos
  *   fk: 9 add, 1 atan2, 16 multiply, 3 sincos, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   singularities: 1 sincos
+ *   jacobian_space: 4 add, 8 multiply, 2 sincos
+ *   jacobian_body: 4 add, 8 multiply, 2 sincos
  *   ik: 28 add, 49 compare and select, 4 atan2, 10 divide, 19 multiply, 1 sincos, 5 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
@@ -48,30 +48,10 @@ void scara_pose_batch(size_t n, const scara_params *params, const real_t
     *q, size_t q_stride, real_t *T, size_t T_stride);
 
 /*
- * Twist (v; omega) of the tool in the base frame per joint rate.
- * q: shape (..., 4): theta1, theta2, d3, theta4.
- * Returns J: shape (..., 6, 4).
- */
-void scara_jacobian_space(const scara_params *params, const real_t q[4],
-    real_t J[24]);
-void scara_jacobian_space_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
-
-/*
- * Twist (v; omega) of the tool in its own frame per joint rate.
- * q: shape (..., 4): theta1, theta2, d3, theta4.
- * Returns J: shape (..., 6, 4).
- */
-void scara_jacobian_body(const scara_params *params, const real_t q[4],
-    real_t J[24]);
-void scara_jacobian_body_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
-
-/*
- * Position of the tool and its yaw.
+ * Task coordinates (x, y, z, yaw).
  * q: shape (..., 4): theta1, theta2, d3, theta4.
  * Returns x: shape (..., 4).
- * The yaw theta1 + theta2 - theta4 is reduced to (-pi, pi].
+ * The yaw is reduced to (-pi, pi].
  */
 void scara_fk(const scara_params *params, const real_t q[4],
     real_t x[4]);
@@ -108,6 +88,26 @@ void scara_singularities(const scara_params *params, const real_t q[4],
 void scara_singularities_batch(size_t n, const scara_params *params, const real_t
     *q, size_t q_stride, real_t *factors, size_t
     factors_stride);
+
+/*
+ * Twist (v; omega) of the tool in the base frame per joint rate.
+ * q: shape (..., 4): theta1, theta2, d3, theta4.
+ * Returns J: shape (..., 6, 4).
+ */
+void scara_jacobian_space(const scara_params *params, const real_t q[4],
+    real_t J[24]);
+void scara_jacobian_space_batch(size_t n, const scara_params *params, const real_t
+    *q, size_t q_stride, real_t *J, size_t J_stride);
+
+/*
+ * Twist (v; omega) of the tool in its own frame per joint rate.
+ * q: shape (..., 4): theta1, theta2, d3, theta4.
+ * Returns J: shape (..., 6, 4).
+ */
+void scara_jacobian_body(const scara_params *params, const real_t q[4],
+    real_t J[24]);
+void scara_jacobian_body_batch(size_t n, const scara_params *params, const real_t
+    *q, size_t q_stride, real_t *J, size_t J_stride);
 
 /*
  * Both elbows of a position and a yaw.

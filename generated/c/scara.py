@@ -25,20 +25,20 @@ __all__ = [
     "Solutions",
     "Status",
     "pose",
-    "jacobian_space",
-    "jacobian_body",
     "fk",
     "jacobian",
     "determinant",
     "singularities",
+    "jacobian_space",
+    "jacobian_body",
     "ik",
 ]
 
 pose = _native.function("scara.pose")
-jacobian_space = _native.function("scara.jacobian_space")
-jacobian_body = _native.function("scara.jacobian_body")
 fk = _native.function("scara.fk")
 jacobian = _native.function("scara.jacobian")
 determinant = _native.function("scara.determinant")
 singularities = _native.function("scara.singularities")
+jacobian_space = _native.function("scara.jacobian_space")
+jacobian_body = _native.function("scara.jacobian_body")
 ik = _native.function("scara.ik", Solutions)

@@ -3,16 +3,125 @@
  * derivations/ur_arm.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
+ *   pose: 32 add, 57 multiply, 6 sincos
  *   fk: 32 add, 57 multiply, 6 sincos
  *   jacobian: 29 add, 54 multiply, 5 sincos
- *   pose: 32 add, 57 multiply, 6 sincos
- *   jacobian_space: 46 add, 76 multiply, 5 sincos
- *   jacobian_body: 34 add, 64 multiply, 5 sincos
  *   determinant: 6 add, 15 multiply, 4 sincos
  *   singularities: 6 add, 11 multiply, 4 sincos
- *   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 233 multiply, 47 sqrt
+ *   jacobian_space: 46 add, 76 multiply, 5 sincos
+ *   jacobian_body: 34 add, 64 multiply, 5 sincos
+ *   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 234 multiply, 47 sqrt
  */
 #include "ur_arm.h"
+
+CF_INLINE void ur_arm_pose_kernel(const ur_arm_params *params, const real_t *sines,
+    const real_t *cosines, real_t T[16])
+{
+    const real_t d1 = params->d1;
+    const real_t L2 = params->L2;
+    const real_t L3 = params->L3;
+    const real_t d4 = params->d4;
+    const real_t d5 = params->d5;
+    const real_t d6 = params->d6;
+    const real_t s6 = sines[0];
+    const real_t c6 = cosines[0];
+    const real_t s1 = sines[1];
+    const real_t c1 = cosines[1];
+    const real_t s5 = sines[2];
+    const real_t c5 = cosines[2];
+    const real_t s2 = sines[3];
+    const real_t c2 = cosines[3];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s4 = sines[5];
+    const real_t c4 = cosines[5];
+    const real_t t1 = s1 * s5;
+    const real_t c34 = c3 * c4 - s3 * s4;
+    const real_t s34 = s3 * c4 + c3 * s4;
+    const real_t s234 = s2 * c34 + c2 * s34;
+    const real_t t2 = c1 * s234;
+    const real_t t3 = c1 * c5;
+    const real_t c234 = c2 * c34 - s2 * s34;
+    const real_t t4 = c6 * c234;
+    const real_t t5 = s6 * c234;
+    const real_t t6 = s1 * c5;
+    const real_t t7 = c1 * s5;
+    const real_t t8 = L2 * c2;
+    const real_t t9 = L3 * (c2 * c3 - s2 * s3);
+    const real_t t10 = d4 * s1 + d6 * t6 + d5 * t2 - c1 * t8 - c1 * t9;
+    const real_t t11 = d6 * c234;
+    const real_t t12 = s1 * s234;
+    const real_t t13 = d4 * c1 + d6 * t3 - d5 * t12 + s1 * t8 + s1 * t9;
+    const real_t t14 = c5 * s234;
+    const real_t t15 = s5 * s234;
+    const real_t t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234;
+    T[0] = c6 * t1 - s6 * t2 + t3 * t4;
+    T[1] = -(s6 * t1 + c6 * t2 + t3 * t5);
+    T[2] = t6 - c234 * t7;
+    T[3] = t10 - t7 * t11;
+    T[4] = t6 * t4 - (c6 * t7 + s6 * t12);
+    T[5] = s6 * t7 - c6 * t12 - t6 * t5;
+    T[6] = -(t3 + c234 * t1);
+    T[7] = -(t13 + t1 * t11);
+    T[8] = t5 + c6 * t14;
+    T[9] = t4 - s6 * t14;
+    T[10] = -t15;
+    T[11] = t16 - d6 * t15;
+    T[12] = CLOSEDFORM_C(0.0);
+    T[13] = CLOSEDFORM_C(0.0);
+    T[14] = CLOSEDFORM_C(0.0);
+    T[15] = CLOSEDFORM_C(1.0);
+}
+
+CLOSEDFORM_DISPATCHED
+void ur_arm_pose(const ur_arm_params *params, const real_t q[6],
+    real_t T[16])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[5], q[0], q[4], q[1], q[2], q[3] };
+    cf_sincos_block(8, lanes, sines, cosines);
+    ur_arm_pose_kernel(params, sines, cosines, T);
+}
+
+CLOSEDFORM_DISPATCHED
+void ur_arm_pose_batch(size_t n, const ur_arm_params *params, const real_t
+    *q, size_t q_stride, real_t *T, size_t T_stride)
+{
+    const ur_arm_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t T_i[16];
+            ur_arm_pose_kernel(&local, sines_i, cosines_i, T_i);
+            T[start + i] = T_i[0];
+            T[T_stride + start + i] = T_i[1];
+            T[2 * T_stride + start + i] = T_i[2];
+            T[3 * T_stride + start + i] = T_i[3];
+            T[4 * T_stride + start + i] = T_i[4];
+            T[5 * T_stride + start + i] = T_i[5];
+            T[6 * T_stride + start + i] = T_i[6];
+            T[7 * T_stride + start + i] = T_i[7];
+            T[8 * T_stride + start + i] = T_i[8];
+            T[9 * T_stride + start + i] = T_i[9];
+            T[10 * T_stride + start + i] = T_i[10];
+            T[11 * T_stride + start + i] = T_i[11];
+            T[12 * T_stride + start + i] = T_i[12];
+            T[13 * T_stride + start + i] = T_i[13];
+            T[14 * T_stride + start + i] = T_i[14];
+            T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
 
 CF_INLINE void ur_arm_fk_kernel(const ur_arm_params *params, const real_t *sines,
     const real_t *cosines, real_t T[16])
@@ -271,111 +380,110 @@ void ur_arm_jacobian_batch(size_t n, const ur_arm_params *params, const real_t
     }
 }
 
-CF_INLINE void ur_arm_pose_kernel(const ur_arm_params *params, const real_t *sines,
-    const real_t *cosines, real_t T[16])
+CF_INLINE void ur_arm_determinant_kernel(const ur_arm_params *params, const real_t *sines,
+    const real_t *cosines, real_t det[1])
 {
-    const real_t d1 = params->d1;
     const real_t L2 = params->L2;
     const real_t L3 = params->L3;
-    const real_t d4 = params->d4;
     const real_t d5 = params->d5;
-    const real_t d6 = params->d6;
-    const real_t s6 = sines[0];
-    const real_t c6 = cosines[0];
-    const real_t s1 = sines[1];
-    const real_t c1 = cosines[1];
-    const real_t s5 = sines[2];
-    const real_t c5 = cosines[2];
-    const real_t s2 = sines[3];
-    const real_t c2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s4 = sines[5];
-    const real_t c4 = cosines[5];
-    const real_t t1 = s1 * s5;
-    const real_t c34 = c3 * c4 - s3 * s4;
-    const real_t s34 = s3 * c4 + c3 * s4;
-    const real_t s234 = s2 * c34 + c2 * s34;
-    const real_t t2 = c1 * s234;
-    const real_t t3 = c1 * c5;
-    const real_t c234 = c2 * c34 - s2 * s34;
-    const real_t t4 = c6 * c234;
-    const real_t t5 = s6 * c234;
-    const real_t t6 = s1 * c5;
-    const real_t t7 = c1 * s5;
-    const real_t t8 = L2 * c2;
-    const real_t t9 = L3 * (c2 * c3 - s2 * s3);
-    const real_t t10 = d4 * s1 + d6 * t6 + d5 * t2 - c1 * t8 - c1 * t9;
-    const real_t t11 = d6 * c234;
-    const real_t t12 = s1 * s234;
-    const real_t t13 = d4 * c1 + d6 * t3 - d5 * t12 + s1 * t8 + s1 * t9;
-    const real_t t14 = c5 * s234;
-    const real_t t15 = s5 * s234;
-    const real_t t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234;
-    T[0] = c6 * t1 - s6 * t2 + t3 * t4;
-    T[1] = -(s6 * t1 + c6 * t2 + t3 * t5);
-    T[2] = t6 - c234 * t7;
-    T[3] = t10 - t7 * t11;
-    T[4] = t6 * t4 - (c6 * t7 + s6 * t12);
-    T[5] = s6 * t7 - c6 * t12 - t6 * t5;
-    T[6] = -(t3 + c234 * t1);
-    T[7] = -(t13 + t1 * t11);
-    T[8] = t5 + c6 * t14;
-    T[9] = t4 - s6 * t14;
-    T[10] = -t15;
-    T[11] = t16 - d6 * t15;
-    T[12] = CLOSEDFORM_C(0.0);
-    T[13] = CLOSEDFORM_C(0.0);
-    T[14] = CLOSEDFORM_C(0.0);
-    T[15] = CLOSEDFORM_C(1.0);
+    const real_t s3 = sines[0];
+    const real_t c3 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t s4 = sines[2];
+    const real_t c4 = cosines[2];
+    const real_t s5 = sines[3];
+    const real_t s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4);
+    const real_t t1 = L2 * c2 + L3 * (c2 * c3 - s2 * s3) - d5 * s234;
+    det[0] = -(L2 * L3 * s3 * t1 * s5);
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_pose(const ur_arm_params *params, const real_t q[6],
-    real_t T[16])
+void ur_arm_determinant(const ur_arm_params *params, const real_t q[6],
+    real_t det[1])
 {
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[0], q[4], q[1], q[2], q[3] };
-    cf_sincos_block(8, lanes, sines, cosines);
-    ur_arm_pose_kernel(params, sines, cosines, T);
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[2], q[1], q[3], q[4] };
+    cf_sincos_block(4, lanes, sines, cosines);
+    ur_arm_determinant_kernel(params, sines, cosines, det);
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_pose_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride)
+void ur_arm_determinant_batch(size_t n, const ur_arm_params *params, const real_t
+    *q, size_t q_stride, real_t *det, size_t det_stride)
+{
+    (void)det_stride;
+    const ur_arm_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[4][CLOSEDFORM_BLOCK], cosines[4][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[3], cosines[3]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[4] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i] };
+            const real_t cosines_i[4] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i] };
+            real_t det_i[1];
+            ur_arm_determinant_kernel(&local, sines_i, cosines_i, det_i);
+            det[start + i] = det_i[0];
+        }
+    }
+}
+
+CF_INLINE void ur_arm_singularities_kernel(const ur_arm_params *params, const real_t *sines,
+    const real_t *cosines, real_t factors[3])
+{
+    const real_t L2 = params->L2;
+    const real_t L3 = params->L3;
+    const real_t d5 = params->d5;
+    const real_t s2 = sines[0];
+    const real_t c2 = cosines[0];
+    const real_t s3 = sines[1];
+    const real_t c3 = cosines[1];
+    const real_t s4 = sines[2];
+    const real_t c4 = cosines[2];
+    const real_t s5 = sines[3];
+    const real_t s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4);
+    const real_t t1 = d5 * s234 - (L2 * c2 + L3 * (c2 * c3 - s2 * s3));
+    factors[0] = t1;
+    factors[1] = s3;
+    factors[2] = s5;
+}
+
+CLOSEDFORM_DISPATCHED
+void ur_arm_singularities(const ur_arm_params *params, const real_t q[6],
+    real_t factors[3])
+{
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[1], q[2], q[3], q[4] };
+    cf_sincos_block(4, lanes, sines, cosines);
+    ur_arm_singularities_kernel(params, sines, cosines, factors);
+}
+
+CLOSEDFORM_DISPATCHED
+void ur_arm_singularities_batch(size_t n, const ur_arm_params *params, const real_t
+    *q, size_t q_stride, real_t *factors, size_t
+    factors_stride)
 {
     const ur_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + 5 * q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + 4 * q_stride + start, sines[2], cosines[2]);
-        cf_sincos_block(length, q + q_stride + start, sines[3], cosines[3]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
-        cf_sincos_block(length, q + 3 * q_stride + start, sines[5], cosines[5]);
+        real_t sines[4][CLOSEDFORM_BLOCK], cosines[4][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[3], cosines[3]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t T_i[16];
-            ur_arm_pose_kernel(&local, sines_i, cosines_i, T_i);
-            T[start + i] = T_i[0];
-            T[T_stride + start + i] = T_i[1];
-            T[2 * T_stride + start + i] = T_i[2];
-            T[3 * T_stride + start + i] = T_i[3];
-            T[4 * T_stride + start + i] = T_i[4];
-            T[5 * T_stride + start + i] = T_i[5];
-            T[6 * T_stride + start + i] = T_i[6];
-            T[7 * T_stride + start + i] = T_i[7];
-            T[8 * T_stride + start + i] = T_i[8];
-            T[9 * T_stride + start + i] = T_i[9];
-            T[10 * T_stride + start + i] = T_i[10];
-            T[11 * T_stride + start + i] = T_i[11];
-            T[12 * T_stride + start + i] = T_i[12];
-            T[13 * T_stride + start + i] = T_i[13];
-            T[14 * T_stride + start + i] = T_i[14];
-            T[15 * T_stride + start + i] = T_i[15];
+            const real_t sines_i[4] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i] };
+            const real_t cosines_i[4] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i] };
+            real_t factors_i[3];
+            ur_arm_singularities_kernel(&local, sines_i, cosines_i, factors_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            factors[2 * factors_stride + start + i] = factors_i[2];
         }
     }
 }
@@ -690,114 +798,6 @@ void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params, const rea
     }
 }
 
-CF_INLINE void ur_arm_determinant_kernel(const ur_arm_params *params, const real_t *sines,
-    const real_t *cosines, real_t det[1])
-{
-    const real_t L2 = params->L2;
-    const real_t L3 = params->L3;
-    const real_t d5 = params->d5;
-    const real_t s3 = sines[0];
-    const real_t c3 = cosines[0];
-    const real_t s2 = sines[1];
-    const real_t c2 = cosines[1];
-    const real_t s4 = sines[2];
-    const real_t c4 = cosines[2];
-    const real_t s5 = sines[3];
-    const real_t s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4);
-    const real_t t1 = L2 * c2 + L3 * (c2 * c3 - s2 * s3) - d5 * s234;
-    det[0] = -(L2 * L3 * s3 * t1 * s5);
-}
-
-CLOSEDFORM_DISPATCHED
-void ur_arm_determinant(const ur_arm_params *params, const real_t q[6],
-    real_t det[1])
-{
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[2], q[1], q[3], q[4] };
-    cf_sincos_block(4, lanes, sines, cosines);
-    ur_arm_determinant_kernel(params, sines, cosines, det);
-}
-
-CLOSEDFORM_DISPATCHED
-void ur_arm_determinant_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride)
-{
-    (void)det_stride;
-    const ur_arm_params local = *params;
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[4][CLOSEDFORM_BLOCK], cosines[4][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + 3 * q_stride + start, sines[2], cosines[2]);
-        cf_sincos_block(length, q + 4 * q_stride + start, sines[3], cosines[3]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[4] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i] };
-            const real_t cosines_i[4] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i] };
-            real_t det_i[1];
-            ur_arm_determinant_kernel(&local, sines_i, cosines_i, det_i);
-            det[start + i] = det_i[0];
-        }
-    }
-}
-
-CF_INLINE void ur_arm_singularities_kernel(const ur_arm_params *params, const real_t *sines,
-    const real_t *cosines, real_t factors[3])
-{
-    const real_t L2 = params->L2;
-    const real_t L3 = params->L3;
-    const real_t d5 = params->d5;
-    const real_t s2 = sines[0];
-    const real_t c2 = cosines[0];
-    const real_t s3 = sines[1];
-    const real_t c3 = cosines[1];
-    const real_t s4 = sines[2];
-    const real_t c4 = cosines[2];
-    const real_t s5 = sines[3];
-    const real_t s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4);
-    const real_t t1 = d5 * s234 - (L2 * c2 + L3 * (c2 * c3 - s2 * s3));
-    factors[0] = t1;
-    factors[1] = s3;
-    factors[2] = s5;
-}
-
-CLOSEDFORM_DISPATCHED
-void ur_arm_singularities(const ur_arm_params *params, const real_t q[6],
-    real_t factors[3])
-{
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[3], q[4] };
-    cf_sincos_block(4, lanes, sines, cosines);
-    ur_arm_singularities_kernel(params, sines, cosines, factors);
-}
-
-CLOSEDFORM_DISPATCHED
-void ur_arm_singularities_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride)
-{
-    const ur_arm_params local = *params;
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[4][CLOSEDFORM_BLOCK], cosines[4][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + 3 * q_stride + start, sines[2], cosines[2]);
-        cf_sincos_block(length, q + 4 * q_stride + start, sines[3], cosines[3]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[4] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i] };
-            const real_t cosines_i[4] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i] };
-            real_t factors_i[3];
-            ur_arm_singularities_kernel(&local, sines_i, cosines_i, factors_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
-            factors[2 * factors_stride + start + i] = factors_i[2];
-        }
-    }
-}
-
 CF_INLINE void ur_arm_ik_kernel(const ur_arm_params *params, const real_t T[16],
     real_t q[48], real_t status[8])
 {
@@ -873,7 +873,7 @@ CF_INLINE void ur_arm_ik_kernel(const ur_arm_params *params, const real_t T[16],
     const real_t t39 = T33 * T33;
     const real_t M_13 = T13 * c1 - T23 * t11;
     const real_t h_wrist = cf_sqrt(t39 + M_13 * M_13);
-    const real_t t40 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(4.0);
+    const real_t t40 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
     const int aligned_wrist = h_wrist <= t40;
     const real_t t41 = d1 - (T34 - T33 * d6);
     const real_t t42 = t41 * t41;
@@ -916,421 +916,422 @@ CF_INLINE void ur_arm_ik_kernel(const ur_arm_params *params, const real_t T[16],
     const real_t t57 = s_phi - c_near;
     const real_t s_near = cf_select(hub_mid, CLOSEDFORM_C(0.0), (across * us_near - t41 * uc_near) / r_hub);
     const real_t t58 = c_phi + s_near;
-    const int within_rounding = h_wrist * cf_sqrt(t57 * t57 + t58 * t58) <= t40;
+    const real_t t59 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(4.0);
+    const int within_rounding = h_wrist * cf_sqrt(t57 * t57 + t58 * t58) <= t59;
     const int inside = cf_abs(here - in_reach) <= t3;
-    const real_t t59 = cf_select(within_rounding, cf_select(inside, s_phi, c_near), s_phi);
-    const real_t sphi = cf_select(aligned_wrist, c_mid, t59);
-    const real_t t60 = across - d5 * sphi;
+    const real_t t60 = cf_select(within_rounding, cf_select(inside, s_phi, c_near), s_phi);
+    const real_t sphi = cf_select(aligned_wrist, c_mid, t60);
+    const real_t t61 = across - d5 * sphi;
     const real_t s_mid = cf_select(hub_mid, CLOSEDFORM_C(0.0), (across * us_mid - t41 * uc_mid) / r_hub);
-    const real_t t61 = cf_select(within_rounding, -cf_select(inside, -c_phi, s_near), c_phi);
-    const real_t cphi = cf_select(aligned_wrist, -s_mid, t61);
+    const real_t t62 = cf_select(within_rounding, -cf_select(inside, -c_phi, s_near), c_phi);
+    const real_t cphi = cf_select(aligned_wrist, -s_mid, t62);
     const real_t ey = t41 - d5 * cphi;
-    const real_t r_elbow = cf_sqrt(t60 * t60 + ey * ey);
-    const real_t t62 = t1 - r_elbow;
-    const real_t t63 = t44 + r_elbow;
-    const real_t t64 = r_elbow - t44;
-    const int t65 = t38 & (t37 <= t62) & (t37 <= t63) & (t37 <= t64);
-    const int unreachable = !t65;
-    const real_t t66 = cf_poison(invalid | unreachable);
-    const real_t t67 = t14 + t66;
+    const real_t r_elbow = cf_sqrt(t61 * t61 + ey * ey);
+    const real_t t63 = t1 - r_elbow;
+    const real_t t64 = t44 + r_elbow;
+    const real_t t65 = r_elbow - t44;
+    const int t66 = t38 & (t37 <= t63) & (t37 <= t64) & (t37 <= t65);
+    const int unreachable = !t66;
+    const real_t t67 = cf_poison(invalid | unreachable);
+    const real_t t68 = t14 + t67;
     const int folded_elbow = r_elbow <= t3;
     const int no_link_elbow = L2 * L3 <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const real_t C_elbow = cf_max(t64, CLOSEDFORM_C(0.0));
-    const real_t A_elbow = cf_max(t62, CLOSEDFORM_C(0.0));
-    const real_t t68 = C_elbow * A_elbow;
-    const real_t B_elbow = cf_max(t63, CLOSEDFORM_C(0.0));
+    const real_t C_elbow = cf_max(t65, CLOSEDFORM_C(0.0));
+    const real_t A_elbow = cf_max(t63, CLOSEDFORM_C(0.0));
+    const real_t t69 = C_elbow * A_elbow;
+    const real_t B_elbow = cf_max(t64, CLOSEDFORM_C(0.0));
     const real_t S_elbow = t1 + r_elbow;
-    const real_t t69 = B_elbow * S_elbow;
-    const real_t width_elbow = t68 + t69;
-    const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t68 - t69) / width_elbow));
-    const real_t t70 = ey * c_base_elbow / r_elbow;
-    const real_t t71 = CLOSEDFORM_C(2.0) * cf_sqrt(B_elbow) * cf_sqrt(C_elbow);
-    const real_t area_elbow = t71 * cf_sqrt(A_elbow) * cf_sqrt(S_elbow);
+    const real_t t70 = B_elbow * S_elbow;
+    const real_t width_elbow = t69 + t70;
+    const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t69 - t70) / width_elbow));
+    const real_t t71 = ey * c_base_elbow / r_elbow;
+    const real_t t72 = CLOSEDFORM_C(2.0) * cf_sqrt(B_elbow) * cf_sqrt(C_elbow);
+    const real_t area_elbow = t72 * cf_sqrt(A_elbow) * cf_sqrt(S_elbow);
     const real_t s_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow / width_elbow);
-    const real_t t72 = t60 * s_base_elbow / r_elbow;
-    const real_t s2 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t70 + t72);
-    const real_t t73 = ey * s_base_elbow / r_elbow;
-    const real_t t74 = t60 * c_base_elbow / r_elbow;
-    const real_t c2 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t73 - t74);
-    const real_t t75 = cf_atan2(s2, c2);
-    const real_t t76 = C_elbow * B_elbow;
-    const real_t t77 = A_elbow * S_elbow;
-    const real_t sum_elbow = t76 + t77;
+    const real_t t73 = t61 * s_base_elbow / r_elbow;
+    const real_t s2 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t71 + t73);
+    const real_t t74 = ey * s_base_elbow / r_elbow;
+    const real_t t75 = t61 * c_base_elbow / r_elbow;
+    const real_t c2 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t74 - t75);
+    const real_t t76 = cf_atan2(s2, c2);
+    const real_t t77 = C_elbow * B_elbow;
+    const real_t t78 = A_elbow * S_elbow;
+    const real_t sum_elbow = t77 + t78;
     const real_t s3 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow / sum_elbow);
-    const real_t c3 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), (t76 - t77) / sum_elbow);
-    const real_t t78 = cf_atan2(s3, c3);
-    const real_t t79 = cf_atan2(sphi, cphi);
+    const real_t c3 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), (t77 - t78) / sum_elbow);
+    const real_t t79 = cf_atan2(s3, c3);
+    const real_t t80 = cf_atan2(sphi, cphi);
     const real_t M_33 = -(T13 * t11 + T23 * c1);
-    const real_t t80 = cf_wrap(-cf_atan2(M_13 * cphi + T33 * sphi, M_33));
-    const real_t t81 = t80 + t66;
+    const real_t t81 = cf_wrap(-cf_atan2(M_13 * cphi + T33 * sphi, M_33));
+    const real_t t82 = t81 + t67;
     const real_t M_11 = T11 * c1 - T21 * t11;
     const real_t M_12 = T12 * c1 - T22 * t11;
-    const real_t t82 = cf_atan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12);
-    const real_t t83 = cf_wrap(-t82) + t66;
-    const real_t s2_left_noflip_down = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t70 - t72);
-    const real_t c2_left_noflip_down = cf_select(folded_elbow, CLOSEDFORM_C(1.0), -(t74 + t73));
-    const real_t t84 = cf_atan2(s2_left_noflip_down, c2_left_noflip_down);
-    const real_t t85 = across + t49;
+    const real_t t83 = cf_atan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12);
+    const real_t t84 = cf_wrap(-t83) + t67;
+    const real_t s2_left_noflip_down = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t71 - t73);
+    const real_t c2_left_noflip_down = cf_select(folded_elbow, CLOSEDFORM_C(1.0), -(t75 + t74));
+    const real_t t85 = cf_atan2(s2_left_noflip_down, c2_left_noflip_down);
+    const real_t t86 = across + t49;
     const real_t c_phi_left_flip_up = cf_select(aligned_wrist, CLOSEDFORM_C(1.0), -t51);
-    const real_t t86 = t41 - d5 * c_phi_left_flip_up;
-    const real_t here_left_flip_up = cf_sqrt(t85 * t85 + t86 * t86);
+    const real_t t87 = t41 - d5 * c_phi_left_flip_up;
+    const real_t here_left_flip_up = cf_sqrt(t86 * t86 + t87 * t87);
     const real_t in_reach_left_flip_up = cf_min(t1, cf_max(here_left_flip_up, t45));
-    const real_t t87 = (t43 - in_reach_left_flip_up) * (t43 + in_reach_left_flip_up);
-    const real_t k_near_left_flip_up = cf_max(CLOSEDFORM_C(0.0), t87);
-    const real_t t88 = (t46 - in_reach_left_flip_up) * (t46 + in_reach_left_flip_up);
-    const real_t d_near_left_flip_up = cf_max(CLOSEDFORM_C(0.0), -t88);
+    const real_t t88 = (t43 - in_reach_left_flip_up) * (t43 + in_reach_left_flip_up);
+    const real_t k_near_left_flip_up = cf_max(CLOSEDFORM_C(0.0), t88);
+    const real_t t89 = (t46 - in_reach_left_flip_up) * (t46 + in_reach_left_flip_up);
+    const real_t d_near_left_flip_up = cf_max(CLOSEDFORM_C(0.0), -t89);
     const real_t n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up;
     const int any_near_left_flip_up = n_near_left_flip_up <= t47;
-    const real_t t89 = (k_near_left_flip_up - d_near_left_flip_up) / n_near_left_flip_up;
-    const real_t uc_near_left_flip_up = cf_select(any_near_left_flip_up, CLOSEDFORM_C(1.0), t89);
-    const real_t t90 = t53 + across * c_phi_left_flip_up;
-    const real_t t91 = cf_abs(t90);
-    const real_t side_left_flip_up = cf_select(t91 <= t3, CLOSEDFORM_C(1.0), -(t90 / t91));
-    const real_t t92 = CLOSEDFORM_C(2.0) * side_left_flip_up * cf_sqrt(k_near_left_flip_up);
-    const real_t t93 = t92 * cf_sqrt(d_near_left_flip_up) / n_near_left_flip_up;
-    const real_t us_near_left_flip_up = cf_select(any_near_left_flip_up, CLOSEDFORM_C(0.0), t93);
-    const real_t t94 = across * uc_near_left_flip_up + t41 * us_near_left_flip_up;
-    const real_t c_near_left_flip_up = cf_select(hub_mid, CLOSEDFORM_C(1.0), t94 / r_hub);
-    const real_t t95 = s_phi + c_near_left_flip_up;
-    const real_t t96 = across * us_near_left_flip_up - t41 * uc_near_left_flip_up;
-    const real_t s_near_left_flip_up = cf_select(hub_mid, CLOSEDFORM_C(0.0), t96 / r_hub);
-    const real_t t97 = c_phi_left_flip_up + s_near_left_flip_up;
-    const int within_rounding_left_flip_up = h_wrist * cf_sqrt(t95 * t95 + t97 * t97) <= t40;
-    const real_t t98 = cf_abs(here_left_flip_up - in_reach_left_flip_up);
-    const int inside_left_flip_up = t98 <= t3;
+    const real_t t90 = (k_near_left_flip_up - d_near_left_flip_up) / n_near_left_flip_up;
+    const real_t uc_near_left_flip_up = cf_select(any_near_left_flip_up, CLOSEDFORM_C(1.0), t90);
+    const real_t t91 = t53 + across * c_phi_left_flip_up;
+    const real_t t92 = cf_abs(t91);
+    const real_t side_left_flip_up = cf_select(t92 <= t3, CLOSEDFORM_C(1.0), -(t91 / t92));
+    const real_t t93 = CLOSEDFORM_C(2.0) * side_left_flip_up * cf_sqrt(k_near_left_flip_up);
+    const real_t t94 = t93 * cf_sqrt(d_near_left_flip_up) / n_near_left_flip_up;
+    const real_t us_near_left_flip_up = cf_select(any_near_left_flip_up, CLOSEDFORM_C(0.0), t94);
+    const real_t t95 = across * uc_near_left_flip_up + t41 * us_near_left_flip_up;
+    const real_t c_near_left_flip_up = cf_select(hub_mid, CLOSEDFORM_C(1.0), t95 / r_hub);
+    const real_t t96 = s_phi + c_near_left_flip_up;
+    const real_t t97 = across * us_near_left_flip_up - t41 * uc_near_left_flip_up;
+    const real_t s_near_left_flip_up = cf_select(hub_mid, CLOSEDFORM_C(0.0), t97 / r_hub);
+    const real_t t98 = c_phi_left_flip_up + s_near_left_flip_up;
+    const int within_rounding_left_flip_up = h_wrist * cf_sqrt(t96 * t96 + t98 * t98) <= t59;
+    const real_t t99 = cf_abs(here_left_flip_up - in_reach_left_flip_up);
+    const int inside_left_flip_up = t99 <= t3;
     const real_t c_moved_left_flip_up = cf_select(inside_left_flip_up, -s_phi, c_near_left_flip_up);
-    const real_t t99 = cf_select(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi);
-    const real_t sphi_left_flip_up = cf_select(aligned_wrist, c_mid, t99);
-    const real_t t100 = across - d5 * sphi_left_flip_up;
+    const real_t t100 = cf_select(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi);
+    const real_t sphi_left_flip_up = cf_select(aligned_wrist, c_mid, t100);
+    const real_t t101 = across - d5 * sphi_left_flip_up;
     const real_t s_moved_left_flip_up = cf_select(inside_left_flip_up, -c_phi_left_flip_up, s_near_left_flip_up);
-    const real_t t101 = cf_select(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up);
-    const real_t cphi_left_flip_up = cf_select(aligned_wrist, -s_mid, t101);
+    const real_t t102 = cf_select(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up);
+    const real_t cphi_left_flip_up = cf_select(aligned_wrist, -s_mid, t102);
     const real_t ey_left_flip_up = t41 - d5 * cphi_left_flip_up;
-    const real_t t102 = t100 * t100 + ey_left_flip_up * ey_left_flip_up;
-    const real_t r_elbow_left_flip_up = cf_sqrt(t102);
-    const real_t t103 = t1 - r_elbow_left_flip_up;
-    const real_t t104 = t44 + r_elbow_left_flip_up;
-    const real_t t105 = r_elbow_left_flip_up - t44;
-    const int t106 = t38 & (t37 <= t103) & (t37 <= t104) & (t37 <= t105);
-    const int unreachable_2 = !t106;
-    const real_t t107 = cf_poison(invalid | unreachable_2);
-    const real_t t108 = t14 + t107;
+    const real_t t103 = t101 * t101 + ey_left_flip_up * ey_left_flip_up;
+    const real_t r_elbow_left_flip_up = cf_sqrt(t103);
+    const real_t t104 = t1 - r_elbow_left_flip_up;
+    const real_t t105 = t44 + r_elbow_left_flip_up;
+    const real_t t106 = r_elbow_left_flip_up - t44;
+    const int t107 = t38 & (t37 <= t104) & (t37 <= t105) & (t37 <= t106);
+    const int unreachable_2 = !t107;
+    const real_t t108 = cf_poison(invalid | unreachable_2);
+    const real_t t109 = t14 + t108;
     const int folded_elbow_left_flip_up = r_elbow_left_flip_up <= t3;
-    const real_t C_elbow_left_flip_up = cf_max(t105, CLOSEDFORM_C(0.0));
-    const real_t A_elbow_left_flip_up = cf_max(t103, CLOSEDFORM_C(0.0));
-    const real_t t109 = C_elbow_left_flip_up * A_elbow_left_flip_up;
-    const real_t B_elbow_left_flip_up = cf_max(t104, CLOSEDFORM_C(0.0));
+    const real_t C_elbow_left_flip_up = cf_max(t106, CLOSEDFORM_C(0.0));
+    const real_t A_elbow_left_flip_up = cf_max(t104, CLOSEDFORM_C(0.0));
+    const real_t t110 = C_elbow_left_flip_up * A_elbow_left_flip_up;
+    const real_t B_elbow_left_flip_up = cf_max(t105, CLOSEDFORM_C(0.0));
     const real_t S_elbow_left_flip_up = t1 + r_elbow_left_flip_up;
-    const real_t t110 = B_elbow_left_flip_up * S_elbow_left_flip_up;
-    const real_t width_elbow_left_flip_up = t109 + t110;
-    const real_t c_base_elbow_left_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t109 - t110) / width_elbow_left_flip_up));
-    const real_t t111 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up;
-    const real_t t112 = CLOSEDFORM_C(2.0) * cf_sqrt(B_elbow_left_flip_up);
-    const real_t t113 = t112 * cf_sqrt(C_elbow_left_flip_up) * cf_sqrt(A_elbow_left_flip_up);
-    const real_t area_elbow_left_flip_up = t113 * cf_sqrt(S_elbow_left_flip_up);
-    const real_t t114 = area_elbow_left_flip_up / width_elbow_left_flip_up;
-    const real_t s_base_elbow_left_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t114);
-    const real_t t115 = t100 * s_base_elbow_left_flip_up / r_elbow_left_flip_up;
-    const real_t s2_left_flip_up = cf_select(folded_elbow_left_flip_up, CLOSEDFORM_C(0.0), t111 + t115);
-    const real_t t116 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up;
-    const real_t t117 = t100 * c_base_elbow_left_flip_up / r_elbow_left_flip_up;
-    const real_t c2_left_flip_up = cf_select(folded_elbow_left_flip_up, CLOSEDFORM_C(1.0), t116 - t117);
-    const real_t t118 = cf_atan2(s2_left_flip_up, c2_left_flip_up);
-    const real_t t119 = C_elbow_left_flip_up * B_elbow_left_flip_up;
-    const real_t t120 = A_elbow_left_flip_up * S_elbow_left_flip_up;
-    const real_t sum_elbow_left_flip_up = t119 + t120;
-    const real_t t121 = area_elbow_left_flip_up / sum_elbow_left_flip_up;
-    const real_t s3_left_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t121);
-    const real_t c3_left_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), (t119 - t120) / sum_elbow_left_flip_up);
-    const real_t t122 = cf_atan2(s3_left_flip_up, c3_left_flip_up);
-    const real_t t123 = cf_atan2(sphi_left_flip_up, cphi_left_flip_up);
-    const real_t t124 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up;
-    const real_t t125 = cf_wrap(-cf_atan2(t124, M_33)) + t107;
-    const real_t t126 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up;
-    const real_t t127 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up;
-    const real_t t128 = cf_wrap(-cf_atan2(t126, t127)) + t107;
-    const real_t s2_left_flip_down = cf_select(folded_elbow_left_flip_up, CLOSEDFORM_C(0.0), t111 - t115);
-    const real_t c2_left_flip_down = cf_select(folded_elbow_left_flip_up, CLOSEDFORM_C(1.0), -(t117 + t116));
-    const real_t t129 = cf_atan2(s2_left_flip_down, c2_left_flip_down);
-    const real_t t130 = cf_select(free1, CLOSEDFORM_C(0.0), t8 - t10);
+    const real_t t111 = B_elbow_left_flip_up * S_elbow_left_flip_up;
+    const real_t width_elbow_left_flip_up = t110 + t111;
+    const real_t c_base_elbow_left_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t110 - t111) / width_elbow_left_flip_up));
+    const real_t t112 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up;
+    const real_t t113 = CLOSEDFORM_C(2.0) * cf_sqrt(B_elbow_left_flip_up);
+    const real_t t114 = t113 * cf_sqrt(C_elbow_left_flip_up) * cf_sqrt(A_elbow_left_flip_up);
+    const real_t area_elbow_left_flip_up = t114 * cf_sqrt(S_elbow_left_flip_up);
+    const real_t t115 = area_elbow_left_flip_up / width_elbow_left_flip_up;
+    const real_t s_base_elbow_left_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t115);
+    const real_t t116 = t101 * s_base_elbow_left_flip_up / r_elbow_left_flip_up;
+    const real_t s2_left_flip_up = cf_select(folded_elbow_left_flip_up, CLOSEDFORM_C(0.0), t112 + t116);
+    const real_t t117 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up;
+    const real_t t118 = t101 * c_base_elbow_left_flip_up / r_elbow_left_flip_up;
+    const real_t c2_left_flip_up = cf_select(folded_elbow_left_flip_up, CLOSEDFORM_C(1.0), t117 - t118);
+    const real_t t119 = cf_atan2(s2_left_flip_up, c2_left_flip_up);
+    const real_t t120 = C_elbow_left_flip_up * B_elbow_left_flip_up;
+    const real_t t121 = A_elbow_left_flip_up * S_elbow_left_flip_up;
+    const real_t sum_elbow_left_flip_up = t120 + t121;
+    const real_t t122 = area_elbow_left_flip_up / sum_elbow_left_flip_up;
+    const real_t s3_left_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t122);
+    const real_t c3_left_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), (t120 - t121) / sum_elbow_left_flip_up);
+    const real_t t123 = cf_atan2(s3_left_flip_up, c3_left_flip_up);
+    const real_t t124 = cf_atan2(sphi_left_flip_up, cphi_left_flip_up);
+    const real_t t125 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up;
+    const real_t t126 = cf_wrap(-cf_atan2(t125, M_33)) + t108;
+    const real_t t127 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up;
+    const real_t t128 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up;
+    const real_t t129 = cf_wrap(-cf_atan2(t127, t128)) + t108;
+    const real_t s2_left_flip_down = cf_select(folded_elbow_left_flip_up, CLOSEDFORM_C(0.0), t112 - t116);
+    const real_t c2_left_flip_down = cf_select(folded_elbow_left_flip_up, CLOSEDFORM_C(1.0), -(t118 + t117));
+    const real_t t130 = cf_atan2(s2_left_flip_down, c2_left_flip_down);
+    const real_t t131 = cf_select(free1, CLOSEDFORM_C(0.0), t8 - t10);
     const real_t c1_right_noflip_up = cf_select(free1, CLOSEDFORM_C(1.0), t12 + t13);
-    const real_t t131 = cf_wrap(cf_atan2(-t130, c1_right_noflip_up));
-    const real_t across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t130;
-    const real_t M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t130;
-    const real_t t132 = t39 + M_13_right_noflip_up * M_13_right_noflip_up;
-    const real_t h_wrist_right_noflip_up = cf_sqrt(t132);
+    const real_t t132 = cf_wrap(cf_atan2(-t131, c1_right_noflip_up));
+    const real_t across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t131;
+    const real_t M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t131;
+    const real_t t133 = t39 + M_13_right_noflip_up * M_13_right_noflip_up;
+    const real_t h_wrist_right_noflip_up = cf_sqrt(t133);
     const int aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t40;
-    const real_t t133 = across_right_noflip_up * across_right_noflip_up;
-    const real_t r_hub_right_noflip_up = cf_sqrt(t42 + t133);
+    const real_t t134 = across_right_noflip_up * across_right_noflip_up;
+    const real_t r_hub_right_noflip_up = cf_sqrt(t42 + t134);
     const int hub_mid_right_noflip_up = r_hub_right_noflip_up <= t3;
-    const real_t t134 = d5 + r_hub_right_noflip_up;
-    const real_t t135 = d5 - r_hub_right_noflip_up;
-    const real_t t136 = cf_max(t45, cf_abs(t135)) / CLOSEDFORM_C(2.0);
-    const real_t mid_reach_right_noflip_up = cf_min(t1, t134) / CLOSEDFORM_C(2.0) + t136;
-    const real_t t137 = (t134 - mid_reach_right_noflip_up) * (t134 + mid_reach_right_noflip_up);
-    const real_t k_mid_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), t137);
+    const real_t t135 = d5 + r_hub_right_noflip_up;
+    const real_t t136 = d5 - r_hub_right_noflip_up;
+    const real_t t137 = cf_max(t45, cf_abs(t136)) / CLOSEDFORM_C(2.0);
+    const real_t mid_reach_right_noflip_up = cf_min(t1, t135) / CLOSEDFORM_C(2.0) + t137;
     const real_t t138 = (t135 - mid_reach_right_noflip_up) * (t135 + mid_reach_right_noflip_up);
-    const real_t d_mid_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), -t138);
+    const real_t k_mid_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), t138);
+    const real_t t139 = (t136 - mid_reach_right_noflip_up) * (t136 + mid_reach_right_noflip_up);
+    const real_t d_mid_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), -t139);
     const real_t n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up;
     const int any_mid_right_noflip_up = n_mid_right_noflip_up <= t47;
-    const real_t t139 = k_mid_right_noflip_up - d_mid_right_noflip_up;
-    const real_t uc_mid_right_noflip_up = cf_select(any_mid_right_noflip_up, CLOSEDFORM_C(1.0), t139 / n_mid_right_noflip_up);
-    const real_t t140 = across_right_noflip_up * uc_mid_right_noflip_up;
-    const real_t t141 = CLOSEDFORM_C(2.0) * cf_sqrt(k_mid_right_noflip_up);
-    const real_t t142 = t141 * cf_sqrt(d_mid_right_noflip_up) / n_mid_right_noflip_up;
-    const real_t us_mid_right_noflip_up = cf_select(any_mid_right_noflip_up, CLOSEDFORM_C(0.0), t142);
-    const real_t t143 = (t140 + t41 * us_mid_right_noflip_up) / r_hub_right_noflip_up;
-    const real_t c_mid_right_noflip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(1.0), t143);
+    const real_t t140 = k_mid_right_noflip_up - d_mid_right_noflip_up;
+    const real_t uc_mid_right_noflip_up = cf_select(any_mid_right_noflip_up, CLOSEDFORM_C(1.0), t140 / n_mid_right_noflip_up);
+    const real_t t141 = across_right_noflip_up * uc_mid_right_noflip_up;
+    const real_t t142 = CLOSEDFORM_C(2.0) * cf_sqrt(k_mid_right_noflip_up);
+    const real_t t143 = t142 * cf_sqrt(d_mid_right_noflip_up) / n_mid_right_noflip_up;
+    const real_t us_mid_right_noflip_up = cf_select(any_mid_right_noflip_up, CLOSEDFORM_C(0.0), t143);
+    const real_t t144 = (t141 + t41 * us_mid_right_noflip_up) / r_hub_right_noflip_up;
+    const real_t c_mid_right_noflip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(1.0), t144);
     const real_t s_phi_right_noflip_up = cf_select(aligned_wrist_right_noflip_up, CLOSEDFORM_C(0.0), T33 / h_wrist_right_noflip_up);
-    const real_t t144 = d5 * s_phi_right_noflip_up;
-    const real_t t145 = across_right_noflip_up - t144;
-    const real_t t146 = M_13_right_noflip_up / h_wrist_right_noflip_up;
-    const real_t c_phi_right_noflip_up = cf_select(aligned_wrist_right_noflip_up, CLOSEDFORM_C(1.0), t146);
-    const real_t t147 = t41 - d5 * c_phi_right_noflip_up;
-    const real_t here_right_noflip_up = cf_sqrt(t145 * t145 + t147 * t147);
+    const real_t t145 = d5 * s_phi_right_noflip_up;
+    const real_t t146 = across_right_noflip_up - t145;
+    const real_t t147 = M_13_right_noflip_up / h_wrist_right_noflip_up;
+    const real_t c_phi_right_noflip_up = cf_select(aligned_wrist_right_noflip_up, CLOSEDFORM_C(1.0), t147);
+    const real_t t148 = t41 - d5 * c_phi_right_noflip_up;
+    const real_t here_right_noflip_up = cf_sqrt(t146 * t146 + t148 * t148);
     const real_t in_reach_right_noflip_up = cf_min(t1, cf_max(here_right_noflip_up, t45));
-    const real_t t148 = (t134 - in_reach_right_noflip_up) * (t134 + in_reach_right_noflip_up);
-    const real_t k_near_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), t148);
     const real_t t149 = (t135 - in_reach_right_noflip_up) * (t135 + in_reach_right_noflip_up);
-    const real_t d_near_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), -t149);
+    const real_t k_near_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), t149);
+    const real_t t150 = (t136 - in_reach_right_noflip_up) * (t136 + in_reach_right_noflip_up);
+    const real_t d_near_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), -t150);
     const real_t n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up;
     const int any_near_right_noflip_up = n_near_right_noflip_up <= t47;
-    const real_t t150 = k_near_right_noflip_up - d_near_right_noflip_up;
-    const real_t uc_near_right_noflip_up = cf_select(any_near_right_noflip_up, CLOSEDFORM_C(1.0), t150 / n_near_right_noflip_up);
-    const real_t t151 = across_right_noflip_up * uc_near_right_noflip_up;
-    const real_t t152 = across_right_noflip_up * c_phi_right_noflip_up;
-    const real_t t153 = t41 * s_phi_right_noflip_up;
-    const real_t t154 = t152 - t153;
-    const real_t t155 = cf_abs(t154);
-    const real_t side_right_noflip_up = cf_select(t155 <= t3, CLOSEDFORM_C(1.0), -(t154 / t155));
-    const real_t t156 = CLOSEDFORM_C(2.0) * side_right_noflip_up * cf_sqrt(k_near_right_noflip_up);
-    const real_t t157 = t156 * cf_sqrt(d_near_right_noflip_up) / n_near_right_noflip_up;
-    const real_t us_near_right_noflip_up = cf_select(any_near_right_noflip_up, CLOSEDFORM_C(0.0), t157);
-    const real_t t158 = (t151 + t41 * us_near_right_noflip_up) / r_hub_right_noflip_up;
-    const real_t c_near_right_noflip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(1.0), t158);
-    const real_t t159 = s_phi_right_noflip_up - c_near_right_noflip_up;
-    const real_t t160 = across_right_noflip_up * us_near_right_noflip_up;
-    const real_t t161 = (t160 - t41 * uc_near_right_noflip_up) / r_hub_right_noflip_up;
-    const real_t s_near_right_noflip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(0.0), t161);
-    const real_t t162 = c_phi_right_noflip_up + s_near_right_noflip_up;
-    const real_t t163 = h_wrist_right_noflip_up * cf_sqrt(t159 * t159 + t162 * t162);
-    const int within_rounding_right_noflip_up = t163 <= t40;
-    const real_t t164 = here_right_noflip_up - in_reach_right_noflip_up;
-    const int inside_right_noflip_up = cf_abs(t164) <= t3;
+    const real_t t151 = k_near_right_noflip_up - d_near_right_noflip_up;
+    const real_t uc_near_right_noflip_up = cf_select(any_near_right_noflip_up, CLOSEDFORM_C(1.0), t151 / n_near_right_noflip_up);
+    const real_t t152 = across_right_noflip_up * uc_near_right_noflip_up;
+    const real_t t153 = across_right_noflip_up * c_phi_right_noflip_up;
+    const real_t t154 = t41 * s_phi_right_noflip_up;
+    const real_t t155 = t153 - t154;
+    const real_t t156 = cf_abs(t155);
+    const real_t side_right_noflip_up = cf_select(t156 <= t3, CLOSEDFORM_C(1.0), -(t155 / t156));
+    const real_t t157 = CLOSEDFORM_C(2.0) * side_right_noflip_up * cf_sqrt(k_near_right_noflip_up);
+    const real_t t158 = t157 * cf_sqrt(d_near_right_noflip_up) / n_near_right_noflip_up;
+    const real_t us_near_right_noflip_up = cf_select(any_near_right_noflip_up, CLOSEDFORM_C(0.0), t158);
+    const real_t t159 = (t152 + t41 * us_near_right_noflip_up) / r_hub_right_noflip_up;
+    const real_t c_near_right_noflip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(1.0), t159);
+    const real_t t160 = s_phi_right_noflip_up - c_near_right_noflip_up;
+    const real_t t161 = across_right_noflip_up * us_near_right_noflip_up;
+    const real_t t162 = (t161 - t41 * uc_near_right_noflip_up) / r_hub_right_noflip_up;
+    const real_t s_near_right_noflip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(0.0), t162);
+    const real_t t163 = c_phi_right_noflip_up + s_near_right_noflip_up;
+    const real_t t164 = h_wrist_right_noflip_up * cf_sqrt(t160 * t160 + t163 * t163);
+    const int within_rounding_right_noflip_up = t164 <= t59;
+    const real_t t165 = here_right_noflip_up - in_reach_right_noflip_up;
+    const int inside_right_noflip_up = cf_abs(t165) <= t3;
     const real_t c_moved_right_noflip_up = cf_select(inside_right_noflip_up, s_phi_right_noflip_up, c_near_right_noflip_up);
-    const real_t t165 = cf_select(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up);
-    const real_t sphi_right_noflip_up = cf_select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t165);
-    const real_t t166 = across_right_noflip_up - d5 * sphi_right_noflip_up;
-    const real_t t167 = across_right_noflip_up * us_mid_right_noflip_up;
-    const real_t t168 = (t167 - t41 * uc_mid_right_noflip_up) / r_hub_right_noflip_up;
-    const real_t s_mid_right_noflip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(0.0), t168);
+    const real_t t166 = cf_select(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up);
+    const real_t sphi_right_noflip_up = cf_select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t166);
+    const real_t t167 = across_right_noflip_up - d5 * sphi_right_noflip_up;
+    const real_t t168 = across_right_noflip_up * us_mid_right_noflip_up;
+    const real_t t169 = (t168 - t41 * uc_mid_right_noflip_up) / r_hub_right_noflip_up;
+    const real_t s_mid_right_noflip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(0.0), t169);
     const real_t s_moved_right_noflip_up = cf_select(inside_right_noflip_up, -c_phi_right_noflip_up, s_near_right_noflip_up);
-    const real_t t169 = cf_select(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up);
-    const real_t cphi_right_noflip_up = cf_select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t169);
+    const real_t t170 = cf_select(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up);
+    const real_t cphi_right_noflip_up = cf_select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t170);
     const real_t ey_right_noflip_up = t41 - d5 * cphi_right_noflip_up;
-    const real_t t170 = t166 * t166 + ey_right_noflip_up * ey_right_noflip_up;
-    const real_t r_elbow_right_noflip_up = cf_sqrt(t170);
-    const real_t t171 = t1 - r_elbow_right_noflip_up;
-    const real_t t172 = t44 + r_elbow_right_noflip_up;
-    const real_t t173 = r_elbow_right_noflip_up - t44;
-    const int t174 = t38 & (t37 <= t171) & (t37 <= t172) & (t37 <= t173);
-    const int unreachable_3 = !t174;
-    const real_t t175 = cf_poison(invalid | unreachable_3);
-    const real_t t176 = t131 + t175;
+    const real_t t171 = t167 * t167 + ey_right_noflip_up * ey_right_noflip_up;
+    const real_t r_elbow_right_noflip_up = cf_sqrt(t171);
+    const real_t t172 = t1 - r_elbow_right_noflip_up;
+    const real_t t173 = t44 + r_elbow_right_noflip_up;
+    const real_t t174 = r_elbow_right_noflip_up - t44;
+    const int t175 = t38 & (t37 <= t172) & (t37 <= t173) & (t37 <= t174);
+    const int unreachable_3 = !t175;
+    const real_t t176 = cf_poison(invalid | unreachable_3);
+    const real_t t177 = t132 + t176;
     const int folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3;
-    const real_t C_elbow_right_noflip_up = cf_max(t173, CLOSEDFORM_C(0.0));
-    const real_t A_elbow_right_noflip_up = cf_max(t171, CLOSEDFORM_C(0.0));
-    const real_t t177 = C_elbow_right_noflip_up * A_elbow_right_noflip_up;
-    const real_t B_elbow_right_noflip_up = cf_max(t172, CLOSEDFORM_C(0.0));
+    const real_t C_elbow_right_noflip_up = cf_max(t174, CLOSEDFORM_C(0.0));
+    const real_t A_elbow_right_noflip_up = cf_max(t172, CLOSEDFORM_C(0.0));
+    const real_t t178 = C_elbow_right_noflip_up * A_elbow_right_noflip_up;
+    const real_t B_elbow_right_noflip_up = cf_max(t173, CLOSEDFORM_C(0.0));
     const real_t S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up;
-    const real_t t178 = B_elbow_right_noflip_up * S_elbow_right_noflip_up;
-    const real_t width_elbow_right_noflip_up = t177 + t178;
-    const real_t t179 = -((t177 - t178) / width_elbow_right_noflip_up);
-    const real_t c_base_elbow_right_noflip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), t179);
-    const real_t t180 = ey_right_noflip_up * c_base_elbow_right_noflip_up;
-    const real_t t181 = t180 / r_elbow_right_noflip_up;
-    const real_t t182 = CLOSEDFORM_C(2.0) * cf_sqrt(B_elbow_right_noflip_up);
-    const real_t t183 = t182 * cf_sqrt(C_elbow_right_noflip_up) * cf_sqrt(A_elbow_right_noflip_up);
-    const real_t area_elbow_right_noflip_up = t183 * cf_sqrt(S_elbow_right_noflip_up);
-    const real_t t184 = area_elbow_right_noflip_up / width_elbow_right_noflip_up;
-    const real_t s_base_elbow_right_noflip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t184);
-    const real_t t185 = t166 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up;
-    const real_t s2_right_noflip_up = cf_select(folded_elbow_right_noflip_up, CLOSEDFORM_C(0.0), t181 + t185);
-    const real_t t186 = ey_right_noflip_up * s_base_elbow_right_noflip_up;
-    const real_t t187 = t186 / r_elbow_right_noflip_up;
-    const real_t t188 = t166 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up;
-    const real_t c2_right_noflip_up = cf_select(folded_elbow_right_noflip_up, CLOSEDFORM_C(1.0), t187 - t188);
-    const real_t t189 = cf_atan2(s2_right_noflip_up, c2_right_noflip_up);
-    const real_t t190 = C_elbow_right_noflip_up * B_elbow_right_noflip_up;
-    const real_t t191 = A_elbow_right_noflip_up * S_elbow_right_noflip_up;
-    const real_t sum_elbow_right_noflip_up = t190 + t191;
-    const real_t t192 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up;
-    const real_t s3_right_noflip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t192);
-    const real_t c3_right_noflip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), (t190 - t191) / sum_elbow_right_noflip_up);
-    const real_t t193 = cf_atan2(s3_right_noflip_up, c3_right_noflip_up);
-    const real_t t194 = cf_atan2(sphi_right_noflip_up, cphi_right_noflip_up);
-    const real_t t195 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up;
-    const real_t M_33_right_noflip_up = -(T13 * t130 + T23 * c1_right_noflip_up);
-    const real_t t196 = cf_wrap(-cf_atan2(t195, M_33_right_noflip_up));
-    const real_t t197 = t196 + t175;
-    const real_t M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t130;
-    const real_t t198 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up;
-    const real_t M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t130;
-    const real_t t199 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up;
-    const real_t t200 = cf_wrap(-cf_atan2(t198, t199)) + t175;
-    const real_t s2_right_noflip_down = cf_select(folded_elbow_right_noflip_up, CLOSEDFORM_C(0.0), t181 - t185);
-    const real_t c2_right_noflip_down = cf_select(folded_elbow_right_noflip_up, CLOSEDFORM_C(1.0), -(t188 + t187));
-    const real_t t201 = cf_atan2(s2_right_noflip_down, c2_right_noflip_down);
-    const real_t t202 = across_right_noflip_up + t144;
-    const real_t c_phi_right_flip_up = cf_select(aligned_wrist_right_noflip_up, CLOSEDFORM_C(1.0), -t146);
-    const real_t t203 = t41 - d5 * c_phi_right_flip_up;
-    const real_t here_right_flip_up = cf_sqrt(t202 * t202 + t203 * t203);
+    const real_t t179 = B_elbow_right_noflip_up * S_elbow_right_noflip_up;
+    const real_t width_elbow_right_noflip_up = t178 + t179;
+    const real_t t180 = -((t178 - t179) / width_elbow_right_noflip_up);
+    const real_t c_base_elbow_right_noflip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), t180);
+    const real_t t181 = ey_right_noflip_up * c_base_elbow_right_noflip_up;
+    const real_t t182 = t181 / r_elbow_right_noflip_up;
+    const real_t t183 = CLOSEDFORM_C(2.0) * cf_sqrt(B_elbow_right_noflip_up);
+    const real_t t184 = t183 * cf_sqrt(C_elbow_right_noflip_up) * cf_sqrt(A_elbow_right_noflip_up);
+    const real_t area_elbow_right_noflip_up = t184 * cf_sqrt(S_elbow_right_noflip_up);
+    const real_t t185 = area_elbow_right_noflip_up / width_elbow_right_noflip_up;
+    const real_t s_base_elbow_right_noflip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t185);
+    const real_t t186 = t167 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up;
+    const real_t s2_right_noflip_up = cf_select(folded_elbow_right_noflip_up, CLOSEDFORM_C(0.0), t182 + t186);
+    const real_t t187 = ey_right_noflip_up * s_base_elbow_right_noflip_up;
+    const real_t t188 = t187 / r_elbow_right_noflip_up;
+    const real_t t189 = t167 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up;
+    const real_t c2_right_noflip_up = cf_select(folded_elbow_right_noflip_up, CLOSEDFORM_C(1.0), t188 - t189);
+    const real_t t190 = cf_atan2(s2_right_noflip_up, c2_right_noflip_up);
+    const real_t t191 = C_elbow_right_noflip_up * B_elbow_right_noflip_up;
+    const real_t t192 = A_elbow_right_noflip_up * S_elbow_right_noflip_up;
+    const real_t sum_elbow_right_noflip_up = t191 + t192;
+    const real_t t193 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up;
+    const real_t s3_right_noflip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t193);
+    const real_t c3_right_noflip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), (t191 - t192) / sum_elbow_right_noflip_up);
+    const real_t t194 = cf_atan2(s3_right_noflip_up, c3_right_noflip_up);
+    const real_t t195 = cf_atan2(sphi_right_noflip_up, cphi_right_noflip_up);
+    const real_t t196 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up;
+    const real_t M_33_right_noflip_up = -(T13 * t131 + T23 * c1_right_noflip_up);
+    const real_t t197 = cf_wrap(-cf_atan2(t196, M_33_right_noflip_up));
+    const real_t t198 = t197 + t176;
+    const real_t M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t131;
+    const real_t t199 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up;
+    const real_t M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t131;
+    const real_t t200 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up;
+    const real_t t201 = cf_wrap(-cf_atan2(t199, t200)) + t176;
+    const real_t s2_right_noflip_down = cf_select(folded_elbow_right_noflip_up, CLOSEDFORM_C(0.0), t182 - t186);
+    const real_t c2_right_noflip_down = cf_select(folded_elbow_right_noflip_up, CLOSEDFORM_C(1.0), -(t189 + t188));
+    const real_t t202 = cf_atan2(s2_right_noflip_down, c2_right_noflip_down);
+    const real_t t203 = across_right_noflip_up + t145;
+    const real_t c_phi_right_flip_up = cf_select(aligned_wrist_right_noflip_up, CLOSEDFORM_C(1.0), -t147);
+    const real_t t204 = t41 - d5 * c_phi_right_flip_up;
+    const real_t here_right_flip_up = cf_sqrt(t203 * t203 + t204 * t204);
     const real_t in_reach_right_flip_up = cf_min(t1, cf_max(here_right_flip_up, t45));
-    const real_t t204 = (t134 - in_reach_right_flip_up) * (t134 + in_reach_right_flip_up);
-    const real_t k_near_right_flip_up = cf_max(CLOSEDFORM_C(0.0), t204);
     const real_t t205 = (t135 - in_reach_right_flip_up) * (t135 + in_reach_right_flip_up);
-    const real_t d_near_right_flip_up = cf_max(CLOSEDFORM_C(0.0), -t205);
+    const real_t k_near_right_flip_up = cf_max(CLOSEDFORM_C(0.0), t205);
+    const real_t t206 = (t136 - in_reach_right_flip_up) * (t136 + in_reach_right_flip_up);
+    const real_t d_near_right_flip_up = cf_max(CLOSEDFORM_C(0.0), -t206);
     const real_t n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up;
     const int any_near_right_flip_up = n_near_right_flip_up <= t47;
-    const real_t t206 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up;
-    const real_t uc_near_right_flip_up = cf_select(any_near_right_flip_up, CLOSEDFORM_C(1.0), t206);
-    const real_t t207 = across_right_noflip_up * uc_near_right_flip_up;
-    const real_t t208 = t153 + across_right_noflip_up * c_phi_right_flip_up;
-    const real_t t209 = cf_abs(t208);
-    const real_t side_right_flip_up = cf_select(t209 <= t3, CLOSEDFORM_C(1.0), -(t208 / t209));
-    const real_t t210 = CLOSEDFORM_C(2.0) * side_right_flip_up * cf_sqrt(k_near_right_flip_up);
-    const real_t t211 = t210 * cf_sqrt(d_near_right_flip_up) / n_near_right_flip_up;
-    const real_t us_near_right_flip_up = cf_select(any_near_right_flip_up, CLOSEDFORM_C(0.0), t211);
-    const real_t t212 = (t207 + t41 * us_near_right_flip_up) / r_hub_right_noflip_up;
-    const real_t c_near_right_flip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(1.0), t212);
-    const real_t t213 = s_phi_right_noflip_up + c_near_right_flip_up;
-    const real_t t214 = across_right_noflip_up * us_near_right_flip_up;
-    const real_t t215 = (t214 - t41 * uc_near_right_flip_up) / r_hub_right_noflip_up;
-    const real_t s_near_right_flip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(0.0), t215);
-    const real_t t216 = c_phi_right_flip_up + s_near_right_flip_up;
-    const real_t t217 = h_wrist_right_noflip_up * cf_sqrt(t213 * t213 + t216 * t216);
-    const int within_rounding_right_flip_up = t217 <= t40;
-    const real_t t218 = cf_abs(here_right_flip_up - in_reach_right_flip_up);
-    const int inside_right_flip_up = t218 <= t3;
+    const real_t t207 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up;
+    const real_t uc_near_right_flip_up = cf_select(any_near_right_flip_up, CLOSEDFORM_C(1.0), t207);
+    const real_t t208 = across_right_noflip_up * uc_near_right_flip_up;
+    const real_t t209 = t154 + across_right_noflip_up * c_phi_right_flip_up;
+    const real_t t210 = cf_abs(t209);
+    const real_t side_right_flip_up = cf_select(t210 <= t3, CLOSEDFORM_C(1.0), -(t209 / t210));
+    const real_t t211 = CLOSEDFORM_C(2.0) * side_right_flip_up * cf_sqrt(k_near_right_flip_up);
+    const real_t t212 = t211 * cf_sqrt(d_near_right_flip_up) / n_near_right_flip_up;
+    const real_t us_near_right_flip_up = cf_select(any_near_right_flip_up, CLOSEDFORM_C(0.0), t212);
+    const real_t t213 = (t208 + t41 * us_near_right_flip_up) / r_hub_right_noflip_up;
+    const real_t c_near_right_flip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(1.0), t213);
+    const real_t t214 = s_phi_right_noflip_up + c_near_right_flip_up;
+    const real_t t215 = across_right_noflip_up * us_near_right_flip_up;
+    const real_t t216 = (t215 - t41 * uc_near_right_flip_up) / r_hub_right_noflip_up;
+    const real_t s_near_right_flip_up = cf_select(hub_mid_right_noflip_up, CLOSEDFORM_C(0.0), t216);
+    const real_t t217 = c_phi_right_flip_up + s_near_right_flip_up;
+    const real_t t218 = h_wrist_right_noflip_up * cf_sqrt(t214 * t214 + t217 * t217);
+    const int within_rounding_right_flip_up = t218 <= t59;
+    const real_t t219 = cf_abs(here_right_flip_up - in_reach_right_flip_up);
+    const int inside_right_flip_up = t219 <= t3;
     const real_t c_moved_right_flip_up = cf_select(inside_right_flip_up, -s_phi_right_noflip_up, c_near_right_flip_up);
-    const real_t t219 = cf_select(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up);
-    const real_t sphi_right_flip_up = cf_select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t219);
-    const real_t t220 = across_right_noflip_up - d5 * sphi_right_flip_up;
+    const real_t t220 = cf_select(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up);
+    const real_t sphi_right_flip_up = cf_select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t220);
+    const real_t t221 = across_right_noflip_up - d5 * sphi_right_flip_up;
     const real_t s_moved_right_flip_up = cf_select(inside_right_flip_up, -c_phi_right_flip_up, s_near_right_flip_up);
-    const real_t t221 = cf_select(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up);
-    const real_t cphi_right_flip_up = cf_select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t221);
+    const real_t t222 = cf_select(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up);
+    const real_t cphi_right_flip_up = cf_select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t222);
     const real_t ey_right_flip_up = t41 - d5 * cphi_right_flip_up;
-    const real_t t222 = t220 * t220 + ey_right_flip_up * ey_right_flip_up;
-    const real_t r_elbow_right_flip_up = cf_sqrt(t222);
-    const real_t t223 = t1 - r_elbow_right_flip_up;
-    const real_t t224 = t44 + r_elbow_right_flip_up;
-    const real_t t225 = r_elbow_right_flip_up - t44;
-    const int t226 = t38 & (t37 <= t223) & (t37 <= t224) & (t37 <= t225);
-    const int unreachable_4 = !t226;
-    const real_t t227 = cf_poison(invalid | unreachable_4);
-    const real_t t228 = t131 + t227;
+    const real_t t223 = t221 * t221 + ey_right_flip_up * ey_right_flip_up;
+    const real_t r_elbow_right_flip_up = cf_sqrt(t223);
+    const real_t t224 = t1 - r_elbow_right_flip_up;
+    const real_t t225 = t44 + r_elbow_right_flip_up;
+    const real_t t226 = r_elbow_right_flip_up - t44;
+    const int t227 = t38 & (t37 <= t224) & (t37 <= t225) & (t37 <= t226);
+    const int unreachable_4 = !t227;
+    const real_t t228 = cf_poison(invalid | unreachable_4);
+    const real_t t229 = t132 + t228;
     const int folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3;
-    const real_t C_elbow_right_flip_up = cf_max(t225, CLOSEDFORM_C(0.0));
-    const real_t A_elbow_right_flip_up = cf_max(t223, CLOSEDFORM_C(0.0));
-    const real_t t229 = C_elbow_right_flip_up * A_elbow_right_flip_up;
-    const real_t B_elbow_right_flip_up = cf_max(t224, CLOSEDFORM_C(0.0));
+    const real_t C_elbow_right_flip_up = cf_max(t226, CLOSEDFORM_C(0.0));
+    const real_t A_elbow_right_flip_up = cf_max(t224, CLOSEDFORM_C(0.0));
+    const real_t t230 = C_elbow_right_flip_up * A_elbow_right_flip_up;
+    const real_t B_elbow_right_flip_up = cf_max(t225, CLOSEDFORM_C(0.0));
     const real_t S_elbow_right_flip_up = t1 + r_elbow_right_flip_up;
-    const real_t t230 = B_elbow_right_flip_up * S_elbow_right_flip_up;
-    const real_t width_elbow_right_flip_up = t229 + t230;
-    const real_t c_base_elbow_right_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t229 - t230) / width_elbow_right_flip_up));
-    const real_t t231 = ey_right_flip_up * c_base_elbow_right_flip_up;
-    const real_t t232 = t231 / r_elbow_right_flip_up;
-    const real_t t233 = CLOSEDFORM_C(2.0) * cf_sqrt(B_elbow_right_flip_up);
-    const real_t t234 = t233 * cf_sqrt(C_elbow_right_flip_up) * cf_sqrt(A_elbow_right_flip_up);
-    const real_t area_elbow_right_flip_up = t234 * cf_sqrt(S_elbow_right_flip_up);
-    const real_t t235 = area_elbow_right_flip_up / width_elbow_right_flip_up;
-    const real_t s_base_elbow_right_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t235);
-    const real_t t236 = t220 * s_base_elbow_right_flip_up / r_elbow_right_flip_up;
-    const real_t s2_right_flip_up = cf_select(folded_elbow_right_flip_up, CLOSEDFORM_C(0.0), t232 + t236);
-    const real_t t237 = ey_right_flip_up * s_base_elbow_right_flip_up;
-    const real_t t238 = t237 / r_elbow_right_flip_up;
-    const real_t t239 = t220 * c_base_elbow_right_flip_up / r_elbow_right_flip_up;
-    const real_t c2_right_flip_up = cf_select(folded_elbow_right_flip_up, CLOSEDFORM_C(1.0), t238 - t239);
-    const real_t t240 = cf_atan2(s2_right_flip_up, c2_right_flip_up);
-    const real_t t241 = C_elbow_right_flip_up * B_elbow_right_flip_up;
-    const real_t t242 = A_elbow_right_flip_up * S_elbow_right_flip_up;
-    const real_t sum_elbow_right_flip_up = t241 + t242;
-    const real_t t243 = area_elbow_right_flip_up / sum_elbow_right_flip_up;
-    const real_t s3_right_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t243);
-    const real_t c3_right_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), (t241 - t242) / sum_elbow_right_flip_up);
-    const real_t t244 = cf_atan2(s3_right_flip_up, c3_right_flip_up);
-    const real_t t245 = cf_atan2(sphi_right_flip_up, cphi_right_flip_up);
-    const real_t t246 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up;
-    const real_t t247 = cf_wrap(-cf_atan2(t246, M_33_right_noflip_up));
-    const real_t t248 = t247 + t227;
-    const real_t t249 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up;
-    const real_t t250 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up;
-    const real_t t251 = cf_wrap(-cf_atan2(t249, t250)) + t227;
-    const real_t s2_right_flip_down = cf_select(folded_elbow_right_flip_up, CLOSEDFORM_C(0.0), t232 - t236);
-    const real_t c2_right_flip_down = cf_select(folded_elbow_right_flip_up, CLOSEDFORM_C(1.0), -(t239 + t238));
-    const real_t t252 = cf_atan2(s2_right_flip_down, c2_right_flip_down);
-    const int t253 = free1 | aligned_wrist | no_link_elbow;
-    const real_t t254 = cf_status(invalid, unreachable, t253 | folded_elbow);
-    const real_t t255 = cf_status(invalid, unreachable_2, t253 | folded_elbow_left_flip_up);
-    const int t256 = free1 | aligned_wrist_right_noflip_up | no_link_elbow;
-    const real_t t257 = cf_status(invalid, unreachable_3, t256 | folded_elbow_right_noflip_up);
-    const real_t t258 = cf_status(invalid, unreachable_4, t256 | folded_elbow_right_flip_up);
-    q[0] = t67;
-    q[1] = cf_wrap(t75) + t66;
-    q[2] = cf_wrap(t78) + t66;
-    q[3] = cf_wrap(t79 - t75 - t78) + t66;
-    q[4] = t81;
-    q[5] = t83;
-    q[6] = t67;
-    q[7] = cf_wrap(t84) + t66;
-    q[8] = cf_wrap(-t78) + t66;
-    q[9] = cf_wrap(t79 + t78 - t84) + t66;
-    q[10] = t81;
-    q[11] = t83;
-    q[12] = t108;
-    q[13] = cf_wrap(t118) + t107;
-    q[14] = cf_wrap(t122) + t107;
-    q[15] = cf_wrap(t123 - t118 - t122) + t107;
-    q[16] = t125;
-    q[17] = t128;
-    q[18] = t108;
-    q[19] = cf_wrap(t129) + t107;
-    q[20] = cf_wrap(-t122) + t107;
-    q[21] = cf_wrap(t123 + t122 - t129) + t107;
-    q[22] = t125;
-    q[23] = t128;
-    q[24] = t176;
-    q[25] = cf_wrap(t189) + t175;
-    q[26] = cf_wrap(t193) + t175;
-    q[27] = cf_wrap(t194 - t189 - t193) + t175;
-    q[28] = t197;
-    q[29] = t200;
-    q[30] = t176;
-    q[31] = cf_wrap(t201) + t175;
-    q[32] = cf_wrap(-t193) + t175;
-    q[33] = cf_wrap(t194 + t193 - t201) + t175;
-    q[34] = t197;
-    q[35] = t200;
-    q[36] = t228;
-    q[37] = cf_wrap(t240) + t227;
-    q[38] = cf_wrap(t244) + t227;
-    q[39] = cf_wrap(t245 - t240 - t244) + t227;
-    q[40] = t248;
-    q[41] = t251;
-    q[42] = t228;
-    q[43] = cf_wrap(t252) + t227;
-    q[44] = cf_wrap(-t244) + t227;
-    q[45] = cf_wrap(t245 + t244 - t252) + t227;
-    q[46] = t248;
-    q[47] = t251;
-    status[0] = t254;
-    status[1] = t254;
-    status[2] = t255;
-    status[3] = t255;
-    status[4] = t257;
-    status[5] = t257;
-    status[6] = t258;
-    status[7] = t258;
+    const real_t t231 = B_elbow_right_flip_up * S_elbow_right_flip_up;
+    const real_t width_elbow_right_flip_up = t230 + t231;
+    const real_t c_base_elbow_right_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t230 - t231) / width_elbow_right_flip_up));
+    const real_t t232 = ey_right_flip_up * c_base_elbow_right_flip_up;
+    const real_t t233 = t232 / r_elbow_right_flip_up;
+    const real_t t234 = CLOSEDFORM_C(2.0) * cf_sqrt(B_elbow_right_flip_up);
+    const real_t t235 = t234 * cf_sqrt(C_elbow_right_flip_up) * cf_sqrt(A_elbow_right_flip_up);
+    const real_t area_elbow_right_flip_up = t235 * cf_sqrt(S_elbow_right_flip_up);
+    const real_t t236 = area_elbow_right_flip_up / width_elbow_right_flip_up;
+    const real_t s_base_elbow_right_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t236);
+    const real_t t237 = t221 * s_base_elbow_right_flip_up / r_elbow_right_flip_up;
+    const real_t s2_right_flip_up = cf_select(folded_elbow_right_flip_up, CLOSEDFORM_C(0.0), t233 + t237);
+    const real_t t238 = ey_right_flip_up * s_base_elbow_right_flip_up;
+    const real_t t239 = t238 / r_elbow_right_flip_up;
+    const real_t t240 = t221 * c_base_elbow_right_flip_up / r_elbow_right_flip_up;
+    const real_t c2_right_flip_up = cf_select(folded_elbow_right_flip_up, CLOSEDFORM_C(1.0), t239 - t240);
+    const real_t t241 = cf_atan2(s2_right_flip_up, c2_right_flip_up);
+    const real_t t242 = C_elbow_right_flip_up * B_elbow_right_flip_up;
+    const real_t t243 = A_elbow_right_flip_up * S_elbow_right_flip_up;
+    const real_t sum_elbow_right_flip_up = t242 + t243;
+    const real_t t244 = area_elbow_right_flip_up / sum_elbow_right_flip_up;
+    const real_t s3_right_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t244);
+    const real_t c3_right_flip_up = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), (t242 - t243) / sum_elbow_right_flip_up);
+    const real_t t245 = cf_atan2(s3_right_flip_up, c3_right_flip_up);
+    const real_t t246 = cf_atan2(sphi_right_flip_up, cphi_right_flip_up);
+    const real_t t247 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up;
+    const real_t t248 = cf_wrap(-cf_atan2(t247, M_33_right_noflip_up));
+    const real_t t249 = t248 + t228;
+    const real_t t250 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up;
+    const real_t t251 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up;
+    const real_t t252 = cf_wrap(-cf_atan2(t250, t251)) + t228;
+    const real_t s2_right_flip_down = cf_select(folded_elbow_right_flip_up, CLOSEDFORM_C(0.0), t233 - t237);
+    const real_t c2_right_flip_down = cf_select(folded_elbow_right_flip_up, CLOSEDFORM_C(1.0), -(t240 + t239));
+    const real_t t253 = cf_atan2(s2_right_flip_down, c2_right_flip_down);
+    const int t254 = free1 | aligned_wrist | no_link_elbow;
+    const real_t t255 = cf_status(invalid, unreachable, t254 | folded_elbow);
+    const real_t t256 = cf_status(invalid, unreachable_2, t254 | folded_elbow_left_flip_up);
+    const int t257 = free1 | aligned_wrist_right_noflip_up | no_link_elbow;
+    const real_t t258 = cf_status(invalid, unreachable_3, t257 | folded_elbow_right_noflip_up);
+    const real_t t259 = cf_status(invalid, unreachable_4, t257 | folded_elbow_right_flip_up);
+    q[0] = t68;
+    q[1] = cf_wrap(t76) + t67;
+    q[2] = cf_wrap(t79) + t67;
+    q[3] = cf_wrap(t80 - t76 - t79) + t67;
+    q[4] = t82;
+    q[5] = t84;
+    q[6] = t68;
+    q[7] = cf_wrap(t85) + t67;
+    q[8] = cf_wrap(-t79) + t67;
+    q[9] = cf_wrap(t80 + t79 - t85) + t67;
+    q[10] = t82;
+    q[11] = t84;
+    q[12] = t109;
+    q[13] = cf_wrap(t119) + t108;
+    q[14] = cf_wrap(t123) + t108;
+    q[15] = cf_wrap(t124 - t119 - t123) + t108;
+    q[16] = t126;
+    q[17] = t129;
+    q[18] = t109;
+    q[19] = cf_wrap(t130) + t108;
+    q[20] = cf_wrap(-t123) + t108;
+    q[21] = cf_wrap(t124 + t123 - t130) + t108;
+    q[22] = t126;
+    q[23] = t129;
+    q[24] = t177;
+    q[25] = cf_wrap(t190) + t176;
+    q[26] = cf_wrap(t194) + t176;
+    q[27] = cf_wrap(t195 - t190 - t194) + t176;
+    q[28] = t198;
+    q[29] = t201;
+    q[30] = t177;
+    q[31] = cf_wrap(t202) + t176;
+    q[32] = cf_wrap(-t194) + t176;
+    q[33] = cf_wrap(t195 + t194 - t202) + t176;
+    q[34] = t198;
+    q[35] = t201;
+    q[36] = t229;
+    q[37] = cf_wrap(t241) + t228;
+    q[38] = cf_wrap(t245) + t228;
+    q[39] = cf_wrap(t246 - t241 - t245) + t228;
+    q[40] = t249;
+    q[41] = t252;
+    q[42] = t229;
+    q[43] = cf_wrap(t253) + t228;
+    q[44] = cf_wrap(-t245) + t228;
+    q[45] = cf_wrap(t246 + t245 - t253) + t228;
+    q[46] = t249;
+    q[47] = t252;
+    status[0] = t255;
+    status[1] = t255;
+    status[2] = t256;
+    status[3] = t256;
+    status[4] = t258;
+    status[5] = t258;
+    status[6] = t259;
+    status[7] = t259;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -3,14 +3,14 @@
  * derivations/ur_arm.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
+ *   pose: 32 add, 57 multiply, 6 sincos
  *   fk: 32 add, 57 multiply, 6 sincos
  *   jacobian: 29 add, 54 multiply, 5 sincos
- *   pose: 32 add, 57 multiply, 6 sincos
- *   jacobian_space: 46 add, 76 multiply, 5 sincos
- *   jacobian_body: 34 add, 64 multiply, 5 sincos
  *   determinant: 6 add, 15 multiply, 4 sincos
  *   singularities: 6 add, 11 multiply, 4 sincos
- *   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 233 multiply, 47 sqrt
+ *   jacobian_space: 46 add, 76 multiply, 5 sincos
+ *   jacobian_body: 34 add, 64 multiply, 5 sincos
+ *   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 234 multiply, 47 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
@@ -45,6 +45,16 @@ typedef struct {
  * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
  * Returns T: shape (..., 4, 4).
  */
+void ur_arm_pose(const ur_arm_params *params, const real_t q[6],
+    real_t T[16]);
+void ur_arm_pose_batch(size_t n, const ur_arm_params *params, const real_t
+    *q, size_t q_stride, real_t *T, size_t T_stride);
+
+/*
+ * Pose of the tool in the base frame.
+ * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
+ * Returns T: shape (..., 4, 4).
+ */
 void ur_arm_fk(const ur_arm_params *params, const real_t q[6],
     real_t T[16]);
 void ur_arm_fk_batch(size_t n, const ur_arm_params *params, const real_t
@@ -59,36 +69,6 @@ void ur_arm_fk_batch(size_t n, const ur_arm_params *params, const real_t
 void ur_arm_jacobian(const ur_arm_params *params, const real_t q[6],
     real_t J[36]);
 void ur_arm_jacobian_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
-
-/*
- * Pose of the tool in the base frame.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns T: shape (..., 4, 4).
- */
-void ur_arm_pose(const ur_arm_params *params, const real_t q[6],
-    real_t T[16]);
-void ur_arm_pose_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride);
-
-/*
- * Twist (v; omega) of the tool in the base frame per joint rate.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
- */
-void ur_arm_jacobian_space(const ur_arm_params *params, const real_t q[6],
-    real_t J[36]);
-void ur_arm_jacobian_space_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
-
-/*
- * Twist (v; omega) of the tool in its own frame per joint rate.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
- */
-void ur_arm_jacobian_body(const ur_arm_params *params, const real_t q[6],
-    real_t J[36]);
-void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params, const real_t
     *q, size_t q_stride, real_t *J, size_t J_stride);
 
 /*
@@ -111,6 +91,26 @@ void ur_arm_singularities(const ur_arm_params *params, const real_t q[6],
 void ur_arm_singularities_batch(size_t n, const ur_arm_params *params, const real_t
     *q, size_t q_stride, real_t *factors, size_t
     factors_stride);
+
+/*
+ * Twist (v; omega) of the tool in the base frame per joint rate.
+ * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
+ * Returns J: shape (..., 6, 6).
+ */
+void ur_arm_jacobian_space(const ur_arm_params *params, const real_t q[6],
+    real_t J[36]);
+void ur_arm_jacobian_space_batch(size_t n, const ur_arm_params *params, const real_t
+    *q, size_t q_stride, real_t *J, size_t J_stride);
+
+/*
+ * Twist (v; omega) of the tool in its own frame per joint rate.
+ * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
+ * Returns J: shape (..., 6, 6).
+ */
+void ur_arm_jacobian_body(const ur_arm_params *params, const real_t q[6],
+    real_t J[36]);
+void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params, const real_t
+    *q, size_t q_stride, real_t *J, size_t J_stride);
 
 /*
  * The joint angles of a pose, all eight postures.

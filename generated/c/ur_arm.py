@@ -24,21 +24,21 @@ __all__ = [
     "Positions",
     "Solutions",
     "Status",
+    "pose",
     "fk",
     "jacobian",
-    "pose",
-    "jacobian_space",
-    "jacobian_body",
     "determinant",
     "singularities",
+    "jacobian_space",
+    "jacobian_body",
     "ik",
 ]
 
+pose = _native.function("ur_arm.pose")
 fk = _native.function("ur_arm.fk")
 jacobian = _native.function("ur_arm.jacobian")
-pose = _native.function("ur_arm.pose")
-jacobian_space = _native.function("ur_arm.jacobian_space")
-jacobian_body = _native.function("ur_arm.jacobian_body")
 determinant = _native.function("ur_arm.determinant")
 singularities = _native.function("ur_arm.singularities")
+jacobian_space = _native.function("ur_arm.jacobian_space")
+jacobian_body = _native.function("ur_arm.jacobian_body")
 ik = _native.function("ur_arm.ik", Solutions)

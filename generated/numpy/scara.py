@@ -3,12 +3,12 @@
 # Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   pose: 9 add, 16 multiply, 3 sincos
-#   jacobian_space: 4 add, 8 multiply, 2 sincos
-#   jacobian_body: 4 add, 8 multiply, 2 sincos
 #   fk: 9 add, 1 atan2, 16 multiply, 3 sincos, 1 compare and select
 #   jacobian: 4 add, 8 multiply, 2 sincos
 #   determinant: 2 multiply, 1 sincos
 #   singularities: 1 sincos
+#   jacobian_space: 4 add, 8 multiply, 2 sincos
+#   jacobian_body: 4 add, 8 multiply, 2 sincos
 #   ik: 28 add, 49 compare and select, 4 atan2, 10 divide, 19 multiply, 1 sincos, 5 sqrt
 """SCARA arm (RRPR).
 
@@ -46,12 +46,12 @@ __all__ = [
     "Solutions",
     "Status",
     "pose",
-    "jacobian_space",
-    "jacobian_body",
     "fk",
     "jacobian",
     "determinant",
     "singularities",
+    "jacobian_space",
+    "jacobian_body",
     "ik",
 ]
 
@@ -115,6 +115,141 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
     Returns T: shape (..., 4, 4).
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _fk(theta1, theta2, d3, theta4, l1, l2, h):
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    s4, c4 = _runtime.sincos(theta4)
+    t1 = c2 * c4 + s2 * s4
+    t2 = s2 * c4 - c2 * s4
+    t3 = np.arctan2(s1 * t1 + c1 * t2, c1 * t1 - s1 * t2)
+    return (
+        l1 * c1 + l2 * (c1 * c2 - s1 * s2),
+        l1 * s1 + l2 * (s1 * c2 + c1 * s2),
+        h - d3,
+        _runtime.wrap(t3),
+    )
+
+
+_FK = _runtime.Kernel(
+    "scara.fk",
+    _fk,
+    (_runtime.Array("q", (4,)),),
+    (_runtime.Array("x", (4,)),),
+    Parameters._fields,
+    ('l1', 'l2', 'h'),
+)
+
+
+def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """Task coordinates (x, y, z, yaw).
+
+    q: shape (..., 4): theta1, theta2, d3, theta4.
+    Returns x: shape (..., 4).
+    The yaw is reduced to (-pi, pi].
+    """
+    result = _runtime.evaluate(_FK, (q,), params, out)
+    return result
+
+
+def _jacobian(theta1, theta2, _d3, _theta4, l1, l2):
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    t1 = l2 * (s1 * c2 + c1 * s2)
+    t2 = l2 * (c1 * c2 - s1 * s2)
+    return (
+        -(l1 * s1 + t1),
+        -t1,
+        0.0,
+        0.0,
+        l1 * c1 + t2,
+        t2,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        -1.0,
+        0.0,
+        1.0,
+        1.0,
+        0.0,
+        -1.0,
+    )
+
+
+_JACOBIAN = _runtime.Kernel(
+    "scara.jacobian",
+    _jacobian,
+    (_runtime.Array("q", (4,)),),
+    (_runtime.Array("J", (4, 4)),),
+    Parameters._fields,
+    ('l1', 'l2'),
+)
+
+
+def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """Derivative of (x, y, z, yaw) by the joints.
+
+    q: shape (..., 4): theta1, theta2, d3, theta4.
+    Returns J: shape (..., 4, 4).
+    """
+    result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
+    return result
+
+
+def _determinant(_theta1, theta2, _d3, _theta4, l1, l2):
+    s2 = np.sin(theta2)
+    return (
+        l1 * l2 * s2,
+    )
+
+
+_DETERMINANT = _runtime.Kernel(
+    "scara.determinant",
+    _determinant,
+    (_runtime.Array("q", (4,)),),
+    (_runtime.Array("det", ()),),
+    Parameters._fields,
+    ('l1', 'l2'),
+)
+
+
+def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """Determinant of the Jacobian.
+
+    q: shape (..., 4): theta1, theta2, d3, theta4.
+    Returns det: shape (...).
+    """
+    result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
+    return result
+
+
+def _singularities(_theta1, theta2, _d3, _theta4):
+    s2 = np.sin(theta2)
+    return (
+        s2,
+    )
+
+
+_SINGULARITIES = _runtime.Kernel(
+    "scara.singularities",
+    _singularities,
+    (_runtime.Array("q", (4,)),),
+    (_runtime.Array("factors", (1,)),),
+    Parameters._fields,
+    (),
+)
+
+
+def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """The factors of the determinant that hold a joint.
+
+    q: shape (..., 4): theta1, theta2, d3, theta4.
+    Returns factors: shape (..., 1).
+    """
+    result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
 
 
@@ -221,141 +356,6 @@ def jacobian_body(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
     Returns J: shape (..., 6, 4).
     """
     result = _runtime.evaluate(_JACOBIAN_BODY, (q,), params, out)
-    return result
-
-
-def _fk(theta1, theta2, d3, theta4, l1, l2, h):
-    s1, c1 = _runtime.sincos(theta1)
-    s2, c2 = _runtime.sincos(theta2)
-    s4, c4 = _runtime.sincos(theta4)
-    t1 = c2 * c4 + s2 * s4
-    t2 = s2 * c4 - c2 * s4
-    t3 = np.arctan2(s1 * t1 + c1 * t2, c1 * t1 - s1 * t2)
-    return (
-        l1 * c1 + l2 * (c1 * c2 - s1 * s2),
-        l1 * s1 + l2 * (s1 * c2 + c1 * s2),
-        h - d3,
-        _runtime.wrap(t3),
-    )
-
-
-_FK = _runtime.Kernel(
-    "scara.fk",
-    _fk,
-    (_runtime.Array("q", (4,)),),
-    (_runtime.Array("x", (4,)),),
-    Parameters._fields,
-    ('l1', 'l2', 'h'),
-)
-
-
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Position of the tool and its yaw.
-
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns x: shape (..., 4).
-    The yaw theta1 + theta2 - theta4 is reduced to (-pi, pi].
-    """
-    result = _runtime.evaluate(_FK, (q,), params, out)
-    return result
-
-
-def _jacobian(theta1, theta2, _d3, _theta4, l1, l2):
-    s1, c1 = _runtime.sincos(theta1)
-    s2, c2 = _runtime.sincos(theta2)
-    t1 = l2 * (s1 * c2 + c1 * s2)
-    t2 = l2 * (c1 * c2 - s1 * s2)
-    return (
-        -(l1 * s1 + t1),
-        -t1,
-        0.0,
-        0.0,
-        l1 * c1 + t2,
-        t2,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -1.0,
-        0.0,
-        1.0,
-        1.0,
-        0.0,
-        -1.0,
-    )
-
-
-_JACOBIAN = _runtime.Kernel(
-    "scara.jacobian",
-    _jacobian,
-    (_runtime.Array("q", (4,)),),
-    (_runtime.Array("J", (4, 4)),),
-    Parameters._fields,
-    ('l1', 'l2'),
-)
-
-
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Derivative of (x, y, z, yaw) by the joints.
-
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns J: shape (..., 4, 4).
-    """
-    result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
-    return result
-
-
-def _determinant(_theta1, theta2, _d3, _theta4, l1, l2):
-    s2 = np.sin(theta2)
-    return (
-        l1 * l2 * s2,
-    )
-
-
-_DETERMINANT = _runtime.Kernel(
-    "scara.determinant",
-    _determinant,
-    (_runtime.Array("q", (4,)),),
-    (_runtime.Array("det", ()),),
-    Parameters._fields,
-    ('l1', 'l2'),
-)
-
-
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Determinant of the Jacobian.
-
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns det: shape (...).
-    """
-    result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
-    return result
-
-
-def _singularities(_theta1, theta2, _d3, _theta4):
-    s2 = np.sin(theta2)
-    return (
-        s2,
-    )
-
-
-_SINGULARITIES = _runtime.Kernel(
-    "scara.singularities",
-    _singularities,
-    (_runtime.Array("q", (4,)),),
-    (_runtime.Array("factors", (1,)),),
-    Parameters._fields,
-    (),
-)
-
-
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """The factors of the determinant that hold a joint.
-
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns factors: shape (..., 1).
-    """
-    result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
 
 

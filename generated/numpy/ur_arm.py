@@ -2,14 +2,14 @@
 # derivations/ur_arm.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
+#   pose: 32 add, 57 multiply, 6 sincos
 #   fk: 32 add, 57 multiply, 6 sincos
 #   jacobian: 29 add, 54 multiply, 5 sincos
-#   pose: 32 add, 57 multiply, 6 sincos
-#   jacobian_space: 46 add, 76 multiply, 5 sincos
-#   jacobian_body: 34 add, 64 multiply, 5 sincos
 #   determinant: 6 add, 15 multiply, 4 sincos
 #   singularities: 6 add, 11 multiply, 4 sincos
-#   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 233 multiply, 47 sqrt
+#   jacobian_space: 46 add, 76 multiply, 5 sincos
+#   jacobian_body: 34 add, 64 multiply, 5 sincos
+#   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 234 multiply, 47 sqrt
 """UR-type arm (three parallel axes).
 
 theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and
@@ -46,13 +46,13 @@ __all__ = [
     "Positions",
     "Solutions",
     "Status",
+    "pose",
     "fk",
     "jacobian",
-    "pose",
-    "jacobian_space",
-    "jacobian_body",
     "determinant",
     "singularities",
+    "jacobian_space",
+    "jacobian_body",
     "ik",
 ]
 
@@ -75,6 +75,73 @@ class Parameters(NamedTuple):
 
 
 _DEFAULT = Parameters()
+
+
+def _pose(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6):
+    s6, c6 = _runtime.sincos(theta6)
+    s1, c1 = _runtime.sincos(theta1)
+    s5, c5 = _runtime.sincos(theta5)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    s4, c4 = _runtime.sincos(theta4)
+    t1 = s1 * s5
+    c34 = c3 * c4 - s3 * s4
+    s34 = s3 * c4 + c3 * s4
+    s234 = s2 * c34 + c2 * s34
+    t2 = c1 * s234
+    t3 = c1 * c5
+    c234 = c2 * c34 - s2 * s34
+    t4 = c6 * c234
+    t5 = s6 * c234
+    t6 = s1 * c5
+    t7 = c1 * s5
+    t8 = L2 * c2
+    t9 = L3 * (c2 * c3 - s2 * s3)
+    t10 = d4 * s1 + d6 * t6 + d5 * t2 - c1 * t8 - c1 * t9
+    t11 = d6 * c234
+    t12 = s1 * s234
+    t13 = d4 * c1 + d6 * t3 - d5 * t12 + s1 * t8 + s1 * t9
+    t14 = c5 * s234
+    t15 = s5 * s234
+    t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234
+    return (
+        c6 * t1 - s6 * t2 + t3 * t4,
+        -(s6 * t1 + c6 * t2 + t3 * t5),
+        t6 - c234 * t7,
+        t10 - t7 * t11,
+        t6 * t4 - (c6 * t7 + s6 * t12),
+        s6 * t7 - c6 * t12 - t6 * t5,
+        -(t3 + c234 * t1),
+        -(t13 + t1 * t11),
+        t5 + c6 * t14,
+        t4 - s6 * t14,
+        -t15,
+        t16 - d6 * t15,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+    )
+
+
+_POSE = _runtime.Kernel(
+    "ur_arm.pose",
+    _pose,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("T", (4, 4)),),
+    Parameters._fields,
+    ('d1', 'L2', 'L3', 'd4', 'd5', 'd6'),
+)
+
+
+def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """Pose of the tool in the base frame.
+
+    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
+    Returns T: shape (..., 4, 4).
+    """
+    result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
 
 
 def _fk(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6):
@@ -234,70 +301,69 @@ def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
     return result
 
 
-def _pose(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6):
-    s6, c6 = _runtime.sincos(theta6)
-    s1, c1 = _runtime.sincos(theta1)
-    s5, c5 = _runtime.sincos(theta5)
-    s2, c2 = _runtime.sincos(theta2)
+def _determinant(_theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d5):
     s3, c3 = _runtime.sincos(theta3)
+    s2, c2 = _runtime.sincos(theta2)
     s4, c4 = _runtime.sincos(theta4)
-    t1 = s1 * s5
-    c34 = c3 * c4 - s3 * s4
-    s34 = s3 * c4 + c3 * s4
-    s234 = s2 * c34 + c2 * s34
-    t2 = c1 * s234
-    t3 = c1 * c5
-    c234 = c2 * c34 - s2 * s34
-    t4 = c6 * c234
-    t5 = s6 * c234
-    t6 = s1 * c5
-    t7 = c1 * s5
-    t8 = L2 * c2
-    t9 = L3 * (c2 * c3 - s2 * s3)
-    t10 = d4 * s1 + d6 * t6 + d5 * t2 - c1 * t8 - c1 * t9
-    t11 = d6 * c234
-    t12 = s1 * s234
-    t13 = d4 * c1 + d6 * t3 - d5 * t12 + s1 * t8 + s1 * t9
-    t14 = c5 * s234
-    t15 = s5 * s234
-    t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234
+    s5 = np.sin(theta5)
+    s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4)
+    t1 = L2 * c2 + L3 * (c2 * c3 - s2 * s3) - d5 * s234
     return (
-        c6 * t1 - s6 * t2 + t3 * t4,
-        -(s6 * t1 + c6 * t2 + t3 * t5),
-        t6 - c234 * t7,
-        t10 - t7 * t11,
-        t6 * t4 - (c6 * t7 + s6 * t12),
-        s6 * t7 - c6 * t12 - t6 * t5,
-        -(t3 + c234 * t1),
-        -(t13 + t1 * t11),
-        t5 + c6 * t14,
-        t4 - s6 * t14,
-        -t15,
-        t16 - d6 * t15,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
+        -(L2 * L3 * s3 * t1 * s5),
     )
 
 
-_POSE = _runtime.Kernel(
-    "ur_arm.pose",
-    _pose,
+_DETERMINANT = _runtime.Kernel(
+    "ur_arm.determinant",
+    _determinant,
     (_runtime.Array("q", (6,)),),
-    (_runtime.Array("T", (4, 4)),),
+    (_runtime.Array("det", ()),),
     Parameters._fields,
-    ('d1', 'L2', 'L3', 'd4', 'd5', 'd6'),
+    ('L2', 'L3', 'd5'),
 )
 
 
-def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Pose of the tool in the base frame.
+def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """Determinant of the Jacobian.
 
     q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns T: shape (..., 4, 4).
+    Returns det: shape (...).
     """
-    result = _runtime.evaluate(_POSE, (q,), params, out)
+    result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
+    return result
+
+
+def _singularities(_theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d5):
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    s4, c4 = _runtime.sincos(theta4)
+    s5 = np.sin(theta5)
+    s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4)
+    t1 = d5 * s234 - (L2 * c2 + L3 * (c2 * c3 - s2 * s3))
+    return (
+        t1,
+        s3,
+        s5,
+    )
+
+
+_SINGULARITIES = _runtime.Kernel(
+    "ur_arm.singularities",
+    _singularities,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("factors", (3,)),),
+    Parameters._fields,
+    ('L2', 'L3', 'd5'),
+)
+
+
+def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+    """The factors of the determinant that hold a joint.
+
+    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
+    Returns factors: shape (..., 3).
+    """
+    result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
 
 
@@ -493,72 +559,6 @@ def jacobian_body(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
     return result
 
 
-def _determinant(_theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d5):
-    s3, c3 = _runtime.sincos(theta3)
-    s2, c2 = _runtime.sincos(theta2)
-    s4, c4 = _runtime.sincos(theta4)
-    s5 = np.sin(theta5)
-    s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4)
-    t1 = L2 * c2 + L3 * (c2 * c3 - s2 * s3) - d5 * s234
-    return (
-        -(L2 * L3 * s3 * t1 * s5),
-    )
-
-
-_DETERMINANT = _runtime.Kernel(
-    "ur_arm.determinant",
-    _determinant,
-    (_runtime.Array("q", (6,)),),
-    (_runtime.Array("det", ()),),
-    Parameters._fields,
-    ('L2', 'L3', 'd5'),
-)
-
-
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Determinant of the Jacobian.
-
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns det: shape (...).
-    """
-    result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
-    return result
-
-
-def _singularities(_theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d5):
-    s2, c2 = _runtime.sincos(theta2)
-    s3, c3 = _runtime.sincos(theta3)
-    s4, c4 = _runtime.sincos(theta4)
-    s5 = np.sin(theta5)
-    s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4)
-    t1 = d5 * s234 - (L2 * c2 + L3 * (c2 * c3 - s2 * s3))
-    return (
-        t1,
-        s3,
-        s5,
-    )
-
-
-_SINGULARITIES = _runtime.Kernel(
-    "ur_arm.singularities",
-    _singularities,
-    (_runtime.Array("q", (6,)),),
-    (_runtime.Array("factors", (3,)),),
-    Parameters._fields,
-    ('L2', 'L3', 'd5'),
-)
-
-
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """The factors of the determinant that hold a joint.
-
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns factors: shape (..., 3).
-    """
-    result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
-    return result
-
-
 def _ik(
     T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T43, T44, d1, L2, L3,
     d4, d5, d6
@@ -607,7 +607,7 @@ def _ik(
     t33 = T33 * T33
     M_13 = T13 * c1 - T23 * t11
     h_wrist = np.sqrt(t33 + M_13 * M_13)
-    t34 = _runtime.VANISHING * 4.0
+    t34 = _runtime.VANISHING * 16.0
     aligned_wrist = h_wrist <= t34
     t35 = d1 - (T34 - T33 * d6)
     t36 = t35 * t35
@@ -649,406 +649,407 @@ def _ik(
     t51 = s_phi - c_near
     s_near = np.where(hub_mid, 0.0, (across * us_near - t35 * uc_near) / r_hub)
     t52 = c_phi + s_near
-    within_rounding = h_wrist * np.sqrt(t51 * t51 + t52 * t52) <= t34
+    t53 = _runtime.VANISHING * 4.0
+    within_rounding = h_wrist * np.sqrt(t51 * t51 + t52 * t52) <= t53
     inside = np.abs(here - in_reach) <= t3
-    t53 = np.where(within_rounding, np.where(inside, s_phi, c_near), s_phi)
-    sphi = np.where(aligned_wrist, c_mid, t53)
-    t54 = across - d5 * sphi
+    t54 = np.where(within_rounding, np.where(inside, s_phi, c_near), s_phi)
+    sphi = np.where(aligned_wrist, c_mid, t54)
+    t55 = across - d5 * sphi
     s_mid = np.where(hub_mid, 0.0, (across * us_mid - t35 * uc_mid) / r_hub)
-    t55 = np.where(within_rounding, -np.where(inside, -c_phi, s_near), c_phi)
-    cphi = np.where(aligned_wrist, -s_mid, t55)
+    t56 = np.where(within_rounding, -np.where(inside, -c_phi, s_near), c_phi)
+    cphi = np.where(aligned_wrist, -s_mid, t56)
     ey = t35 - d5 * cphi
-    r_elbow = np.sqrt(t54 * t54 + ey * ey)
-    t56 = t1 - r_elbow
-    t57 = t38 + r_elbow
-    t58 = r_elbow - t38
-    t59 = t32 & (t31 <= t56) & (t31 <= t57) & (t31 <= t58)
-    unreachable = np.logical_not(t59)
-    t60 = _runtime.poison(invalid | unreachable)
-    t61 = t14 + t60
+    r_elbow = np.sqrt(t55 * t55 + ey * ey)
+    t57 = t1 - r_elbow
+    t58 = t38 + r_elbow
+    t59 = r_elbow - t38
+    t60 = t32 & (t31 <= t57) & (t31 <= t58) & (t31 <= t59)
+    unreachable = np.logical_not(t60)
+    t61 = _runtime.poison(invalid | unreachable)
+    t62 = t14 + t61
     folded_elbow = r_elbow <= t3
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (t1 * t1)
-    C_elbow = np.maximum(t58, 0.0)
-    A_elbow = np.maximum(t56, 0.0)
-    t62 = C_elbow * A_elbow
-    B_elbow = np.maximum(t57, 0.0)
+    C_elbow = np.maximum(t59, 0.0)
+    A_elbow = np.maximum(t57, 0.0)
+    t63 = C_elbow * A_elbow
+    B_elbow = np.maximum(t58, 0.0)
     S_elbow = t1 + r_elbow
-    t63 = B_elbow * S_elbow
-    width_elbow = t62 + t63
-    c_base_elbow = np.where(no_link_elbow, 1.0, -((t62 - t63) / width_elbow))
-    t64 = ey * c_base_elbow / r_elbow
-    t65 = 2.0 * np.sqrt(B_elbow) * np.sqrt(C_elbow) * np.sqrt(A_elbow)
-    area_elbow = t65 * np.sqrt(S_elbow)
+    t64 = B_elbow * S_elbow
+    width_elbow = t63 + t64
+    c_base_elbow = np.where(no_link_elbow, 1.0, -((t63 - t64) / width_elbow))
+    t65 = ey * c_base_elbow / r_elbow
+    t66 = 2.0 * np.sqrt(B_elbow) * np.sqrt(C_elbow) * np.sqrt(A_elbow)
+    area_elbow = t66 * np.sqrt(S_elbow)
     s_base_elbow = np.where(no_link_elbow, 0.0, area_elbow / width_elbow)
-    t66 = t54 * s_base_elbow / r_elbow
-    t67 = ey * s_base_elbow / r_elbow
-    t68 = t54 * c_base_elbow / r_elbow
-    t69 = np.arctan2(np.where(folded_elbow, 0.0, t64 + t66), np.where(folded_elbow, 1.0, t67 - t68))
-    t70 = C_elbow * B_elbow
-    t71 = A_elbow * S_elbow
-    sum_elbow = t70 + t71
+    t67 = t55 * s_base_elbow / r_elbow
+    t68 = ey * s_base_elbow / r_elbow
+    t69 = t55 * c_base_elbow / r_elbow
+    t70 = np.arctan2(np.where(folded_elbow, 0.0, t65 + t67), np.where(folded_elbow, 1.0, t68 - t69))
+    t71 = C_elbow * B_elbow
+    t72 = A_elbow * S_elbow
+    sum_elbow = t71 + t72
     s3 = np.where(no_link_elbow, 0.0, area_elbow / sum_elbow)
-    c3 = np.where(no_link_elbow, 1.0, (t70 - t71) / sum_elbow)
-    t72 = np.arctan2(s3, c3)
-    t73 = np.arctan2(sphi, cphi)
+    c3 = np.where(no_link_elbow, 1.0, (t71 - t72) / sum_elbow)
+    t73 = np.arctan2(s3, c3)
+    t74 = np.arctan2(sphi, cphi)
     M_33 = -(T13 * t11 + T23 * c1)
-    t74 = _runtime.wrap(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
-    t75 = t74 + t60
+    t75 = _runtime.wrap(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
+    t76 = t75 + t61
     M_11 = T11 * c1 - T21 * t11
     M_12 = T12 * c1 - T22 * t11
-    t76 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
-    t77 = _runtime.wrap(-t76) + t60
-    t78 = np.arctan2(np.where(folded_elbow, 0.0, t64 - t66), np.where(folded_elbow, 1.0, -(t68 + t67)))
-    t79 = across + t43
+    t77 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
+    t78 = _runtime.wrap(-t77) + t61
+    t79 = np.arctan2(np.where(folded_elbow, 0.0, t65 - t67), np.where(folded_elbow, 1.0, -(t69 + t68)))
+    t80 = across + t43
     c_phi_left_flip_up = np.where(aligned_wrist, 1.0, -t45)
-    t80 = t35 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t79 * t79 + t80 * t80)
+    t81 = t35 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t80 * t80 + t81 * t81)
     in_reach_left_flip_up = np.minimum(t1, np.maximum(here_left_flip_up, t39))
-    t81 = (t37 - in_reach_left_flip_up) * (t37 + in_reach_left_flip_up)
-    k_near_left_flip_up = np.maximum(0.0, t81)
-    t82 = (t40 - in_reach_left_flip_up) * (t40 + in_reach_left_flip_up)
-    d_near_left_flip_up = np.maximum(0.0, -t82)
+    t82 = (t37 - in_reach_left_flip_up) * (t37 + in_reach_left_flip_up)
+    k_near_left_flip_up = np.maximum(0.0, t82)
+    t83 = (t40 - in_reach_left_flip_up) * (t40 + in_reach_left_flip_up)
+    d_near_left_flip_up = np.maximum(0.0, -t83)
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
     any_near_left_flip_up = n_near_left_flip_up <= t41
-    t83 = (k_near_left_flip_up - d_near_left_flip_up) / n_near_left_flip_up
-    uc_near_left_flip_up = np.where(any_near_left_flip_up, 1.0, t83)
-    t84 = t47 + across * c_phi_left_flip_up
-    t85 = np.abs(t84)
-    t86 = 2.0 * np.where(t85 <= t3, 1.0, -(t84 / t85)) * np.sqrt(k_near_left_flip_up)
-    t87 = t86 * np.sqrt(d_near_left_flip_up) / n_near_left_flip_up
-    us_near_left_flip_up = np.where(any_near_left_flip_up, 0.0, t87)
-    t88 = across * uc_near_left_flip_up + t35 * us_near_left_flip_up
-    c_near_left_flip_up = np.where(hub_mid, 1.0, t88 / r_hub)
-    t89 = s_phi + c_near_left_flip_up
-    t90 = across * us_near_left_flip_up - t35 * uc_near_left_flip_up
-    s_near_left_flip_up = np.where(hub_mid, 0.0, t90 / r_hub)
-    t91 = c_phi_left_flip_up + s_near_left_flip_up
-    within_rounding_left_flip_up = h_wrist * np.sqrt(t89 * t89 + t91 * t91) <= t34
-    t92 = np.abs(here_left_flip_up - in_reach_left_flip_up)
-    inside_left_flip_up = t92 <= t3
+    t84 = (k_near_left_flip_up - d_near_left_flip_up) / n_near_left_flip_up
+    uc_near_left_flip_up = np.where(any_near_left_flip_up, 1.0, t84)
+    t85 = t47 + across * c_phi_left_flip_up
+    t86 = np.abs(t85)
+    t87 = 2.0 * np.where(t86 <= t3, 1.0, -(t85 / t86)) * np.sqrt(k_near_left_flip_up)
+    t88 = t87 * np.sqrt(d_near_left_flip_up) / n_near_left_flip_up
+    us_near_left_flip_up = np.where(any_near_left_flip_up, 0.0, t88)
+    t89 = across * uc_near_left_flip_up + t35 * us_near_left_flip_up
+    c_near_left_flip_up = np.where(hub_mid, 1.0, t89 / r_hub)
+    t90 = s_phi + c_near_left_flip_up
+    t91 = across * us_near_left_flip_up - t35 * uc_near_left_flip_up
+    s_near_left_flip_up = np.where(hub_mid, 0.0, t91 / r_hub)
+    t92 = c_phi_left_flip_up + s_near_left_flip_up
+    within_rounding_left_flip_up = h_wrist * np.sqrt(t90 * t90 + t92 * t92) <= t53
+    t93 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    inside_left_flip_up = t93 <= t3
     c_moved_left_flip_up = np.where(inside_left_flip_up, -s_phi, c_near_left_flip_up)
-    t93 = np.where(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
-    sphi_left_flip_up = np.where(aligned_wrist, c_mid, t93)
-    t94 = across - d5 * sphi_left_flip_up
+    t94 = np.where(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
+    sphi_left_flip_up = np.where(aligned_wrist, c_mid, t94)
+    t95 = across - d5 * sphi_left_flip_up
     s_moved_left_flip_up = np.where(inside_left_flip_up, -c_phi_left_flip_up, s_near_left_flip_up)
-    t95 = np.where(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
-    cphi_left_flip_up = np.where(aligned_wrist, -s_mid, t95)
+    t96 = np.where(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
+    cphi_left_flip_up = np.where(aligned_wrist, -s_mid, t96)
     ey_left_flip_up = t35 - d5 * cphi_left_flip_up
-    t96 = t94 * t94 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t96)
-    t97 = t1 - r_elbow_left_flip_up
-    t98 = t38 + r_elbow_left_flip_up
-    t99 = r_elbow_left_flip_up - t38
-    t100 = t32 & (t31 <= t97) & (t31 <= t98) & (t31 <= t99)
-    unreachable_2 = np.logical_not(t100)
-    t101 = _runtime.poison(invalid | unreachable_2)
-    t102 = t14 + t101
+    t97 = t95 * t95 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t97)
+    t98 = t1 - r_elbow_left_flip_up
+    t99 = t38 + r_elbow_left_flip_up
+    t100 = r_elbow_left_flip_up - t38
+    t101 = t32 & (t31 <= t98) & (t31 <= t99) & (t31 <= t100)
+    unreachable_2 = np.logical_not(t101)
+    t102 = _runtime.poison(invalid | unreachable_2)
+    t103 = t14 + t102
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t3
-    C_elbow_left_flip_up = np.maximum(t99, 0.0)
-    A_elbow_left_flip_up = np.maximum(t97, 0.0)
-    t103 = C_elbow_left_flip_up * A_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t98, 0.0)
+    C_elbow_left_flip_up = np.maximum(t100, 0.0)
+    A_elbow_left_flip_up = np.maximum(t98, 0.0)
+    t104 = C_elbow_left_flip_up * A_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t99, 0.0)
     S_elbow_left_flip_up = t1 + r_elbow_left_flip_up
-    t104 = B_elbow_left_flip_up * S_elbow_left_flip_up
-    width_elbow_left_flip_up = t103 + t104
-    c_base_elbow_left_flip_up = np.where(no_link_elbow, 1.0, -((t103 - t104) / width_elbow_left_flip_up))
-    t105 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up
-    t106 = 2.0 * np.sqrt(B_elbow_left_flip_up) * np.sqrt(C_elbow_left_flip_up)
-    area_elbow_left_flip_up = t106 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
-    t107 = area_elbow_left_flip_up / width_elbow_left_flip_up
-    s_base_elbow_left_flip_up = np.where(no_link_elbow, 0.0, t107)
-    t108 = t94 * s_base_elbow_left_flip_up / r_elbow_left_flip_up
-    s2_left_flip_up = np.where(folded_elbow_left_flip_up, 0.0, t105 + t108)
-    t109 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up
-    t110 = t94 * c_base_elbow_left_flip_up / r_elbow_left_flip_up
-    c2_left_flip_up = np.where(folded_elbow_left_flip_up, 1.0, t109 - t110)
-    t111 = np.arctan2(s2_left_flip_up, c2_left_flip_up)
-    t112 = C_elbow_left_flip_up * B_elbow_left_flip_up
-    t113 = A_elbow_left_flip_up * S_elbow_left_flip_up
-    sum_elbow_left_flip_up = t112 + t113
-    t114 = area_elbow_left_flip_up / sum_elbow_left_flip_up
-    c3_left_flip_up = np.where(no_link_elbow, 1.0, (t112 - t113) / sum_elbow_left_flip_up)
-    t115 = np.arctan2(np.where(no_link_elbow, 0.0, t114), c3_left_flip_up)
-    t116 = np.arctan2(sphi_left_flip_up, cphi_left_flip_up)
-    t117 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
-    t118 = _runtime.wrap(-np.arctan2(t117, M_33)) + t101
-    t119 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
-    t120 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
-    t121 = _runtime.wrap(-np.arctan2(t119, t120)) + t101
-    s2_left_flip_down = np.where(folded_elbow_left_flip_up, 0.0, t105 - t108)
-    c2_left_flip_down = np.where(folded_elbow_left_flip_up, 1.0, -(t110 + t109))
-    t122 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t123 = np.where(free1, 0.0, t8 - t10)
+    t105 = B_elbow_left_flip_up * S_elbow_left_flip_up
+    width_elbow_left_flip_up = t104 + t105
+    c_base_elbow_left_flip_up = np.where(no_link_elbow, 1.0, -((t104 - t105) / width_elbow_left_flip_up))
+    t106 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up
+    t107 = 2.0 * np.sqrt(B_elbow_left_flip_up) * np.sqrt(C_elbow_left_flip_up)
+    area_elbow_left_flip_up = t107 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
+    t108 = area_elbow_left_flip_up / width_elbow_left_flip_up
+    s_base_elbow_left_flip_up = np.where(no_link_elbow, 0.0, t108)
+    t109 = t95 * s_base_elbow_left_flip_up / r_elbow_left_flip_up
+    s2_left_flip_up = np.where(folded_elbow_left_flip_up, 0.0, t106 + t109)
+    t110 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up
+    t111 = t95 * c_base_elbow_left_flip_up / r_elbow_left_flip_up
+    c2_left_flip_up = np.where(folded_elbow_left_flip_up, 1.0, t110 - t111)
+    t112 = np.arctan2(s2_left_flip_up, c2_left_flip_up)
+    t113 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t114 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    sum_elbow_left_flip_up = t113 + t114
+    t115 = area_elbow_left_flip_up / sum_elbow_left_flip_up
+    c3_left_flip_up = np.where(no_link_elbow, 1.0, (t113 - t114) / sum_elbow_left_flip_up)
+    t116 = np.arctan2(np.where(no_link_elbow, 0.0, t115), c3_left_flip_up)
+    t117 = np.arctan2(sphi_left_flip_up, cphi_left_flip_up)
+    t118 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t119 = _runtime.wrap(-np.arctan2(t118, M_33)) + t102
+    t120 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
+    t121 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
+    t122 = _runtime.wrap(-np.arctan2(t120, t121)) + t102
+    s2_left_flip_down = np.where(folded_elbow_left_flip_up, 0.0, t106 - t109)
+    c2_left_flip_down = np.where(folded_elbow_left_flip_up, 1.0, -(t111 + t110))
+    t123 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t124 = np.where(free1, 0.0, t8 - t10)
     c1_right_noflip_up = np.where(free1, 1.0, t12 + t13)
-    t124 = _runtime.wrap(np.arctan2(-t123, c1_right_noflip_up))
-    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t123
-    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t123
-    t125 = t33 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t125)
+    t125 = _runtime.wrap(np.arctan2(-t124, c1_right_noflip_up))
+    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t124
+    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t124
+    t126 = t33 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t126)
     aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t34
-    t126 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t36 + t126)
+    t127 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t36 + t127)
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t3
-    t127 = d5 + r_hub_right_noflip_up
-    t128 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(t1, t127) / 2.0 + np.maximum(t39, np.abs(t128)) / 2.0
-    t129 = (t127 - mid_reach_right_noflip_up) * (t127 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t129)
+    t128 = d5 + r_hub_right_noflip_up
+    t129 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(t1, t128) / 2.0 + np.maximum(t39, np.abs(t129)) / 2.0
     t130 = (t128 - mid_reach_right_noflip_up) * (t128 + mid_reach_right_noflip_up)
-    d_mid_right_noflip_up = np.maximum(0.0, -t130)
+    k_mid_right_noflip_up = np.maximum(0.0, t130)
+    t131 = (t129 - mid_reach_right_noflip_up) * (t129 + mid_reach_right_noflip_up)
+    d_mid_right_noflip_up = np.maximum(0.0, -t131)
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
     any_mid_right_noflip_up = n_mid_right_noflip_up <= t41
-    t131 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    uc_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 1.0, t131 / n_mid_right_noflip_up)
-    t132 = across_right_noflip_up * uc_mid_right_noflip_up
-    t133 = 2.0 * np.sqrt(k_mid_right_noflip_up) * np.sqrt(d_mid_right_noflip_up)
-    us_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 0.0, t133 / n_mid_right_noflip_up)
-    t134 = (t132 + t35 * us_mid_right_noflip_up) / r_hub_right_noflip_up
-    c_mid_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t134)
+    t132 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    uc_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 1.0, t132 / n_mid_right_noflip_up)
+    t133 = across_right_noflip_up * uc_mid_right_noflip_up
+    t134 = 2.0 * np.sqrt(k_mid_right_noflip_up) * np.sqrt(d_mid_right_noflip_up)
+    us_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 0.0, t134 / n_mid_right_noflip_up)
+    t135 = (t133 + t35 * us_mid_right_noflip_up) / r_hub_right_noflip_up
+    c_mid_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t135)
     s_phi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, 0.0, T33 / h_wrist_right_noflip_up)
-    t135 = d5 * s_phi_right_noflip_up
-    t136 = across_right_noflip_up - t135
-    t137 = M_13_right_noflip_up / h_wrist_right_noflip_up
-    c_phi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, 1.0, t137)
-    t138 = t35 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t136 * t136 + t138 * t138)
+    t136 = d5 * s_phi_right_noflip_up
+    t137 = across_right_noflip_up - t136
+    t138 = M_13_right_noflip_up / h_wrist_right_noflip_up
+    c_phi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, 1.0, t138)
+    t139 = t35 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t137 * t137 + t139 * t139)
     in_reach_right_noflip_up = np.minimum(t1, np.maximum(here_right_noflip_up, t39))
-    t139 = (t127 - in_reach_right_noflip_up) * (t127 + in_reach_right_noflip_up)
-    k_near_right_noflip_up = np.maximum(0.0, t139)
     t140 = (t128 - in_reach_right_noflip_up) * (t128 + in_reach_right_noflip_up)
-    d_near_right_noflip_up = np.maximum(0.0, -t140)
+    k_near_right_noflip_up = np.maximum(0.0, t140)
+    t141 = (t129 - in_reach_right_noflip_up) * (t129 + in_reach_right_noflip_up)
+    d_near_right_noflip_up = np.maximum(0.0, -t141)
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
     any_near_right_noflip_up = n_near_right_noflip_up <= t41
-    t141 = k_near_right_noflip_up - d_near_right_noflip_up
-    uc_near_right_noflip_up = np.where(any_near_right_noflip_up, 1.0, t141 / n_near_right_noflip_up)
-    t142 = across_right_noflip_up * uc_near_right_noflip_up
-    t143 = across_right_noflip_up * c_phi_right_noflip_up
-    t144 = t35 * s_phi_right_noflip_up
-    t145 = t143 - t144
-    t146 = np.abs(t145)
-    t147 = 2.0 * np.where(t146 <= t3, 1.0, -(t145 / t146))
-    t148 = t147 * np.sqrt(k_near_right_noflip_up) * np.sqrt(d_near_right_noflip_up)
-    us_near_right_noflip_up = np.where(any_near_right_noflip_up, 0.0, t148 / n_near_right_noflip_up)
-    t149 = (t142 + t35 * us_near_right_noflip_up) / r_hub_right_noflip_up
-    c_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t149)
-    t150 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t151 = across_right_noflip_up * us_near_right_noflip_up
-    t152 = (t151 - t35 * uc_near_right_noflip_up) / r_hub_right_noflip_up
-    s_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 0.0, t152)
-    t153 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t154 = h_wrist_right_noflip_up * np.sqrt(t150 * t150 + t153 * t153)
-    within_rounding_right_noflip_up = t154 <= t34
-    t155 = here_right_noflip_up - in_reach_right_noflip_up
-    inside_right_noflip_up = np.abs(t155) <= t3
+    t142 = k_near_right_noflip_up - d_near_right_noflip_up
+    uc_near_right_noflip_up = np.where(any_near_right_noflip_up, 1.0, t142 / n_near_right_noflip_up)
+    t143 = across_right_noflip_up * uc_near_right_noflip_up
+    t144 = across_right_noflip_up * c_phi_right_noflip_up
+    t145 = t35 * s_phi_right_noflip_up
+    t146 = t144 - t145
+    t147 = np.abs(t146)
+    t148 = 2.0 * np.where(t147 <= t3, 1.0, -(t146 / t147))
+    t149 = t148 * np.sqrt(k_near_right_noflip_up) * np.sqrt(d_near_right_noflip_up)
+    us_near_right_noflip_up = np.where(any_near_right_noflip_up, 0.0, t149 / n_near_right_noflip_up)
+    t150 = (t143 + t35 * us_near_right_noflip_up) / r_hub_right_noflip_up
+    c_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t150)
+    t151 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t152 = across_right_noflip_up * us_near_right_noflip_up
+    t153 = (t152 - t35 * uc_near_right_noflip_up) / r_hub_right_noflip_up
+    s_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 0.0, t153)
+    t154 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t155 = h_wrist_right_noflip_up * np.sqrt(t151 * t151 + t154 * t154)
+    within_rounding_right_noflip_up = t155 <= t53
+    t156 = here_right_noflip_up - in_reach_right_noflip_up
+    inside_right_noflip_up = np.abs(t156) <= t3
     c_moved_right_noflip_up = np.where(inside_right_noflip_up, s_phi_right_noflip_up, c_near_right_noflip_up)
-    t156 = np.where(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
-    sphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t156)
-    t157 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t158 = across_right_noflip_up * us_mid_right_noflip_up
-    t159 = (t158 - t35 * uc_mid_right_noflip_up) / r_hub_right_noflip_up
+    t157 = np.where(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
+    sphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t157)
+    t158 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t159 = across_right_noflip_up * us_mid_right_noflip_up
+    t160 = (t159 - t35 * uc_mid_right_noflip_up) / r_hub_right_noflip_up
     s_moved_right_noflip_up = np.where(inside_right_noflip_up, -c_phi_right_noflip_up, s_near_right_noflip_up)
-    t160 = np.where(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
-    cphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t159), t160)
+    t161 = np.where(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
+    cphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t160), t161)
     ey_right_noflip_up = t35 - d5 * cphi_right_noflip_up
-    t161 = t157 * t157 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t161)
-    t162 = t1 - r_elbow_right_noflip_up
-    t163 = t38 + r_elbow_right_noflip_up
-    t164 = r_elbow_right_noflip_up - t38
-    t165 = t32 & (t31 <= t162) & (t31 <= t163) & (t31 <= t164)
-    unreachable_3 = np.logical_not(t165)
-    t166 = _runtime.poison(invalid | unreachable_3)
-    t167 = t124 + t166
+    t162 = t158 * t158 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t162)
+    t163 = t1 - r_elbow_right_noflip_up
+    t164 = t38 + r_elbow_right_noflip_up
+    t165 = r_elbow_right_noflip_up - t38
+    t166 = t32 & (t31 <= t163) & (t31 <= t164) & (t31 <= t165)
+    unreachable_3 = np.logical_not(t166)
+    t167 = _runtime.poison(invalid | unreachable_3)
+    t168 = t125 + t167
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
-    C_elbow_right_noflip_up = np.maximum(t164, 0.0)
-    A_elbow_right_noflip_up = np.maximum(t162, 0.0)
-    t168 = C_elbow_right_noflip_up * A_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t163, 0.0)
+    C_elbow_right_noflip_up = np.maximum(t165, 0.0)
+    A_elbow_right_noflip_up = np.maximum(t163, 0.0)
+    t169 = C_elbow_right_noflip_up * A_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t164, 0.0)
     S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
-    t169 = B_elbow_right_noflip_up * S_elbow_right_noflip_up
-    width_elbow_right_noflip_up = t168 + t169
-    t170 = -((t168 - t169) / width_elbow_right_noflip_up)
-    c_base_elbow_right_noflip_up = np.where(no_link_elbow, 1.0, t170)
-    t171 = ey_right_noflip_up * c_base_elbow_right_noflip_up
-    t172 = t171 / r_elbow_right_noflip_up
-    t173 = 2.0 * np.sqrt(B_elbow_right_noflip_up) * np.sqrt(C_elbow_right_noflip_up)
-    area_elbow_right_noflip_up = t173 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
-    t174 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
-    s_base_elbow_right_noflip_up = np.where(no_link_elbow, 0.0, t174)
-    t175 = t157 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    s2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 0.0, t172 + t175)
-    t176 = ey_right_noflip_up * s_base_elbow_right_noflip_up
-    t177 = t176 / r_elbow_right_noflip_up
-    t178 = t157 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    c2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 1.0, t177 - t178)
-    t179 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t180 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t181 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
-    sum_elbow_right_noflip_up = t180 + t181
-    t182 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
-    c3_right_noflip_up = np.where(no_link_elbow, 1.0, (t180 - t181) / sum_elbow_right_noflip_up)
-    t183 = np.arctan2(np.where(no_link_elbow, 0.0, t182), c3_right_noflip_up)
-    t184 = np.arctan2(sphi_right_noflip_up, cphi_right_noflip_up)
-    t185 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
-    M_33_right_noflip_up = -(T13 * t123 + T23 * c1_right_noflip_up)
-    t186 = _runtime.wrap(-np.arctan2(t185, M_33_right_noflip_up))
-    t187 = t186 + t166
-    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t123
-    t188 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
-    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t123
-    t189 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
-    t190 = _runtime.wrap(-np.arctan2(t188, t189)) + t166
-    s2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 0.0, t172 - t175)
-    c2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 1.0, -(t178 + t177))
-    t191 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t192 = across_right_noflip_up + t135
-    c_phi_right_flip_up = np.where(aligned_wrist_right_noflip_up, 1.0, -t137)
-    t193 = t35 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t192 * t192 + t193 * t193)
+    t170 = B_elbow_right_noflip_up * S_elbow_right_noflip_up
+    width_elbow_right_noflip_up = t169 + t170
+    t171 = -((t169 - t170) / width_elbow_right_noflip_up)
+    c_base_elbow_right_noflip_up = np.where(no_link_elbow, 1.0, t171)
+    t172 = ey_right_noflip_up * c_base_elbow_right_noflip_up
+    t173 = t172 / r_elbow_right_noflip_up
+    t174 = 2.0 * np.sqrt(B_elbow_right_noflip_up) * np.sqrt(C_elbow_right_noflip_up)
+    area_elbow_right_noflip_up = t174 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
+    t175 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
+    s_base_elbow_right_noflip_up = np.where(no_link_elbow, 0.0, t175)
+    t176 = t158 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
+    s2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 0.0, t173 + t176)
+    t177 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    t178 = t177 / r_elbow_right_noflip_up
+    t179 = t158 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
+    c2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 1.0, t178 - t179)
+    t180 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t181 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t182 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    sum_elbow_right_noflip_up = t181 + t182
+    t183 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
+    c3_right_noflip_up = np.where(no_link_elbow, 1.0, (t181 - t182) / sum_elbow_right_noflip_up)
+    t184 = np.arctan2(np.where(no_link_elbow, 0.0, t183), c3_right_noflip_up)
+    t185 = np.arctan2(sphi_right_noflip_up, cphi_right_noflip_up)
+    t186 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    M_33_right_noflip_up = -(T13 * t124 + T23 * c1_right_noflip_up)
+    t187 = _runtime.wrap(-np.arctan2(t186, M_33_right_noflip_up))
+    t188 = t187 + t167
+    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t124
+    t189 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t124
+    t190 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t191 = _runtime.wrap(-np.arctan2(t189, t190)) + t167
+    s2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 0.0, t173 - t176)
+    c2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 1.0, -(t179 + t178))
+    t192 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t193 = across_right_noflip_up + t136
+    c_phi_right_flip_up = np.where(aligned_wrist_right_noflip_up, 1.0, -t138)
+    t194 = t35 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t193 * t193 + t194 * t194)
     in_reach_right_flip_up = np.minimum(t1, np.maximum(here_right_flip_up, t39))
-    t194 = (t127 - in_reach_right_flip_up) * (t127 + in_reach_right_flip_up)
-    k_near_right_flip_up = np.maximum(0.0, t194)
     t195 = (t128 - in_reach_right_flip_up) * (t128 + in_reach_right_flip_up)
-    d_near_right_flip_up = np.maximum(0.0, -t195)
+    k_near_right_flip_up = np.maximum(0.0, t195)
+    t196 = (t129 - in_reach_right_flip_up) * (t129 + in_reach_right_flip_up)
+    d_near_right_flip_up = np.maximum(0.0, -t196)
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
     any_near_right_flip_up = n_near_right_flip_up <= t41
-    t196 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up
-    uc_near_right_flip_up = np.where(any_near_right_flip_up, 1.0, t196)
-    t197 = across_right_noflip_up * uc_near_right_flip_up
-    t198 = t144 + across_right_noflip_up * c_phi_right_flip_up
-    t199 = np.abs(t198)
-    t200 = 2.0 * np.where(t199 <= t3, 1.0, -(t198 / t199))
-    t201 = t200 * np.sqrt(k_near_right_flip_up) * np.sqrt(d_near_right_flip_up)
-    us_near_right_flip_up = np.where(any_near_right_flip_up, 0.0, t201 / n_near_right_flip_up)
-    t202 = (t197 + t35 * us_near_right_flip_up) / r_hub_right_noflip_up
-    c_near_right_flip_up = np.where(hub_mid_right_noflip_up, 1.0, t202)
-    t203 = s_phi_right_noflip_up + c_near_right_flip_up
-    t204 = across_right_noflip_up * us_near_right_flip_up
-    t205 = (t204 - t35 * uc_near_right_flip_up) / r_hub_right_noflip_up
-    s_near_right_flip_up = np.where(hub_mid_right_noflip_up, 0.0, t205)
-    t206 = c_phi_right_flip_up + s_near_right_flip_up
-    t207 = h_wrist_right_noflip_up * np.sqrt(t203 * t203 + t206 * t206)
-    within_rounding_right_flip_up = t207 <= t34
-    t208 = np.abs(here_right_flip_up - in_reach_right_flip_up)
-    inside_right_flip_up = t208 <= t3
+    t197 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up
+    uc_near_right_flip_up = np.where(any_near_right_flip_up, 1.0, t197)
+    t198 = across_right_noflip_up * uc_near_right_flip_up
+    t199 = t145 + across_right_noflip_up * c_phi_right_flip_up
+    t200 = np.abs(t199)
+    t201 = 2.0 * np.where(t200 <= t3, 1.0, -(t199 / t200))
+    t202 = t201 * np.sqrt(k_near_right_flip_up) * np.sqrt(d_near_right_flip_up)
+    us_near_right_flip_up = np.where(any_near_right_flip_up, 0.0, t202 / n_near_right_flip_up)
+    t203 = (t198 + t35 * us_near_right_flip_up) / r_hub_right_noflip_up
+    c_near_right_flip_up = np.where(hub_mid_right_noflip_up, 1.0, t203)
+    t204 = s_phi_right_noflip_up + c_near_right_flip_up
+    t205 = across_right_noflip_up * us_near_right_flip_up
+    t206 = (t205 - t35 * uc_near_right_flip_up) / r_hub_right_noflip_up
+    s_near_right_flip_up = np.where(hub_mid_right_noflip_up, 0.0, t206)
+    t207 = c_phi_right_flip_up + s_near_right_flip_up
+    t208 = h_wrist_right_noflip_up * np.sqrt(t204 * t204 + t207 * t207)
+    within_rounding_right_flip_up = t208 <= t53
+    t209 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    inside_right_flip_up = t209 <= t3
     c_moved_right_flip_up = np.where(inside_right_flip_up, -s_phi_right_noflip_up, c_near_right_flip_up)
-    t209 = np.where(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
-    sphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t209)
-    t210 = across_right_noflip_up - d5 * sphi_right_flip_up
+    t210 = np.where(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
+    sphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t210)
+    t211 = across_right_noflip_up - d5 * sphi_right_flip_up
     s_moved_right_flip_up = np.where(inside_right_flip_up, -c_phi_right_flip_up, s_near_right_flip_up)
-    t211 = np.where(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
-    cphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t159), t211)
+    t212 = np.where(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
+    cphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t160), t212)
     ey_right_flip_up = t35 - d5 * cphi_right_flip_up
-    t212 = t210 * t210 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t212)
-    t213 = t1 - r_elbow_right_flip_up
-    t214 = t38 + r_elbow_right_flip_up
-    t215 = r_elbow_right_flip_up - t38
-    t216 = t32 & (t31 <= t213) & (t31 <= t214) & (t31 <= t215)
-    unreachable_4 = np.logical_not(t216)
-    t217 = _runtime.poison(invalid | unreachable_4)
-    t218 = t124 + t217
+    t213 = t211 * t211 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t213)
+    t214 = t1 - r_elbow_right_flip_up
+    t215 = t38 + r_elbow_right_flip_up
+    t216 = r_elbow_right_flip_up - t38
+    t217 = t32 & (t31 <= t214) & (t31 <= t215) & (t31 <= t216)
+    unreachable_4 = np.logical_not(t217)
+    t218 = _runtime.poison(invalid | unreachable_4)
+    t219 = t125 + t218
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3
-    C_elbow_right_flip_up = np.maximum(t215, 0.0)
-    A_elbow_right_flip_up = np.maximum(t213, 0.0)
-    t219 = C_elbow_right_flip_up * A_elbow_right_flip_up
-    B_elbow_right_flip_up = np.maximum(t214, 0.0)
+    C_elbow_right_flip_up = np.maximum(t216, 0.0)
+    A_elbow_right_flip_up = np.maximum(t214, 0.0)
+    t220 = C_elbow_right_flip_up * A_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t215, 0.0)
     S_elbow_right_flip_up = t1 + r_elbow_right_flip_up
-    t220 = B_elbow_right_flip_up * S_elbow_right_flip_up
-    width_elbow_right_flip_up = t219 + t220
-    c_base_elbow_right_flip_up = np.where(no_link_elbow, 1.0, -((t219 - t220) / width_elbow_right_flip_up))
-    t221 = ey_right_flip_up * c_base_elbow_right_flip_up
-    t222 = t221 / r_elbow_right_flip_up
-    t223 = 2.0 * np.sqrt(B_elbow_right_flip_up) * np.sqrt(C_elbow_right_flip_up)
-    area_elbow_right_flip_up = t223 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
-    t224 = area_elbow_right_flip_up / width_elbow_right_flip_up
-    s_base_elbow_right_flip_up = np.where(no_link_elbow, 0.0, t224)
-    t225 = t210 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
-    s2_right_flip_up = np.where(folded_elbow_right_flip_up, 0.0, t222 + t225)
-    t226 = ey_right_flip_up * s_base_elbow_right_flip_up
-    t227 = t226 / r_elbow_right_flip_up
-    t228 = t210 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
-    c2_right_flip_up = np.where(folded_elbow_right_flip_up, 1.0, t227 - t228)
-    t229 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t230 = C_elbow_right_flip_up * B_elbow_right_flip_up
-    t231 = A_elbow_right_flip_up * S_elbow_right_flip_up
-    sum_elbow_right_flip_up = t230 + t231
-    t232 = area_elbow_right_flip_up / sum_elbow_right_flip_up
-    c3_right_flip_up = np.where(no_link_elbow, 1.0, (t230 - t231) / sum_elbow_right_flip_up)
-    t233 = np.arctan2(np.where(no_link_elbow, 0.0, t232), c3_right_flip_up)
-    t234 = np.arctan2(sphi_right_flip_up, cphi_right_flip_up)
-    t235 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
-    t236 = _runtime.wrap(-np.arctan2(t235, M_33_right_noflip_up))
-    t237 = t236 + t217
-    t238 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
-    t239 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
-    t240 = _runtime.wrap(-np.arctan2(t238, t239)) + t217
-    s2_right_flip_down = np.where(folded_elbow_right_flip_up, 0.0, t222 - t225)
-    c2_right_flip_down = np.where(folded_elbow_right_flip_up, 1.0, -(t228 + t227))
-    t241 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t242 = free1 | aligned_wrist | no_link_elbow
-    t243 = _runtime.status(invalid, unreachable, t242 | folded_elbow)
-    t244 = _runtime.status(invalid, unreachable_2, t242 | folded_elbow_left_flip_up)
-    t245 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
-    t246 = _runtime.status(invalid, unreachable_3, t245 | folded_elbow_right_noflip_up)
-    t247 = _runtime.status(invalid, unreachable_4, t245 | folded_elbow_right_flip_up)
+    t221 = B_elbow_right_flip_up * S_elbow_right_flip_up
+    width_elbow_right_flip_up = t220 + t221
+    c_base_elbow_right_flip_up = np.where(no_link_elbow, 1.0, -((t220 - t221) / width_elbow_right_flip_up))
+    t222 = ey_right_flip_up * c_base_elbow_right_flip_up
+    t223 = t222 / r_elbow_right_flip_up
+    t224 = 2.0 * np.sqrt(B_elbow_right_flip_up) * np.sqrt(C_elbow_right_flip_up)
+    area_elbow_right_flip_up = t224 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    t225 = area_elbow_right_flip_up / width_elbow_right_flip_up
+    s_base_elbow_right_flip_up = np.where(no_link_elbow, 0.0, t225)
+    t226 = t211 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
+    s2_right_flip_up = np.where(folded_elbow_right_flip_up, 0.0, t223 + t226)
+    t227 = ey_right_flip_up * s_base_elbow_right_flip_up
+    t228 = t227 / r_elbow_right_flip_up
+    t229 = t211 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
+    c2_right_flip_up = np.where(folded_elbow_right_flip_up, 1.0, t228 - t229)
+    t230 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t231 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t232 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    sum_elbow_right_flip_up = t231 + t232
+    t233 = area_elbow_right_flip_up / sum_elbow_right_flip_up
+    c3_right_flip_up = np.where(no_link_elbow, 1.0, (t231 - t232) / sum_elbow_right_flip_up)
+    t234 = np.arctan2(np.where(no_link_elbow, 0.0, t233), c3_right_flip_up)
+    t235 = np.arctan2(sphi_right_flip_up, cphi_right_flip_up)
+    t236 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t237 = _runtime.wrap(-np.arctan2(t236, M_33_right_noflip_up))
+    t238 = t237 + t218
+    t239 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
+    t240 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
+    t241 = _runtime.wrap(-np.arctan2(t239, t240)) + t218
+    s2_right_flip_down = np.where(folded_elbow_right_flip_up, 0.0, t223 - t226)
+    c2_right_flip_down = np.where(folded_elbow_right_flip_up, 1.0, -(t229 + t228))
+    t242 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t243 = free1 | aligned_wrist | no_link_elbow
+    t244 = _runtime.status(invalid, unreachable, t243 | folded_elbow)
+    t245 = _runtime.status(invalid, unreachable_2, t243 | folded_elbow_left_flip_up)
+    t246 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t247 = _runtime.status(invalid, unreachable_3, t246 | folded_elbow_right_noflip_up)
+    t248 = _runtime.status(invalid, unreachable_4, t246 | folded_elbow_right_flip_up)
     return (
-        t61,
-        _runtime.wrap(t69) + t60,
-        _runtime.wrap(t72) + t60,
-        _runtime.wrap(t73 - t69 - t72) + t60,
-        t75,
-        t77,
-        t61,
-        _runtime.wrap(t78) + t60,
-        _runtime.wrap(-t72) + t60,
-        _runtime.wrap(t73 + t72 - t78) + t60,
-        t75,
-        t77,
-        t102,
-        _runtime.wrap(t111) + t101,
-        _runtime.wrap(t115) + t101,
-        _runtime.wrap(t116 - t111 - t115) + t101,
-        t118,
-        t121,
-        t102,
-        _runtime.wrap(t122) + t101,
-        _runtime.wrap(-t115) + t101,
-        _runtime.wrap(t116 + t115 - t122) + t101,
-        t118,
-        t121,
-        t167,
-        _runtime.wrap(t179) + t166,
-        _runtime.wrap(t183) + t166,
-        _runtime.wrap(t184 - t179 - t183) + t166,
-        t187,
-        t190,
-        t167,
-        _runtime.wrap(t191) + t166,
-        _runtime.wrap(-t183) + t166,
-        _runtime.wrap(t184 + t183 - t191) + t166,
-        t187,
-        t190,
-        t218,
-        _runtime.wrap(t229) + t217,
-        _runtime.wrap(t233) + t217,
-        _runtime.wrap(t234 - t229 - t233) + t217,
-        t237,
-        t240,
-        t218,
-        _runtime.wrap(t241) + t217,
-        _runtime.wrap(-t233) + t217,
-        _runtime.wrap(t234 + t233 - t241) + t217,
-        t237,
-        t240,
-        t243,
-        t243,
+        t62,
+        _runtime.wrap(t70) + t61,
+        _runtime.wrap(t73) + t61,
+        _runtime.wrap(t74 - t70 - t73) + t61,
+        t76,
+        t78,
+        t62,
+        _runtime.wrap(t79) + t61,
+        _runtime.wrap(-t73) + t61,
+        _runtime.wrap(t74 + t73 - t79) + t61,
+        t76,
+        t78,
+        t103,
+        _runtime.wrap(t112) + t102,
+        _runtime.wrap(t116) + t102,
+        _runtime.wrap(t117 - t112 - t116) + t102,
+        t119,
+        t122,
+        t103,
+        _runtime.wrap(t123) + t102,
+        _runtime.wrap(-t116) + t102,
+        _runtime.wrap(t117 + t116 - t123) + t102,
+        t119,
+        t122,
+        t168,
+        _runtime.wrap(t180) + t167,
+        _runtime.wrap(t184) + t167,
+        _runtime.wrap(t185 - t180 - t184) + t167,
+        t188,
+        t191,
+        t168,
+        _runtime.wrap(t192) + t167,
+        _runtime.wrap(-t184) + t167,
+        _runtime.wrap(t185 + t184 - t192) + t167,
+        t188,
+        t191,
+        t219,
+        _runtime.wrap(t230) + t218,
+        _runtime.wrap(t234) + t218,
+        _runtime.wrap(t235 - t230 - t234) + t218,
+        t238,
+        t241,
+        t219,
+        _runtime.wrap(t242) + t218,
+        _runtime.wrap(-t234) + t218,
+        _runtime.wrap(t235 + t234 - t242) + t218,
+        t238,
+        t241,
         t244,
         t244,
-        t246,
-        t246,
+        t245,
+        t245,
         t247,
         t247,
+        t248,
+        t248,
     )
 
 

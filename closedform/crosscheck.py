@@ -127,6 +127,8 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     reference = Evaluator(symbols, exprs)
     scales = [sp.lambdify(symbols, magnitude(e), "math") for e in exprs]
     flags = Evaluator(symbols, _flagged(function))
+    bounds = [Evaluator(symbols, _margins(function, signs)) for _, signs in function.cases()]
+    size = len(exprs) // len(bounds)
     for sample in joint_samples(derivation, function):
         sample = _round(sample, backend)
         if not len(sample.values):
@@ -138,7 +140,10 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
             values = [*map(float, sample.values[row]), *sample.parameters]
             if any(to_float(f) < 2 * backend.tolerances.vanishing for f in flags(values)):
                 continue
+            exists = [all(to_float(m) >= 0 for m in margins(values)) for margins in bounds]
             for k, exact in enumerate(reference(values)):
+                if not exists[k // size]:  # a branch that does not exist: NaN, whatever is exact
+                    continue
                 scale = _scale(scales[k], values, backend)
                 error = _ulps(float(computed[row, k]), exact, scale, backend)
                 if error > WELL_CONDITIONED:
@@ -151,11 +156,14 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
 
 
 def _scale(magnitude: Callable[..., Any], values: Sequence[float], backend: Backend) -> float:
-    """The natural scale; infinite, so that nothing is compared, where the float type overflows."""
+    """The natural scale; infinite, so that nothing is compared, where there is none.
+
+    There is none where the float type overflows, and outside the domain of a root.
+    """
     try:
         with np.errstate(over="ignore", under="ignore"):
             return float(magnitude(*map(backend.dtype, values)))
-    except OverflowError:
+    except (OverflowError, ValueError, ZeroDivisionError):
         return math.inf
 
 
@@ -396,7 +404,8 @@ def _check_known(
     """The posture that made the input is among the branches, unless a joint is free."""
     parameters = sample.parameters
     condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
-    spread = max(parameters) / min(parameters) if parameters else 1.0
+    sizes = [abs(p) for p in parameters if p]
+    spread = max(sizes) / min(sizes) if sizes else 1.0
     nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
     if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, sample):
         return

@@ -115,7 +115,7 @@ def test_a_script_outside_the_repository_is_derived(
 def test_backends_are_chosen(slider: Path, tmp_path: Path) -> None:
     output = tmp_path / "out"
     assert main(["derive", str(slider), "-o", str(output), "--backend", "c"]) == 0
-    assert sorted(path.name for path in output.iterdir()) == ["c"]
+    assert sorted(path.name for path in output.iterdir()) == ["c", "slider-crosscheck.md"]
     c = sorted(path.name for path in (output / "c").iterdir())
     assert c == [
         "CMakeLists.txt",
@@ -152,8 +152,8 @@ def test_a_difference_found_by_the_cross_check_fails(
     def spoiled(root: Path, printed: pipeline.Files) -> None:
         path = Path("numpy/slider.py")
         if path in printed:
-            assert " = np.add(" in printed[path]
-            printed[path] = printed[path].replace(" = np.add(", " = np.subtract(")
+            assert "q1 + a," in printed[path]
+            printed[path] = printed[path].replace("q1 + a,", "q1 - a,")
         write(root, printed)
 
     monkeypatch.setattr(cli, "_write", spoiled)
@@ -185,7 +185,6 @@ def test_a_broken_neighbour_does_not_hold_up_a_robot(
     assert "the files that all robots share were left as they are" in printed.err
     assert target.read_text("utf-8") == whole
     assert shared.read_text("utf-8") == "as it was"
-    assert main(["derive"]) == 1  # all are asked for: the broken one counts
 
 
 @pytest.mark.parametrize(

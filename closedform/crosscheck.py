@@ -359,6 +359,10 @@ def _check_batch(
             slack = 2 * backend.tolerances.feasibility
             feasible = truth.feasible(given, sample.parameters, branch, slack)
             problem = _contradiction(truth, backend, solution, int(code), feasible, exact)
+            if feasible is False and code in (OK, SINGULAR):
+                # where a joint is free, another turn of it may reach what the generic one does not
+                missed = truth.residual(solution, given, sample.parameters)
+                problem = "" if missed <= backend.tolerances.round_trip else problem
             if problem:
                 finding.fail(f"branch {branch} {problem}; {where}")
             elif exact and code in (OK, SINGULAR):

@@ -70,7 +70,7 @@ def test_an_unknown_name_gets_a_suggestion(
     command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([command, "planar2r"]) == 2
-    assert "did you mean planar_2r?" in capsys.readouterr().err
+    assert "did you mean planar_2r" in capsys.readouterr().err
     assert main([command, "xyz"]) == 2
     assert "known: " in capsys.readouterr().err
 

@@ -144,7 +144,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
 @pytest.mark.parametrize(
     ("joints", "rows", "why"),
     [
-        (SIX, lambda a, b, c, e, f, g, *t: [(a, pi / 3, b, x) for x in t], "passes by the axis 5"),
+        (SIX, lambda a, b, c, e, f, g, *t: [(a, pi / 2, 0, x) for x in t], "passes by the axis 5"),
         (
             "t1 t2 t3",
             lambda a, b, c, e, f, g, t1, t2, t3: [

@@ -22,7 +22,7 @@ import sympy as sp
 from closedform.derivation import Derivation, Inverse, Link, Solved
 from closedform.functions import SINGLE, Let, Program, Statement, branches, real, substitute
 from closedform.lemmas import Lemma
-from closedform.linklemmas import Applied
+from closedform.linklemmas import Applied, Pair
 from closedform.shapes import ShapeError
 
 Choice = Mapping[int, str]
@@ -163,6 +163,29 @@ class Chain:
                 f"lemma has solved yet"
             )
 
+    def pair_of(self, total: sp.Expr) -> Pair | None:
+        """The sine and the cosine of a sum of angles that have pairs, of the target or solved.
+
+        An angle that is read from them needs no reduction: a sum of angles may need several turns.
+        None if an angle has no pair, or stands there more than once.
+        """
+        pairs: dict[sp.Basic, dict[type, sp.Expr]] = {}
+        for name, meaning in self.meaning.items():
+            if isinstance(meaning, sp.sin | sp.cos):
+                pairs.setdefault(meaning.args[0], {})[type(meaning)] = name
+        result = Pair(sp.S.Zero, sp.S.One)
+        for term, factor in sp.expand(total).as_coefficients_dict().items():
+            known = pairs.get(term, {})
+            s, c = known.get(sp.sin), known.get(sp.cos)
+            if not term.free_symbols:
+                s, c, factor = sp.sin(factor * term), sp.cos(factor * term), sp.S.One
+            elif term in self.targets:
+                s, c = sp.sin(term), sp.cos(term)
+            if s is None or c is None or abs(factor) != 1:
+                return None
+            result += Pair(factor * s, c)
+        return result
+
     # The end
 
     def _solve_sums(self) -> None:
@@ -175,7 +198,8 @@ class Chain:
                 if symbol in self.values and len(left) == 1:
                     (joint,) = left
                     (solved,) = sp.solve(value - symbol, joint)
-                    self.values[joint] = substitute(solved, self.values)
+                    pair = self.pair_of(solved)
+                    self.values[joint] = pair.angle if pair else substitute(solved, self.values)
                     progress = True
 
     def finish(self, summary: str, *, source: str = "", notes: Sequence[str] = ()) -> Inverse:
@@ -187,7 +211,7 @@ class Chain:
             raise ShapeError(f"{d.name}: no lemma solves for {missing[0]}")
         choices = branches(*self.choices) if self.choices else SINGLE
         if self.name == "ik":
-            d.branches = choices.labels if self.choices else ()
+            d.branches = choices.labels
         inputs = {"T": self.T} if self.is_pose else {"x": self.x}
         d.function(
             self.name,

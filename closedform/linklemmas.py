@@ -18,6 +18,7 @@ import sympy as sp
 from closedform.derivation import Degenerate
 from closedform.functions import choose, real
 from closedform.lemmas import Lemma
+from closedform.shapes import ShapeError
 from closedform.solutions import rotation_parametrisation
 
 if TYPE_CHECKING:
@@ -250,17 +251,22 @@ def slide(chain: Chain, joint: sp.Symbol, value: sp.Expr) -> Applied:
 def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
     """``joint = total``, an angle: what the earlier joints leave of an angle of the target.
 
-    An angle of the target may be huge, so it is reduced before the joints are taken from it.
+    It is read from the sine and the cosine of the sum, which needs no reduction.
     """
-    given = {x: sp.atan2(sp.sin(x), sp.cos(x)) for x in chain.targets if total.has(x)}
+    pair = chain.pair_of(total)
+    if pair is None:
+        raise ShapeError(
+            f"{chain.d.name}: {joint} = {total} must be a sum of solved angles and angles of the "
+            f"target, each once"
+        )
     lemma = Lemma(
         "remaining angle",
         r"\theta = \psi - \varphi",
         (sp.cos(joint) - sp.cos(total), sp.sin(joint) - sp.sin(total)),
-        {joint: total.xreplace(given)},
+        {joint: pair.angle},
         1,
     )
-    return Applied(lemma, total)
+    return Applied(lemma, total, {}, dict(chain.meaning))
 
 
 def zyz(

@@ -104,6 +104,7 @@ for name, summary, outputs in (
     d.function(name, summary, {"q": q}, outputs, program=f, branches=modes)
 
 g = Program()
+d.branches = SINGLE.labels
 d.function(
     "ik",
     "The lengths of the legs.",

@@ -10,7 +10,7 @@
  *   singularities: 1 sincos
  *   jacobian_space: 4 add, 8 multiply, 2 sincos
  *   jacobian_body: 4 add, 8 multiply, 2 sincos
- *   ik: 28 add, 49 compare and select, 4 atan2, 10 divide, 19 multiply, 1 sincos, 5 sqrt
+ *   ik: 32 add, 49 compare and select, 5 atan2, 10 divide, 35 multiply, 1 sincos, 5 sqrt
  */
 #include "scara.h"
 
@@ -527,38 +527,41 @@ CF_INLINE void scara_ik_kernel(const scara_params *params, const real_t x[4], co
     const real_t t11 = x_x * c_base_elbow / r_elbow;
     const real_t t12 = x_y * s_base_elbow / r_elbow;
     const real_t c1 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t11 + t12);
-    const real_t t13 = cf_atan2(s1, c1);
-    const int t14 = cf_is_finite(x_x) & cf_is_finite(x_y) & cf_is_finite(x_z);
-    const int t15 = t14 & cf_is_finite(x_yaw) & cf_is_finite(l1) & cf_is_finite(l2);
-    const int t16 = t15 & cf_is_finite(h) & (CLOSEDFORM_C(0.0) <= l1);
-    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= l2) & (CLOSEDFORM_C(0.0) <= h);
-    const int invalid = !t17;
-    const real_t t18 = l1 / CLOSEDFORM_C(2.0) + l2 / CLOSEDFORM_C(2.0);
-    const real_t t19 = -(CLOSEDFORM_FEASIBILITY * t18);
-    const int unreachable = !((t19 <= t2) & (t19 <= t6) & (t19 <= t4));
-    const real_t t20 = cf_poison(invalid | unreachable);
-    const real_t t21 = A_elbow * S_elbow;
-    const real_t t22 = C_elbow * B_elbow;
-    const real_t sum_elbow = t21 + t22;
+    const int t13 = cf_is_finite(x_x) & cf_is_finite(x_y) & cf_is_finite(x_z);
+    const int t14 = t13 & cf_is_finite(x_yaw) & cf_is_finite(l1) & cf_is_finite(l2);
+    const int t15 = t14 & cf_is_finite(h) & (CLOSEDFORM_C(0.0) <= l1);
+    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= l2) & (CLOSEDFORM_C(0.0) <= h);
+    const int invalid = !t16;
+    const real_t t17 = l1 / CLOSEDFORM_C(2.0) + l2 / CLOSEDFORM_C(2.0);
+    const real_t t18 = -(CLOSEDFORM_FEASIBILITY * t17);
+    const int unreachable = !((t18 <= t2) & (t18 <= t6) & (t18 <= t4));
+    const real_t t19 = cf_poison(invalid | unreachable);
+    const real_t t20 = A_elbow * S_elbow;
+    const real_t t21 = C_elbow * B_elbow;
+    const real_t sum_elbow = t20 + t21;
     const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow / sum_elbow);
-    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t21 - t22) / sum_elbow));
-    const real_t t23 = cf_atan2(s2, c2);
-    const real_t t24 = h - x_z + t20;
-    const real_t t25 = cf_atan2(s_x_yaw, c_x_yaw);
+    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t20 - t21) / sum_elbow));
+    const real_t t22 = cf_atan2(s2, c2);
+    const real_t t23 = h - x_z + t19;
+    const real_t t24 = c1 * c2 - s1 * s2;
+    const real_t t25 = c1 * s2 + s1 * c2;
+    const real_t t26 = cf_atan2(s_x_yaw * t24 - c_x_yaw * t25, c_x_yaw * t24 + s_x_yaw * t25);
     const real_t s1_right = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t8 + t10);
     const real_t c1_right = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t11 - t12);
-    const real_t t26 = cf_atan2(s1_right, c1_right);
-    const real_t t27 = cf_status(invalid, unreachable, no_link_elbow | folded_elbow);
-    q[0] = cf_wrap(t13) + t20;
-    q[1] = cf_wrap(t23) + t20;
-    q[2] = t24;
-    q[3] = cf_wrap(t23 - (t25 - t13)) + t20;
-    q[4] = cf_wrap(t26) + t20;
-    q[5] = cf_wrap(-t23) + t20;
-    q[6] = t24;
-    q[7] = cf_wrap(t26 - (t25 + t23)) + t20;
-    status[0] = t27;
-    status[1] = t27;
+    const real_t t27 = c2 * c1_right + s2 * s1_right;
+    const real_t t28 = s2 * c1_right - c2 * s1_right;
+    const real_t t29 = cf_atan2(s_x_yaw * t27 + c_x_yaw * t28, c_x_yaw * t27 - s_x_yaw * t28);
+    const real_t t30 = cf_status(invalid, unreachable, no_link_elbow | folded_elbow);
+    q[0] = cf_wrap(cf_atan2(s1, c1)) + t19;
+    q[1] = cf_wrap(t22) + t19;
+    q[2] = t23;
+    q[3] = cf_wrap(-t26) + t19;
+    q[4] = cf_wrap(cf_atan2(s1_right, c1_right)) + t19;
+    q[5] = cf_wrap(-t22) + t19;
+    q[6] = t23;
+    q[7] = cf_wrap(-t29) + t19;
+    status[0] = t30;
+    status[1] = t30;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -31,7 +31,7 @@ from ._runtime import Positions, Solutions, Status
 ASSEMBLY_MODES = ('above', 'below')
 JOINTS = ('rho1', 'rho2')
 TASK = ('x', 'y')
-BRANCHES = ()
+BRANCHES = ('only',)
 SINGULARITIES = ('leg 1', 'leg 2', 'flat')
 
 __all__ = [

@@ -9,7 +9,7 @@
 #   singularities: 1 sincos
 #   jacobian_space: 4 add, 8 multiply, 2 sincos
 #   jacobian_body: 4 add, 8 multiply, 2 sincos
-#   ik: 28 add, 49 compare and select, 4 atan2, 10 divide, 19 multiply, 1 sincos, 5 sqrt
+#   ik: 32 add, 49 compare and select, 5 atan2, 10 divide, 35 multiply, 1 sincos, 5 sqrt
 """SCARA arm (RRPR).
 
 Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a
@@ -382,37 +382,45 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     area_elbow = t9 * np.sqrt(C_elbow)
     s_base_elbow = np.where(no_link_elbow, 0.0, area_elbow / width_elbow)
     t10 = x_x * s_base_elbow / r_elbow
+    s1 = np.where(folded_elbow, 0.0, t8 - t10)
     t11 = x_x * c_base_elbow / r_elbow
     t12 = x_y * s_base_elbow / r_elbow
-    t13 = np.arctan2(np.where(folded_elbow, 0.0, t8 - t10), np.where(folded_elbow, 1.0, t11 + t12))
-    t14 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z)
-    t15 = t14 & np.isfinite(x_yaw) & np.isfinite(l1) & np.isfinite(l2)
-    t16 = t15 & np.isfinite(h) & (0.0 <= l1) & (0.0 <= l2)
-    invalid = np.logical_not(t16 & (0.0 <= h))
-    t17 = -(_runtime.FEASIBILITY * (l1 / 2.0 + l2 / 2.0))
-    unreachable = np.logical_not((t17 <= t2) & (t17 <= t6) & (t17 <= t4))
-    t18 = _runtime.poison(invalid | unreachable)
-    t19 = A_elbow * S_elbow
-    t20 = C_elbow * B_elbow
-    sum_elbow = t19 + t20
+    c1 = np.where(folded_elbow, 1.0, t11 + t12)
+    t13 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z)
+    t14 = t13 & np.isfinite(x_yaw) & np.isfinite(l1) & np.isfinite(l2)
+    t15 = t14 & np.isfinite(h) & (0.0 <= l1) & (0.0 <= l2)
+    invalid = np.logical_not(t15 & (0.0 <= h))
+    t16 = -(_runtime.FEASIBILITY * (l1 / 2.0 + l2 / 2.0))
+    unreachable = np.logical_not((t16 <= t2) & (t16 <= t6) & (t16 <= t4))
+    t17 = _runtime.poison(invalid | unreachable)
+    t18 = A_elbow * S_elbow
+    t19 = C_elbow * B_elbow
+    sum_elbow = t18 + t19
     s2 = np.where(no_link_elbow, 0.0, area_elbow / sum_elbow)
-    c2 = np.where(no_link_elbow, 1.0, -((t19 - t20) / sum_elbow))
-    t21 = np.arctan2(s2, c2)
-    t22 = h - x_z + t18
-    t23 = np.arctan2(s_x_yaw, c_x_yaw)
-    t24 = np.arctan2(np.where(folded_elbow, 0.0, t8 + t10), np.where(folded_elbow, 1.0, t11 - t12))
-    t25 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
+    c2 = np.where(no_link_elbow, 1.0, -((t18 - t19) / sum_elbow))
+    t20 = np.arctan2(s2, c2)
+    t21 = h - x_z + t17
+    t22 = c1 * c2 - s1 * s2
+    t23 = c1 * s2 + s1 * c2
+    t24 = np.arctan2(s_x_yaw * t22 - c_x_yaw * t23, c_x_yaw * t22 + s_x_yaw * t23)
+    s1_right = np.where(folded_elbow, 0.0, t8 + t10)
+    c1_right = np.where(folded_elbow, 1.0, t11 - t12)
+    t25 = _runtime.wrap(np.arctan2(s1_right, c1_right))
+    t26 = c2 * c1_right + s2 * s1_right
+    t27 = s2 * c1_right - c2 * s1_right
+    t28 = np.arctan2(s_x_yaw * t26 + c_x_yaw * t27, c_x_yaw * t26 - s_x_yaw * t27)
+    t29 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
     return (
-        _runtime.wrap(t13) + t18,
-        _runtime.wrap(t21) + t18,
-        t22,
-        _runtime.wrap(t21 - (t23 - t13)) + t18,
-        _runtime.wrap(t24) + t18,
-        _runtime.wrap(-t21) + t18,
-        t22,
-        _runtime.wrap(t24 - (t23 + t21)) + t18,
-        t25,
-        t25,
+        _runtime.wrap(np.arctan2(s1, c1)) + t17,
+        _runtime.wrap(t20) + t17,
+        t21,
+        _runtime.wrap(-t24) + t17,
+        t25 + t17,
+        _runtime.wrap(-t20) + t17,
+        t21,
+        _runtime.wrap(-t28) + t17,
+        t29,
+        t29,
     )
 
 

@@ -9,7 +9,7 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 46 add, 76 multiply, 5 sincos
 #   jacobian_body: 34 add, 64 multiply, 5 sincos
-#   ik: 316 compare and select, 263 add, 26 atan2, 78 divide, 234 multiply, 47 sqrt
+#   ik: 316 compare and select, 279 add, 30 atan2, 78 divide, 298 multiply, 47 sqrt
 """UR-type arm (three parallel axes).
 
 theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and
@@ -682,374 +682,406 @@ def _ik(
     area_elbow = t66 * np.sqrt(S_elbow)
     s_base_elbow = np.where(no_link_elbow, 0.0, area_elbow / width_elbow)
     t67 = t55 * s_base_elbow / r_elbow
+    s2 = np.where(folded_elbow, 0.0, t65 + t67)
     t68 = ey * s_base_elbow / r_elbow
     t69 = t55 * c_base_elbow / r_elbow
-    t70 = np.arctan2(np.where(folded_elbow, 0.0, t65 + t67), np.where(folded_elbow, 1.0, t68 - t69))
-    t71 = C_elbow * B_elbow
-    t72 = A_elbow * S_elbow
-    sum_elbow = t71 + t72
+    c2 = np.where(folded_elbow, 1.0, t68 - t69)
+    t70 = C_elbow * B_elbow
+    t71 = A_elbow * S_elbow
+    sum_elbow = t70 + t71
     s3 = np.where(no_link_elbow, 0.0, area_elbow / sum_elbow)
-    c3 = np.where(no_link_elbow, 1.0, (t71 - t72) / sum_elbow)
-    t73 = np.arctan2(s3, c3)
-    t74 = np.arctan2(sphi, cphi)
+    c3 = np.where(no_link_elbow, 1.0, (t70 - t71) / sum_elbow)
+    t72 = np.arctan2(s3, c3)
+    t73 = sphi * c2 - cphi * s2
+    t74 = cphi * c2 + sphi * s2
+    t75 = np.arctan2(c3 * t73 - s3 * t74, c3 * t74 + s3 * t73)
     M_33 = -(T13 * t11 + T23 * c1)
-    t75 = _runtime.wrap(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
-    t76 = t75 + t61
+    t76 = _runtime.wrap(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
+    t77 = t76 + t61
     M_11 = T11 * c1 - T21 * t11
     M_12 = T12 * c1 - T22 * t11
-    t77 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
-    t78 = _runtime.wrap(-t77) + t61
-    t79 = np.arctan2(np.where(folded_elbow, 0.0, t65 - t67), np.where(folded_elbow, 1.0, -(t69 + t68)))
-    t80 = across + t43
+    t78 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
+    t79 = _runtime.wrap(-t78) + t61
+    s2_left_noflip_down = np.where(folded_elbow, 0.0, t65 - t67)
+    c2_left_noflip_down = np.where(folded_elbow, 1.0, -(t69 + t68))
+    t80 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t81 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t82 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    t83 = np.arctan2(c3 * t81 + s3 * t82, c3 * t82 - s3 * t81)
+    t84 = across + t43
     c_phi_left_flip_up = np.where(aligned_wrist, 1.0, -t45)
-    t81 = t35 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t80 * t80 + t81 * t81)
+    t85 = t35 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t84 * t84 + t85 * t85)
     in_reach_left_flip_up = np.minimum(t1, np.maximum(here_left_flip_up, t39))
-    t82 = (t37 - in_reach_left_flip_up) * (t37 + in_reach_left_flip_up)
-    k_near_left_flip_up = np.maximum(0.0, t82)
-    t83 = (t40 - in_reach_left_flip_up) * (t40 + in_reach_left_flip_up)
-    d_near_left_flip_up = np.maximum(0.0, -t83)
+    t86 = (t37 - in_reach_left_flip_up) * (t37 + in_reach_left_flip_up)
+    k_near_left_flip_up = np.maximum(0.0, t86)
+    t87 = (t40 - in_reach_left_flip_up) * (t40 + in_reach_left_flip_up)
+    d_near_left_flip_up = np.maximum(0.0, -t87)
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
     any_near_left_flip_up = n_near_left_flip_up <= t41
-    t84 = (k_near_left_flip_up - d_near_left_flip_up) / n_near_left_flip_up
-    uc_near_left_flip_up = np.where(any_near_left_flip_up, 1.0, t84)
-    t85 = t47 + across * c_phi_left_flip_up
-    t86 = np.abs(t85)
-    t87 = 2.0 * np.where(t86 <= t3, 1.0, -(t85 / t86)) * np.sqrt(k_near_left_flip_up)
-    t88 = t87 * np.sqrt(d_near_left_flip_up) / n_near_left_flip_up
-    us_near_left_flip_up = np.where(any_near_left_flip_up, 0.0, t88)
-    t89 = across * uc_near_left_flip_up + t35 * us_near_left_flip_up
-    c_near_left_flip_up = np.where(hub_mid, 1.0, t89 / r_hub)
-    t90 = s_phi + c_near_left_flip_up
-    t91 = across * us_near_left_flip_up - t35 * uc_near_left_flip_up
-    s_near_left_flip_up = np.where(hub_mid, 0.0, t91 / r_hub)
-    t92 = c_phi_left_flip_up + s_near_left_flip_up
-    within_rounding_left_flip_up = h_wrist * np.sqrt(t90 * t90 + t92 * t92) <= t53
-    t93 = np.abs(here_left_flip_up - in_reach_left_flip_up)
-    inside_left_flip_up = t93 <= t3
+    t88 = (k_near_left_flip_up - d_near_left_flip_up) / n_near_left_flip_up
+    uc_near_left_flip_up = np.where(any_near_left_flip_up, 1.0, t88)
+    t89 = t47 + across * c_phi_left_flip_up
+    t90 = np.abs(t89)
+    t91 = 2.0 * np.where(t90 <= t3, 1.0, -(t89 / t90)) * np.sqrt(k_near_left_flip_up)
+    t92 = t91 * np.sqrt(d_near_left_flip_up) / n_near_left_flip_up
+    us_near_left_flip_up = np.where(any_near_left_flip_up, 0.0, t92)
+    t93 = across * uc_near_left_flip_up + t35 * us_near_left_flip_up
+    c_near_left_flip_up = np.where(hub_mid, 1.0, t93 / r_hub)
+    t94 = s_phi + c_near_left_flip_up
+    t95 = across * us_near_left_flip_up - t35 * uc_near_left_flip_up
+    s_near_left_flip_up = np.where(hub_mid, 0.0, t95 / r_hub)
+    t96 = c_phi_left_flip_up + s_near_left_flip_up
+    within_rounding_left_flip_up = h_wrist * np.sqrt(t94 * t94 + t96 * t96) <= t53
+    t97 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    inside_left_flip_up = t97 <= t3
     c_moved_left_flip_up = np.where(inside_left_flip_up, -s_phi, c_near_left_flip_up)
-    t94 = np.where(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
-    sphi_left_flip_up = np.where(aligned_wrist, c_mid, t94)
-    t95 = across - d5 * sphi_left_flip_up
+    t98 = np.where(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
+    sphi_left_flip_up = np.where(aligned_wrist, c_mid, t98)
+    t99 = across - d5 * sphi_left_flip_up
     s_moved_left_flip_up = np.where(inside_left_flip_up, -c_phi_left_flip_up, s_near_left_flip_up)
-    t96 = np.where(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
-    cphi_left_flip_up = np.where(aligned_wrist, -s_mid, t96)
+    t100 = np.where(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
+    cphi_left_flip_up = np.where(aligned_wrist, -s_mid, t100)
     ey_left_flip_up = t35 - d5 * cphi_left_flip_up
-    t97 = t95 * t95 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t97)
-    t98 = t1 - r_elbow_left_flip_up
-    t99 = t38 + r_elbow_left_flip_up
-    t100 = r_elbow_left_flip_up - t38
-    t101 = t32 & (t31 <= t98) & (t31 <= t99) & (t31 <= t100)
-    unreachable_2 = np.logical_not(t101)
-    t102 = _runtime.poison(invalid | unreachable_2)
-    t103 = t14 + t102
+    t101 = t99 * t99 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t101)
+    t102 = t1 - r_elbow_left_flip_up
+    t103 = t38 + r_elbow_left_flip_up
+    t104 = r_elbow_left_flip_up - t38
+    t105 = t32 & (t31 <= t102) & (t31 <= t103) & (t31 <= t104)
+    unreachable_2 = np.logical_not(t105)
+    t106 = _runtime.poison(invalid | unreachable_2)
+    t107 = t14 + t106
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t3
-    C_elbow_left_flip_up = np.maximum(t100, 0.0)
-    A_elbow_left_flip_up = np.maximum(t98, 0.0)
-    t104 = C_elbow_left_flip_up * A_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t99, 0.0)
+    C_elbow_left_flip_up = np.maximum(t104, 0.0)
+    A_elbow_left_flip_up = np.maximum(t102, 0.0)
+    t108 = C_elbow_left_flip_up * A_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t103, 0.0)
     S_elbow_left_flip_up = t1 + r_elbow_left_flip_up
-    t105 = B_elbow_left_flip_up * S_elbow_left_flip_up
-    width_elbow_left_flip_up = t104 + t105
-    c_base_elbow_left_flip_up = np.where(no_link_elbow, 1.0, -((t104 - t105) / width_elbow_left_flip_up))
-    t106 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up
-    t107 = 2.0 * np.sqrt(B_elbow_left_flip_up) * np.sqrt(C_elbow_left_flip_up)
-    area_elbow_left_flip_up = t107 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
-    t108 = area_elbow_left_flip_up / width_elbow_left_flip_up
-    s_base_elbow_left_flip_up = np.where(no_link_elbow, 0.0, t108)
-    t109 = t95 * s_base_elbow_left_flip_up / r_elbow_left_flip_up
-    s2_left_flip_up = np.where(folded_elbow_left_flip_up, 0.0, t106 + t109)
-    t110 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up
-    t111 = t95 * c_base_elbow_left_flip_up / r_elbow_left_flip_up
-    c2_left_flip_up = np.where(folded_elbow_left_flip_up, 1.0, t110 - t111)
-    t112 = np.arctan2(s2_left_flip_up, c2_left_flip_up)
-    t113 = C_elbow_left_flip_up * B_elbow_left_flip_up
-    t114 = A_elbow_left_flip_up * S_elbow_left_flip_up
-    sum_elbow_left_flip_up = t113 + t114
-    t115 = area_elbow_left_flip_up / sum_elbow_left_flip_up
-    c3_left_flip_up = np.where(no_link_elbow, 1.0, (t113 - t114) / sum_elbow_left_flip_up)
-    t116 = np.arctan2(np.where(no_link_elbow, 0.0, t115), c3_left_flip_up)
-    t117 = np.arctan2(sphi_left_flip_up, cphi_left_flip_up)
-    t118 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
-    t119 = _runtime.wrap(-np.arctan2(t118, M_33)) + t102
-    t120 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
-    t121 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
-    t122 = _runtime.wrap(-np.arctan2(t120, t121)) + t102
-    s2_left_flip_down = np.where(folded_elbow_left_flip_up, 0.0, t106 - t109)
-    c2_left_flip_down = np.where(folded_elbow_left_flip_up, 1.0, -(t111 + t110))
-    t123 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t124 = np.where(free1, 0.0, t8 - t10)
+    t109 = B_elbow_left_flip_up * S_elbow_left_flip_up
+    width_elbow_left_flip_up = t108 + t109
+    c_base_elbow_left_flip_up = np.where(no_link_elbow, 1.0, -((t108 - t109) / width_elbow_left_flip_up))
+    t110 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up
+    t111 = 2.0 * np.sqrt(B_elbow_left_flip_up) * np.sqrt(C_elbow_left_flip_up)
+    area_elbow_left_flip_up = t111 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
+    t112 = area_elbow_left_flip_up / width_elbow_left_flip_up
+    s_base_elbow_left_flip_up = np.where(no_link_elbow, 0.0, t112)
+    t113 = t99 * s_base_elbow_left_flip_up / r_elbow_left_flip_up
+    s2_left_flip_up = np.where(folded_elbow_left_flip_up, 0.0, t110 + t113)
+    t114 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up
+    t115 = t99 * c_base_elbow_left_flip_up / r_elbow_left_flip_up
+    c2_left_flip_up = np.where(folded_elbow_left_flip_up, 1.0, t114 - t115)
+    t116 = _runtime.wrap(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t117 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t118 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    sum_elbow_left_flip_up = t117 + t118
+    t119 = area_elbow_left_flip_up / sum_elbow_left_flip_up
+    s3_left_flip_up = np.where(no_link_elbow, 0.0, t119)
+    c3_left_flip_up = np.where(no_link_elbow, 1.0, (t117 - t118) / sum_elbow_left_flip_up)
+    t120 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t121 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t122 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    t123 = c3_left_flip_up * t121 - s3_left_flip_up * t122
+    t124 = c3_left_flip_up * t122 + s3_left_flip_up * t121
+    t125 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t126 = _runtime.wrap(-np.arctan2(t125, M_33)) + t106
+    t127 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
+    t128 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
+    t129 = _runtime.wrap(-np.arctan2(t127, t128)) + t106
+    s2_left_flip_down = np.where(folded_elbow_left_flip_up, 0.0, t110 - t113)
+    c2_left_flip_down = np.where(folded_elbow_left_flip_up, 1.0, -(t115 + t114))
+    t130 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t131 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t132 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t133 = c3_left_flip_up * t131 + s3_left_flip_up * t132
+    t134 = c3_left_flip_up * t132 - s3_left_flip_up * t131
+    t135 = np.where(free1, 0.0, t8 - t10)
     c1_right_noflip_up = np.where(free1, 1.0, t12 + t13)
-    t125 = _runtime.wrap(np.arctan2(-t124, c1_right_noflip_up))
-    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t124
-    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t124
-    t126 = t33 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t126)
+    t136 = _runtime.wrap(np.arctan2(-t135, c1_right_noflip_up))
+    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t135
+    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t135
+    t137 = t33 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t137)
     aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t34
-    t127 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t36 + t127)
+    t138 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t36 + t138)
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t3
-    t128 = d5 + r_hub_right_noflip_up
-    t129 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(t1, t128) / 2.0 + np.maximum(t39, np.abs(t129)) / 2.0
-    t130 = (t128 - mid_reach_right_noflip_up) * (t128 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t130)
-    t131 = (t129 - mid_reach_right_noflip_up) * (t129 + mid_reach_right_noflip_up)
-    d_mid_right_noflip_up = np.maximum(0.0, -t131)
+    t139 = d5 + r_hub_right_noflip_up
+    t140 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(t1, t139) / 2.0 + np.maximum(t39, np.abs(t140)) / 2.0
+    t141 = (t139 - mid_reach_right_noflip_up) * (t139 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t141)
+    t142 = (t140 - mid_reach_right_noflip_up) * (t140 + mid_reach_right_noflip_up)
+    d_mid_right_noflip_up = np.maximum(0.0, -t142)
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
     any_mid_right_noflip_up = n_mid_right_noflip_up <= t41
-    t132 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    uc_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 1.0, t132 / n_mid_right_noflip_up)
-    t133 = across_right_noflip_up * uc_mid_right_noflip_up
-    t134 = 2.0 * np.sqrt(k_mid_right_noflip_up) * np.sqrt(d_mid_right_noflip_up)
-    us_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 0.0, t134 / n_mid_right_noflip_up)
-    t135 = (t133 + t35 * us_mid_right_noflip_up) / r_hub_right_noflip_up
-    c_mid_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t135)
+    t143 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    uc_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 1.0, t143 / n_mid_right_noflip_up)
+    t144 = across_right_noflip_up * uc_mid_right_noflip_up
+    t145 = 2.0 * np.sqrt(k_mid_right_noflip_up) * np.sqrt(d_mid_right_noflip_up)
+    us_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 0.0, t145 / n_mid_right_noflip_up)
+    t146 = (t144 + t35 * us_mid_right_noflip_up) / r_hub_right_noflip_up
+    c_mid_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t146)
     s_phi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, 0.0, T33 / h_wrist_right_noflip_up)
-    t136 = d5 * s_phi_right_noflip_up
-    t137 = across_right_noflip_up - t136
-    t138 = M_13_right_noflip_up / h_wrist_right_noflip_up
-    c_phi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, 1.0, t138)
-    t139 = t35 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t137 * t137 + t139 * t139)
+    t147 = d5 * s_phi_right_noflip_up
+    t148 = across_right_noflip_up - t147
+    t149 = M_13_right_noflip_up / h_wrist_right_noflip_up
+    c_phi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, 1.0, t149)
+    t150 = t35 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t148 * t148 + t150 * t150)
     in_reach_right_noflip_up = np.minimum(t1, np.maximum(here_right_noflip_up, t39))
-    t140 = (t128 - in_reach_right_noflip_up) * (t128 + in_reach_right_noflip_up)
-    k_near_right_noflip_up = np.maximum(0.0, t140)
-    t141 = (t129 - in_reach_right_noflip_up) * (t129 + in_reach_right_noflip_up)
-    d_near_right_noflip_up = np.maximum(0.0, -t141)
+    t151 = (t139 - in_reach_right_noflip_up) * (t139 + in_reach_right_noflip_up)
+    k_near_right_noflip_up = np.maximum(0.0, t151)
+    t152 = (t140 - in_reach_right_noflip_up) * (t140 + in_reach_right_noflip_up)
+    d_near_right_noflip_up = np.maximum(0.0, -t152)
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
     any_near_right_noflip_up = n_near_right_noflip_up <= t41
-    t142 = k_near_right_noflip_up - d_near_right_noflip_up
-    uc_near_right_noflip_up = np.where(any_near_right_noflip_up, 1.0, t142 / n_near_right_noflip_up)
-    t143 = across_right_noflip_up * uc_near_right_noflip_up
-    t144 = across_right_noflip_up * c_phi_right_noflip_up
-    t145 = t35 * s_phi_right_noflip_up
-    t146 = t144 - t145
-    t147 = np.abs(t146)
-    t148 = 2.0 * np.where(t147 <= t3, 1.0, -(t146 / t147))
-    t149 = t148 * np.sqrt(k_near_right_noflip_up) * np.sqrt(d_near_right_noflip_up)
-    us_near_right_noflip_up = np.where(any_near_right_noflip_up, 0.0, t149 / n_near_right_noflip_up)
-    t150 = (t143 + t35 * us_near_right_noflip_up) / r_hub_right_noflip_up
-    c_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t150)
-    t151 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t152 = across_right_noflip_up * us_near_right_noflip_up
-    t153 = (t152 - t35 * uc_near_right_noflip_up) / r_hub_right_noflip_up
-    s_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 0.0, t153)
-    t154 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t155 = h_wrist_right_noflip_up * np.sqrt(t151 * t151 + t154 * t154)
-    within_rounding_right_noflip_up = t155 <= t53
-    t156 = here_right_noflip_up - in_reach_right_noflip_up
-    inside_right_noflip_up = np.abs(t156) <= t3
+    t153 = k_near_right_noflip_up - d_near_right_noflip_up
+    uc_near_right_noflip_up = np.where(any_near_right_noflip_up, 1.0, t153 / n_near_right_noflip_up)
+    t154 = across_right_noflip_up * uc_near_right_noflip_up
+    t155 = across_right_noflip_up * c_phi_right_noflip_up
+    t156 = t35 * s_phi_right_noflip_up
+    t157 = t155 - t156
+    t158 = np.abs(t157)
+    t159 = 2.0 * np.where(t158 <= t3, 1.0, -(t157 / t158))
+    t160 = t159 * np.sqrt(k_near_right_noflip_up) * np.sqrt(d_near_right_noflip_up)
+    us_near_right_noflip_up = np.where(any_near_right_noflip_up, 0.0, t160 / n_near_right_noflip_up)
+    t161 = (t154 + t35 * us_near_right_noflip_up) / r_hub_right_noflip_up
+    c_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t161)
+    t162 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t163 = across_right_noflip_up * us_near_right_noflip_up
+    t164 = (t163 - t35 * uc_near_right_noflip_up) / r_hub_right_noflip_up
+    s_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 0.0, t164)
+    t165 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t166 = h_wrist_right_noflip_up * np.sqrt(t162 * t162 + t165 * t165)
+    within_rounding_right_noflip_up = t166 <= t53
+    t167 = here_right_noflip_up - in_reach_right_noflip_up
+    inside_right_noflip_up = np.abs(t167) <= t3
     c_moved_right_noflip_up = np.where(inside_right_noflip_up, s_phi_right_noflip_up, c_near_right_noflip_up)
-    t157 = np.where(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
-    sphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t157)
-    t158 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t159 = across_right_noflip_up * us_mid_right_noflip_up
-    t160 = (t159 - t35 * uc_mid_right_noflip_up) / r_hub_right_noflip_up
+    t168 = np.where(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
+    sphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t168)
+    t169 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t170 = across_right_noflip_up * us_mid_right_noflip_up
+    t171 = (t170 - t35 * uc_mid_right_noflip_up) / r_hub_right_noflip_up
     s_moved_right_noflip_up = np.where(inside_right_noflip_up, -c_phi_right_noflip_up, s_near_right_noflip_up)
-    t161 = np.where(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
-    cphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t160), t161)
+    t172 = np.where(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
+    cphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t171), t172)
     ey_right_noflip_up = t35 - d5 * cphi_right_noflip_up
-    t162 = t158 * t158 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t162)
-    t163 = t1 - r_elbow_right_noflip_up
-    t164 = t38 + r_elbow_right_noflip_up
-    t165 = r_elbow_right_noflip_up - t38
-    t166 = t32 & (t31 <= t163) & (t31 <= t164) & (t31 <= t165)
-    unreachable_3 = np.logical_not(t166)
-    t167 = _runtime.poison(invalid | unreachable_3)
-    t168 = t125 + t167
+    t173 = t169 * t169 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t173)
+    t174 = t1 - r_elbow_right_noflip_up
+    t175 = t38 + r_elbow_right_noflip_up
+    t176 = r_elbow_right_noflip_up - t38
+    t177 = t32 & (t31 <= t174) & (t31 <= t175) & (t31 <= t176)
+    unreachable_3 = np.logical_not(t177)
+    t178 = _runtime.poison(invalid | unreachable_3)
+    t179 = t136 + t178
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
-    C_elbow_right_noflip_up = np.maximum(t165, 0.0)
-    A_elbow_right_noflip_up = np.maximum(t163, 0.0)
-    t169 = C_elbow_right_noflip_up * A_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t164, 0.0)
+    C_elbow_right_noflip_up = np.maximum(t176, 0.0)
+    A_elbow_right_noflip_up = np.maximum(t174, 0.0)
+    t180 = C_elbow_right_noflip_up * A_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t175, 0.0)
     S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
-    t170 = B_elbow_right_noflip_up * S_elbow_right_noflip_up
-    width_elbow_right_noflip_up = t169 + t170
-    t171 = -((t169 - t170) / width_elbow_right_noflip_up)
-    c_base_elbow_right_noflip_up = np.where(no_link_elbow, 1.0, t171)
-    t172 = ey_right_noflip_up * c_base_elbow_right_noflip_up
-    t173 = t172 / r_elbow_right_noflip_up
-    t174 = 2.0 * np.sqrt(B_elbow_right_noflip_up) * np.sqrt(C_elbow_right_noflip_up)
-    area_elbow_right_noflip_up = t174 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
-    t175 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
-    s_base_elbow_right_noflip_up = np.where(no_link_elbow, 0.0, t175)
-    t176 = t158 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    s2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 0.0, t173 + t176)
-    t177 = ey_right_noflip_up * s_base_elbow_right_noflip_up
-    t178 = t177 / r_elbow_right_noflip_up
-    t179 = t158 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    c2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 1.0, t178 - t179)
-    t180 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t181 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t182 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
-    sum_elbow_right_noflip_up = t181 + t182
-    t183 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
-    c3_right_noflip_up = np.where(no_link_elbow, 1.0, (t181 - t182) / sum_elbow_right_noflip_up)
-    t184 = np.arctan2(np.where(no_link_elbow, 0.0, t183), c3_right_noflip_up)
-    t185 = np.arctan2(sphi_right_noflip_up, cphi_right_noflip_up)
-    t186 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
-    M_33_right_noflip_up = -(T13 * t124 + T23 * c1_right_noflip_up)
-    t187 = _runtime.wrap(-np.arctan2(t186, M_33_right_noflip_up))
-    t188 = t187 + t167
-    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t124
-    t189 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
-    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t124
-    t190 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
-    t191 = _runtime.wrap(-np.arctan2(t189, t190)) + t167
-    s2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 0.0, t173 - t176)
-    c2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 1.0, -(t179 + t178))
-    t192 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t193 = across_right_noflip_up + t136
-    c_phi_right_flip_up = np.where(aligned_wrist_right_noflip_up, 1.0, -t138)
-    t194 = t35 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t193 * t193 + t194 * t194)
+    t181 = B_elbow_right_noflip_up * S_elbow_right_noflip_up
+    width_elbow_right_noflip_up = t180 + t181
+    t182 = -((t180 - t181) / width_elbow_right_noflip_up)
+    c_base_elbow_right_noflip_up = np.where(no_link_elbow, 1.0, t182)
+    t183 = ey_right_noflip_up * c_base_elbow_right_noflip_up
+    t184 = t183 / r_elbow_right_noflip_up
+    t185 = 2.0 * np.sqrt(B_elbow_right_noflip_up) * np.sqrt(C_elbow_right_noflip_up)
+    area_elbow_right_noflip_up = t185 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
+    t186 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
+    s_base_elbow_right_noflip_up = np.where(no_link_elbow, 0.0, t186)
+    t187 = t169 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
+    s2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 0.0, t184 + t187)
+    t188 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    t189 = t188 / r_elbow_right_noflip_up
+    t190 = t169 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
+    c2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 1.0, t189 - t190)
+    t191 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t192 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t193 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    sum_elbow_right_noflip_up = t192 + t193
+    t194 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
+    s3_right_noflip_up = np.where(no_link_elbow, 0.0, t194)
+    c3_right_noflip_up = np.where(no_link_elbow, 1.0, (t192 - t193) / sum_elbow_right_noflip_up)
+    t195 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t196 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t197 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    t198 = c3_right_noflip_up * t196 - s3_right_noflip_up * t197
+    t199 = c3_right_noflip_up * t197 + s3_right_noflip_up * t196
+    t200 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    M_33_right_noflip_up = -(T13 * t135 + T23 * c1_right_noflip_up)
+    t201 = _runtime.wrap(-np.arctan2(t200, M_33_right_noflip_up))
+    t202 = t201 + t178
+    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t135
+    t203 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t135
+    t204 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t205 = _runtime.wrap(-np.arctan2(t203, t204)) + t178
+    s2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 0.0, t184 - t187)
+    c2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 1.0, -(t190 + t189))
+    t206 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t207 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t208 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t209 = c3_right_noflip_up * t207 + s3_right_noflip_up * t208
+    t210 = c3_right_noflip_up * t208 - s3_right_noflip_up * t207
+    t211 = across_right_noflip_up + t147
+    c_phi_right_flip_up = np.where(aligned_wrist_right_noflip_up, 1.0, -t149)
+    t212 = t35 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t211 * t211 + t212 * t212)
     in_reach_right_flip_up = np.minimum(t1, np.maximum(here_right_flip_up, t39))
-    t195 = (t128 - in_reach_right_flip_up) * (t128 + in_reach_right_flip_up)
-    k_near_right_flip_up = np.maximum(0.0, t195)
-    t196 = (t129 - in_reach_right_flip_up) * (t129 + in_reach_right_flip_up)
-    d_near_right_flip_up = np.maximum(0.0, -t196)
+    t213 = (t139 - in_reach_right_flip_up) * (t139 + in_reach_right_flip_up)
+    k_near_right_flip_up = np.maximum(0.0, t213)
+    t214 = (t140 - in_reach_right_flip_up) * (t140 + in_reach_right_flip_up)
+    d_near_right_flip_up = np.maximum(0.0, -t214)
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
     any_near_right_flip_up = n_near_right_flip_up <= t41
-    t197 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up
-    uc_near_right_flip_up = np.where(any_near_right_flip_up, 1.0, t197)
-    t198 = across_right_noflip_up * uc_near_right_flip_up
-    t199 = t145 + across_right_noflip_up * c_phi_right_flip_up
-    t200 = np.abs(t199)
-    t201 = 2.0 * np.where(t200 <= t3, 1.0, -(t199 / t200))
-    t202 = t201 * np.sqrt(k_near_right_flip_up) * np.sqrt(d_near_right_flip_up)
-    us_near_right_flip_up = np.where(any_near_right_flip_up, 0.0, t202 / n_near_right_flip_up)
-    t203 = (t198 + t35 * us_near_right_flip_up) / r_hub_right_noflip_up
-    c_near_right_flip_up = np.where(hub_mid_right_noflip_up, 1.0, t203)
-    t204 = s_phi_right_noflip_up + c_near_right_flip_up
-    t205 = across_right_noflip_up * us_near_right_flip_up
-    t206 = (t205 - t35 * uc_near_right_flip_up) / r_hub_right_noflip_up
-    s_near_right_flip_up = np.where(hub_mid_right_noflip_up, 0.0, t206)
-    t207 = c_phi_right_flip_up + s_near_right_flip_up
-    t208 = h_wrist_right_noflip_up * np.sqrt(t204 * t204 + t207 * t207)
-    within_rounding_right_flip_up = t208 <= t53
-    t209 = np.abs(here_right_flip_up - in_reach_right_flip_up)
-    inside_right_flip_up = t209 <= t3
+    t215 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up
+    uc_near_right_flip_up = np.where(any_near_right_flip_up, 1.0, t215)
+    t216 = across_right_noflip_up * uc_near_right_flip_up
+    t217 = t156 + across_right_noflip_up * c_phi_right_flip_up
+    t218 = np.abs(t217)
+    t219 = 2.0 * np.where(t218 <= t3, 1.0, -(t217 / t218))
+    t220 = t219 * np.sqrt(k_near_right_flip_up) * np.sqrt(d_near_right_flip_up)
+    us_near_right_flip_up = np.where(any_near_right_flip_up, 0.0, t220 / n_near_right_flip_up)
+    t221 = (t216 + t35 * us_near_right_flip_up) / r_hub_right_noflip_up
+    c_near_right_flip_up = np.where(hub_mid_right_noflip_up, 1.0, t221)
+    t222 = s_phi_right_noflip_up + c_near_right_flip_up
+    t223 = across_right_noflip_up * us_near_right_flip_up
+    t224 = (t223 - t35 * uc_near_right_flip_up) / r_hub_right_noflip_up
+    s_near_right_flip_up = np.where(hub_mid_right_noflip_up, 0.0, t224)
+    t225 = c_phi_right_flip_up + s_near_right_flip_up
+    t226 = h_wrist_right_noflip_up * np.sqrt(t222 * t222 + t225 * t225)
+    within_rounding_right_flip_up = t226 <= t53
+    t227 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    inside_right_flip_up = t227 <= t3
     c_moved_right_flip_up = np.where(inside_right_flip_up, -s_phi_right_noflip_up, c_near_right_flip_up)
-    t210 = np.where(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
-    sphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t210)
-    t211 = across_right_noflip_up - d5 * sphi_right_flip_up
+    t228 = np.where(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
+    sphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t228)
+    t229 = across_right_noflip_up - d5 * sphi_right_flip_up
     s_moved_right_flip_up = np.where(inside_right_flip_up, -c_phi_right_flip_up, s_near_right_flip_up)
-    t212 = np.where(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
-    cphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t160), t212)
+    t230 = np.where(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
+    cphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t171), t230)
     ey_right_flip_up = t35 - d5 * cphi_right_flip_up
-    t213 = t211 * t211 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t213)
-    t214 = t1 - r_elbow_right_flip_up
-    t215 = t38 + r_elbow_right_flip_up
-    t216 = r_elbow_right_flip_up - t38
-    t217 = t32 & (t31 <= t214) & (t31 <= t215) & (t31 <= t216)
-    unreachable_4 = np.logical_not(t217)
-    t218 = _runtime.poison(invalid | unreachable_4)
-    t219 = t125 + t218
+    t231 = t229 * t229 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t231)
+    t232 = t1 - r_elbow_right_flip_up
+    t233 = t38 + r_elbow_right_flip_up
+    t234 = r_elbow_right_flip_up - t38
+    t235 = t32 & (t31 <= t232) & (t31 <= t233) & (t31 <= t234)
+    unreachable_4 = np.logical_not(t235)
+    t236 = _runtime.poison(invalid | unreachable_4)
+    t237 = t136 + t236
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3
-    C_elbow_right_flip_up = np.maximum(t216, 0.0)
-    A_elbow_right_flip_up = np.maximum(t214, 0.0)
-    t220 = C_elbow_right_flip_up * A_elbow_right_flip_up
-    B_elbow_right_flip_up = np.maximum(t215, 0.0)
+    C_elbow_right_flip_up = np.maximum(t234, 0.0)
+    A_elbow_right_flip_up = np.maximum(t232, 0.0)
+    t238 = C_elbow_right_flip_up * A_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t233, 0.0)
     S_elbow_right_flip_up = t1 + r_elbow_right_flip_up
-    t221 = B_elbow_right_flip_up * S_elbow_right_flip_up
-    width_elbow_right_flip_up = t220 + t221
-    c_base_elbow_right_flip_up = np.where(no_link_elbow, 1.0, -((t220 - t221) / width_elbow_right_flip_up))
-    t222 = ey_right_flip_up * c_base_elbow_right_flip_up
-    t223 = t222 / r_elbow_right_flip_up
-    t224 = 2.0 * np.sqrt(B_elbow_right_flip_up) * np.sqrt(C_elbow_right_flip_up)
-    area_elbow_right_flip_up = t224 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
-    t225 = area_elbow_right_flip_up / width_elbow_right_flip_up
-    s_base_elbow_right_flip_up = np.where(no_link_elbow, 0.0, t225)
-    t226 = t211 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
-    s2_right_flip_up = np.where(folded_elbow_right_flip_up, 0.0, t223 + t226)
-    t227 = ey_right_flip_up * s_base_elbow_right_flip_up
-    t228 = t227 / r_elbow_right_flip_up
-    t229 = t211 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
-    c2_right_flip_up = np.where(folded_elbow_right_flip_up, 1.0, t228 - t229)
-    t230 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t231 = C_elbow_right_flip_up * B_elbow_right_flip_up
-    t232 = A_elbow_right_flip_up * S_elbow_right_flip_up
-    sum_elbow_right_flip_up = t231 + t232
-    t233 = area_elbow_right_flip_up / sum_elbow_right_flip_up
-    c3_right_flip_up = np.where(no_link_elbow, 1.0, (t231 - t232) / sum_elbow_right_flip_up)
-    t234 = np.arctan2(np.where(no_link_elbow, 0.0, t233), c3_right_flip_up)
-    t235 = np.arctan2(sphi_right_flip_up, cphi_right_flip_up)
-    t236 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
-    t237 = _runtime.wrap(-np.arctan2(t236, M_33_right_noflip_up))
-    t238 = t237 + t218
-    t239 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
-    t240 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
-    t241 = _runtime.wrap(-np.arctan2(t239, t240)) + t218
-    s2_right_flip_down = np.where(folded_elbow_right_flip_up, 0.0, t223 - t226)
-    c2_right_flip_down = np.where(folded_elbow_right_flip_up, 1.0, -(t229 + t228))
-    t242 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t243 = free1 | aligned_wrist | no_link_elbow
-    t244 = _runtime.status(invalid, unreachable, t243 | folded_elbow)
-    t245 = _runtime.status(invalid, unreachable_2, t243 | folded_elbow_left_flip_up)
-    t246 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
-    t247 = _runtime.status(invalid, unreachable_3, t246 | folded_elbow_right_noflip_up)
-    t248 = _runtime.status(invalid, unreachable_4, t246 | folded_elbow_right_flip_up)
+    t239 = B_elbow_right_flip_up * S_elbow_right_flip_up
+    width_elbow_right_flip_up = t238 + t239
+    c_base_elbow_right_flip_up = np.where(no_link_elbow, 1.0, -((t238 - t239) / width_elbow_right_flip_up))
+    t240 = ey_right_flip_up * c_base_elbow_right_flip_up
+    t241 = t240 / r_elbow_right_flip_up
+    t242 = 2.0 * np.sqrt(B_elbow_right_flip_up) * np.sqrt(C_elbow_right_flip_up)
+    area_elbow_right_flip_up = t242 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    t243 = area_elbow_right_flip_up / width_elbow_right_flip_up
+    s_base_elbow_right_flip_up = np.where(no_link_elbow, 0.0, t243)
+    t244 = t229 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
+    s2_right_flip_up = np.where(folded_elbow_right_flip_up, 0.0, t241 + t244)
+    t245 = ey_right_flip_up * s_base_elbow_right_flip_up
+    t246 = t245 / r_elbow_right_flip_up
+    t247 = t229 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
+    c2_right_flip_up = np.where(folded_elbow_right_flip_up, 1.0, t246 - t247)
+    t248 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t249 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t250 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    sum_elbow_right_flip_up = t249 + t250
+    t251 = area_elbow_right_flip_up / sum_elbow_right_flip_up
+    s3_right_flip_up = np.where(no_link_elbow, 0.0, t251)
+    c3_right_flip_up = np.where(no_link_elbow, 1.0, (t249 - t250) / sum_elbow_right_flip_up)
+    t252 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t253 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t254 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    t255 = c3_right_flip_up * t253 - s3_right_flip_up * t254
+    t256 = c3_right_flip_up * t254 + s3_right_flip_up * t253
+    t257 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t258 = _runtime.wrap(-np.arctan2(t257, M_33_right_noflip_up))
+    t259 = t258 + t236
+    t260 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
+    t261 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
+    t262 = _runtime.wrap(-np.arctan2(t260, t261)) + t236
+    s2_right_flip_down = np.where(folded_elbow_right_flip_up, 0.0, t241 - t244)
+    c2_right_flip_down = np.where(folded_elbow_right_flip_up, 1.0, -(t247 + t246))
+    t263 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t264 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t265 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t266 = c3_right_flip_up * t264 + s3_right_flip_up * t265
+    t267 = c3_right_flip_up * t265 - s3_right_flip_up * t264
+    t268 = free1 | aligned_wrist | no_link_elbow
+    t269 = _runtime.status(invalid, unreachable, t268 | folded_elbow)
+    t270 = _runtime.status(invalid, unreachable_2, t268 | folded_elbow_left_flip_up)
+    t271 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t272 = _runtime.status(invalid, unreachable_3, t271 | folded_elbow_right_noflip_up)
+    t273 = _runtime.status(invalid, unreachable_4, t271 | folded_elbow_right_flip_up)
     return (
         t62,
-        _runtime.wrap(t70) + t61,
-        _runtime.wrap(t73) + t61,
-        _runtime.wrap(t74 - t70 - t73) + t61,
-        t76,
-        t78,
+        _runtime.wrap(np.arctan2(s2, c2)) + t61,
+        _runtime.wrap(t72) + t61,
+        _runtime.wrap(t75) + t61,
+        t77,
+        t79,
         t62,
-        _runtime.wrap(t79) + t61,
-        _runtime.wrap(-t73) + t61,
-        _runtime.wrap(t74 + t73 - t79) + t61,
-        t76,
-        t78,
-        t103,
-        _runtime.wrap(t112) + t102,
-        _runtime.wrap(t116) + t102,
-        _runtime.wrap(t117 - t112 - t116) + t102,
-        t119,
-        t122,
-        t103,
-        _runtime.wrap(t123) + t102,
-        _runtime.wrap(-t116) + t102,
-        _runtime.wrap(t117 + t116 - t123) + t102,
-        t119,
-        t122,
-        t168,
-        _runtime.wrap(t180) + t167,
-        _runtime.wrap(t184) + t167,
-        _runtime.wrap(t185 - t180 - t184) + t167,
-        t188,
-        t191,
-        t168,
-        _runtime.wrap(t192) + t167,
-        _runtime.wrap(-t184) + t167,
-        _runtime.wrap(t185 + t184 - t192) + t167,
-        t188,
-        t191,
-        t219,
-        _runtime.wrap(t230) + t218,
-        _runtime.wrap(t234) + t218,
-        _runtime.wrap(t235 - t230 - t234) + t218,
-        t238,
-        t241,
-        t219,
-        _runtime.wrap(t242) + t218,
-        _runtime.wrap(-t234) + t218,
-        _runtime.wrap(t235 + t234 - t242) + t218,
-        t238,
-        t241,
-        t244,
-        t244,
-        t245,
-        t245,
-        t247,
-        t247,
-        t248,
-        t248,
+        _runtime.wrap(t80) + t61,
+        _runtime.wrap(-t72) + t61,
+        _runtime.wrap(t83) + t61,
+        t77,
+        t79,
+        t107,
+        t116 + t106,
+        _runtime.wrap(t120) + t106,
+        _runtime.wrap(np.arctan2(t123, t124)) + t106,
+        t126,
+        t129,
+        t107,
+        _runtime.wrap(t130) + t106,
+        _runtime.wrap(-t120) + t106,
+        _runtime.wrap(np.arctan2(t133, t134)) + t106,
+        t126,
+        t129,
+        t179,
+        _runtime.wrap(t191) + t178,
+        _runtime.wrap(t195) + t178,
+        _runtime.wrap(np.arctan2(t198, t199)) + t178,
+        t202,
+        t205,
+        t179,
+        _runtime.wrap(t206) + t178,
+        _runtime.wrap(-t195) + t178,
+        _runtime.wrap(np.arctan2(t209, t210)) + t178,
+        t202,
+        t205,
+        t237,
+        _runtime.wrap(t248) + t236,
+        _runtime.wrap(t252) + t236,
+        _runtime.wrap(np.arctan2(t255, t256)) + t236,
+        t259,
+        t262,
+        t237,
+        _runtime.wrap(t263) + t236,
+        _runtime.wrap(-t252) + t236,
+        _runtime.wrap(np.arctan2(t266, t267)) + t236,
+        t259,
+        t262,
+        t269,
+        t269,
+        t270,
+        t270,
+        t272,
+        t272,
+        t273,
+        t273,
     )
 
 

@@ -290,6 +290,7 @@ class Program:
         self, name: str, value: sp.Expr, scale: sp.Expr, meaning: str, *, positive: bool = False
     ) -> sp.Symbol:
         symbol = real(name, nonnegative=True)
+        reject_floats(sp.sympify(value), name)
         self.body.append(Bound(symbol, value, scale, meaning, positive))
         return symbol
 

@@ -527,7 +527,7 @@ class Chord:
     distance: sp.Expr
     along: sp.Expr
     height: sp.Expr
-    flag: sp.Symbol | None
+    flag: sp.Symbol
 
 
 def circle_intersection(
@@ -548,8 +548,8 @@ def circle_intersection(
     first to the point.  With the factors of Heron's formula the height of the triangle is
     ``sqrt(S A B C) / (2 d)``.  ``scale`` is the size of the coordinates, whose rounding decides
     what counts as zero.  Where the radii are equal and the centres coincide, the point is free on
-    a circle; the convention is that of centres which are parted along the first axis.  Circles that
-    touch meet in one point.
+    a circle; for one radius the convention is that of centres which are parted along the first
+    axis, for two it is the point on this axis.  Circles that touch meet in one point.
     """
     x, y = unknowns
     apart = program.let(
@@ -558,19 +558,21 @@ def circle_intersection(
     S = first + second + apart
     A = program.bound(f"slack{suffix}", first + second - apart, scale, "the bars meet")
     touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")
-    flag = None
-    d, along, height = apart, apart / 2, sp.sqrt(S) * sp.sqrt(A) / 2
-    n: tuple[sp.Expr, sp.Expr] = (centres[0] / apart, centres[1] / apart)
+    flag = program.vanishes(f"coincide{suffix}", apart, scale, "the centres coincide", free)
+    n: tuple[sp.Expr, sp.Expr] = (
+        choose(flag, 1, centres[0] / apart),
+        choose(flag, 0, centres[1] / apart),
+    )
     if first == second:
-        flag = program.vanishes(f"coincide{suffix}", apart, scale, "the centres coincide", free)
-        n = (choose(flag, 1, n[0]), choose(flag, 0, n[1]))
         d = program.let(f"distance{suffix}", choose(flag, 0, apart), nonnegative=True)
-        along = d / 2
+        along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     else:
+        d = apart
         B = program.bound(f"outer{suffix}", apart + first - second, scale, "the bars meet")
         C = program.bound(f"inner{suffix}", apart - first + second, scale, "the bars meet")
-        along = (apart + (first - second) * (first + second) / apart) / 2
-        height = height * sp.sqrt(B) * sp.sqrt(C) / apart
+        along = choose(flag, first, (apart + (first - second) * (first + second) / apart) / 2)
+        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * apart)
+        height = choose(flag, 0, rise)
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
     height = program.let(f"height{suffix}", choose(touching, 0, height), nonnegative=True)
     return Lemma(

@@ -47,7 +47,7 @@ from closedform.derivations.h6ar_mechanism import (
 from closedform.derivations.papers import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
-from closedform.derivation import Chain, Derivation, Inverse
+from closedform.derivation import Derivation, Inverse, Reduction
 from closedform.frames import homogeneous, rotation
 from closedform.functions import Program, branches, real
 from closedform.lemmas import two_sines
@@ -377,7 +377,7 @@ d.inverses.append(
         (*forward, *(apart / m.d)),
         angles=(psi, phi, pitch),
         images="fk",
-        chain=Chain(lemmas, joints, sp.diag(MID_PLANE_ROWS, 1 / m.d, 1 / m.d)),
+        reduction=Reduction(lemmas, joints, sp.diag(MID_PLANE_ROWS, 1 / m.d, 1 / m.d)),
     )
 )
 design(d, m, cos(psi))

@@ -38,7 +38,7 @@ from closedform.derivations.h6ar_mechanism import (
 from closedform.derivations.papers import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
-from closedform.derivation import Chain, Derivation, Inverse
+from closedform.derivation import Derivation, Inverse, Reduction
 from closedform.frames import rotation
 from closedform.functions import Program, branches, real
 from closedform.lemmas import elbow_squares, two_link_arm_beside
@@ -454,7 +454,7 @@ d.inverses.append(
         ),
         angles=(psi, phi, pitch),
         images="fk",
-        chain=Chain(
+        reduction=Reduction(
             lemmas,
             joints,
             sp.diag(MID_PLANE_ROWS, sp.Matrix.vstack(closure, turned_line * difference)),

@@ -21,6 +21,12 @@ CHABLAT_WENGER_ANGELES = Paper(
     "Integrated Design and Manufacturing in Mechanical Engineering, Compiègne, 1998",
 )
 
+TEXTBOOK = Paper(
+    "textbook",
+    "Arms of common structure, by the lemmas that solve them",
+    ("The closedform authors",),
+)
+
 PUMA_TEXTBOOKS = Paper(
     "puma-textbooks",
     "The Puma 560 in the textbooks",

@@ -68,6 +68,11 @@ class Builder:
             return sine if isinstance(expr, sp.sin) else cosine
         if isinstance(expr, sp.atan2):
             return graph.atan2(*map(self, expr.args))
+        if isinstance(expr, sp.atan):  # SymPy writes atan2(y, x) so where x is positive
+            top, bottom = sp.fraction(expr.args[0])
+            if not bottom.is_nonnegative:
+                top, bottom = expr.args[0], sp.S.One
+            return graph.atan2(self(top), self(bottom))
         if isinstance(expr, sp.Abs):
             return graph.even("abs", self(expr.args[0]))
         if isinstance(expr, (sp.Max, sp.Min)):

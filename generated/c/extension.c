@@ -8,8 +8,11 @@
 #include "irb260.h"
 #include "planar_2r.h"
 #include "puma560.h"
+#include "rpr_planar.h"
+#include "scara.h"
 #include "spherical_wrist.h"
 #include "stanford_arm.h"
+#include "ur_arm.h"
 
 static const char *const h6ar_fields[] = { "L1", "L2", "a3", "d1", "d", "gs", "al", "loff", "lp" };
 static const double h6ar_values[] = H6AR_DEFAULTS;
@@ -1351,6 +1354,281 @@ static const cf_array puma560_ik_out[] = {
     { "status", 1, { 8 }, 8, CF_STATUS },
 };
 
+static const char *const rpr_planar_fields[] = { "b" };
+static const double rpr_planar_values[] = RPR_PLANAR_DEFAULTS;
+
+static void rpr_planar_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    rpr_planar_fk((const rpr_planar_params *)params, in[0], out[0], out[1]);
+}
+
+static void rpr_planar_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    rpr_planar_fk_batch(n, (const rpr_planar_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array rpr_planar_fk_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array rpr_planar_fk_out[] = {
+    { "p", 2, { 2, 2 }, 4, CF_REAL },
+    { "status", 1, { 2 }, 2, CF_STATUS },
+};
+
+static void rpr_planar_passive_angles_one(const double *params, const double *const *in, void *const *out)
+{
+    rpr_planar_passive_angles((const rpr_planar_params *)params, in[0], out[0]);
+}
+
+static void rpr_planar_passive_angles_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    rpr_planar_passive_angles_batch(n, (const rpr_planar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array rpr_planar_passive_angles_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array rpr_planar_passive_angles_out[] = {
+    { "theta", 2, { 2, 2 }, 4, CF_REAL },
+};
+
+static void rpr_planar_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    rpr_planar_jacobian((const rpr_planar_params *)params, in[0], out[0]);
+}
+
+static void rpr_planar_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    rpr_planar_jacobian_batch(n, (const rpr_planar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array rpr_planar_jacobian_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array rpr_planar_jacobian_out[] = {
+    { "J", 3, { 2, 2, 2 }, 8, CF_REAL },
+};
+
+static void rpr_planar_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    rpr_planar_determinant((const rpr_planar_params *)params, in[0], out[0]);
+}
+
+static void rpr_planar_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    rpr_planar_determinant_batch(n, (const rpr_planar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array rpr_planar_determinant_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array rpr_planar_determinant_out[] = {
+    { "det", 1, { 2 }, 2, CF_REAL },
+};
+
+static void rpr_planar_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    rpr_planar_singularities((const rpr_planar_params *)params, in[0], out[0]);
+}
+
+static void rpr_planar_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    rpr_planar_singularities_batch(n, (const rpr_planar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array rpr_planar_singularities_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array rpr_planar_singularities_out[] = {
+    { "factors", 2, { 2, 3 }, 6, CF_REAL },
+};
+
+static void rpr_planar_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    rpr_planar_ik((const rpr_planar_params *)params, in[0], out[0], out[1]);
+}
+
+static void rpr_planar_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    rpr_planar_ik_batch(n, (const rpr_planar_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array rpr_planar_ik_in[] = {
+    { "x", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array rpr_planar_ik_out[] = {
+    { "q", 2, { 1, 2 }, 2, CF_REAL },
+    { "status", 1, { 1 }, 1, CF_STATUS },
+};
+
+static const char *const scara_fields[] = { "l1", "l2", "h" };
+static const double scara_values[] = SCARA_DEFAULTS;
+
+static void scara_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    scara_pose((const scara_params *)params, in[0], out[0]);
+}
+
+static void scara_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    scara_pose_batch(n, (const scara_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array scara_pose_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array scara_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void scara_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    scara_fk((const scara_params *)params, in[0], out[0]);
+}
+
+static void scara_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    scara_fk_batch(n, (const scara_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array scara_fk_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array scara_fk_out[] = {
+    { "x", 1, { 4 }, 4, CF_REAL },
+};
+
+static void scara_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    scara_jacobian((const scara_params *)params, in[0], out[0]);
+}
+
+static void scara_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    scara_jacobian_batch(n, (const scara_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array scara_jacobian_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array scara_jacobian_out[] = {
+    { "J", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void scara_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    scara_determinant((const scara_params *)params, in[0], out[0]);
+}
+
+static void scara_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    scara_determinant_batch(n, (const scara_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array scara_determinant_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array scara_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void scara_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    scara_singularities((const scara_params *)params, in[0], out[0]);
+}
+
+static void scara_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    scara_singularities_batch(n, (const scara_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array scara_singularities_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array scara_singularities_out[] = {
+    { "factors", 1, { 1 }, 1, CF_REAL },
+};
+
+static void scara_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    scara_jacobian_space((const scara_params *)params, in[0], out[0]);
+}
+
+static void scara_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    scara_jacobian_space_batch(n, (const scara_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array scara_jacobian_space_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array scara_jacobian_space_out[] = {
+    { "J", 2, { 6, 4 }, 24, CF_REAL },
+};
+
+static void scara_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    scara_jacobian_body((const scara_params *)params, in[0], out[0]);
+}
+
+static void scara_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    scara_jacobian_body_batch(n, (const scara_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array scara_jacobian_body_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array scara_jacobian_body_out[] = {
+    { "J", 2, { 6, 4 }, 24, CF_REAL },
+};
+
+static void scara_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    scara_ik((const scara_params *)params, in[0], out[0], out[1]);
+}
+
+static void scara_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    scara_ik_batch(n, (const scara_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array scara_ik_in[] = {
+    { "x", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array scara_ik_out[] = {
+    { "q", 2, { 2, 4 }, 8, CF_REAL },
+    { "status", 1, { 2 }, 2, CF_STATUS },
+};
+
 static const char *const spherical_wrist_fields[] = { "d6" };
 static const double spherical_wrist_values[] = SPHERICAL_WRIST_DEFAULTS;
 
@@ -1640,6 +1918,162 @@ static const cf_array stanford_arm_ik_in[] = {
 };
 
 static const cf_array stanford_arm_ik_out[] = {
+    { "q", 2, { 8, 6 }, 48, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
+};
+
+static const char *const ur_arm_fields[] = { "d1", "L2", "L3", "d4", "d5", "d6" };
+static const double ur_arm_values[] = UR_ARM_DEFAULTS;
+
+static void ur_arm_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    ur_arm_pose((const ur_arm_params *)params, in[0], out[0]);
+}
+
+static void ur_arm_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    ur_arm_pose_batch(n, (const ur_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array ur_arm_pose_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array ur_arm_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void ur_arm_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    ur_arm_fk((const ur_arm_params *)params, in[0], out[0]);
+}
+
+static void ur_arm_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    ur_arm_fk_batch(n, (const ur_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array ur_arm_fk_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array ur_arm_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void ur_arm_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    ur_arm_jacobian((const ur_arm_params *)params, in[0], out[0]);
+}
+
+static void ur_arm_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    ur_arm_jacobian_batch(n, (const ur_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array ur_arm_jacobian_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array ur_arm_jacobian_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void ur_arm_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    ur_arm_determinant((const ur_arm_params *)params, in[0], out[0]);
+}
+
+static void ur_arm_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    ur_arm_determinant_batch(n, (const ur_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array ur_arm_determinant_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array ur_arm_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void ur_arm_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    ur_arm_singularities((const ur_arm_params *)params, in[0], out[0]);
+}
+
+static void ur_arm_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    ur_arm_singularities_batch(n, (const ur_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array ur_arm_singularities_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array ur_arm_singularities_out[] = {
+    { "factors", 1, { 3 }, 3, CF_REAL },
+};
+
+static void ur_arm_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    ur_arm_jacobian_space((const ur_arm_params *)params, in[0], out[0]);
+}
+
+static void ur_arm_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    ur_arm_jacobian_space_batch(n, (const ur_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array ur_arm_jacobian_space_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array ur_arm_jacobian_space_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void ur_arm_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    ur_arm_jacobian_body((const ur_arm_params *)params, in[0], out[0]);
+}
+
+static void ur_arm_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    ur_arm_jacobian_body_batch(n, (const ur_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array ur_arm_jacobian_body_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array ur_arm_jacobian_body_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void ur_arm_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    ur_arm_ik((const ur_arm_params *)params, in[0], out[0], out[1]);
+}
+
+static void ur_arm_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    ur_arm_ik_batch(n, (const ur_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array ur_arm_ik_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static const cf_array ur_arm_ik_out[] = {
     { "q", 2, { 8, 6 }, 48, CF_REAL },
     { "status", 1, { 8 }, 8, CF_STATUS },
 };
@@ -2362,6 +2796,132 @@ const cf_function cf_functions[] = {
       4, puma560_values, puma560_fields,
       1, puma560_ik_in, 2, puma560_ik_out,
       puma560_ik_one, puma560_ik_many },
+    { "rpr_planar.fk",
+      "Position of P in both assembly modes.\n"
+      "q: shape (..., 2): rho1, rho2.\n"
+      "Returns p: shape (..., 2, 2).\n"
+      "Branches: above, below.\n"
+      "UNREACHABLE: the legs do not meet, or a length is negative.\n"
+      "SINGULAR: the pivots coincide (b = 0); P is free on a circle, the point on the x\n"
+      "    axis is returned.\n"
+      ,
+      1, rpr_planar_values, rpr_planar_fields,
+      1, rpr_planar_fk_in, 2, rpr_planar_fk_out,
+      rpr_planar_fk_one, rpr_planar_fk_many },
+    { "rpr_planar.passive_angles",
+      "Angles of the legs in both assembly modes.\n"
+      "q: shape (..., 2): rho1, rho2.\n"
+      "Returns theta: shape (..., 2, 2).\n"
+      "Branches: above, below.\n"
+      ,
+      1, rpr_planar_values, rpr_planar_fields,
+      1, rpr_planar_passive_angles_in, 1, rpr_planar_passive_angles_out,
+      rpr_planar_passive_angles_one, rpr_planar_passive_angles_many },
+    { "rpr_planar.jacobian",
+      "Derivative of p with respect to q, A^-1 B.\n"
+      "q: shape (..., 2): rho1, rho2.\n"
+      "Returns J: shape (..., 2, 2, 2).\n"
+      "Branches: above, below.\n"
+      ,
+      1, rpr_planar_values, rpr_planar_fields,
+      1, rpr_planar_jacobian_in, 1, rpr_planar_jacobian_out,
+      rpr_planar_jacobian_one, rpr_planar_jacobian_many },
+    { "rpr_planar.determinant",
+      "Determinant of the Jacobian.\n"
+      "q: shape (..., 2): rho1, rho2.\n"
+      "Returns det: shape (..., 2).\n"
+      "Branches: above, below.\n"
+      ,
+      1, rpr_planar_values, rpr_planar_fields,
+      1, rpr_planar_determinant_in, 1, rpr_planar_determinant_out,
+      rpr_planar_determinant_one, rpr_planar_determinant_many },
+    { "rpr_planar.singularities",
+      "rho1 and rho2 (serial) and y (parallel).\n"
+      "q: shape (..., 2): rho1, rho2.\n"
+      "Returns factors: shape (..., 2, 3).\n"
+      "Branches: above, below.\n"
+      ,
+      1, rpr_planar_values, rpr_planar_fields,
+      1, rpr_planar_singularities_in, 1, rpr_planar_singularities_out,
+      rpr_planar_singularities_one, rpr_planar_singularities_many },
+    { "rpr_planar.ik",
+      "The lengths of the legs.\n"
+      "x: shape (..., 2): x, y.\n"
+      "Returns q: shape (..., 1, 2).\n"
+      "Every position can be reached, in one way: lengths are not negative.\n"
+      ,
+      1, rpr_planar_values, rpr_planar_fields,
+      1, rpr_planar_ik_in, 2, rpr_planar_ik_out,
+      rpr_planar_ik_one, rpr_planar_ik_many },
+    { "scara.pose",
+      "Pose of the tool in the base frame.\n"
+      "q: shape (..., 4): theta1, theta2, d3, theta4.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      3, scara_values, scara_fields,
+      1, scara_pose_in, 1, scara_pose_out,
+      scara_pose_one, scara_pose_many },
+    { "scara.fk",
+      "Task coordinates (x, y, z, yaw).\n"
+      "q: shape (..., 4): theta1, theta2, d3, theta4.\n"
+      "Returns x: shape (..., 4).\n"
+      "The yaw is reduced to (-pi, pi].\n"
+      ,
+      3, scara_values, scara_fields,
+      1, scara_fk_in, 1, scara_fk_out,
+      scara_fk_one, scara_fk_many },
+    { "scara.jacobian",
+      "Derivative of (x, y, z, yaw) by the joints.\n"
+      "q: shape (..., 4): theta1, theta2, d3, theta4.\n"
+      "Returns J: shape (..., 4, 4).\n"
+      ,
+      3, scara_values, scara_fields,
+      1, scara_jacobian_in, 1, scara_jacobian_out,
+      scara_jacobian_one, scara_jacobian_many },
+    { "scara.determinant",
+      "Determinant of the Jacobian.\n"
+      "q: shape (..., 4): theta1, theta2, d3, theta4.\n"
+      "Returns det: shape (...).\n"
+      ,
+      3, scara_values, scara_fields,
+      1, scara_determinant_in, 1, scara_determinant_out,
+      scara_determinant_one, scara_determinant_many },
+    { "scara.singularities",
+      "The factors of the determinant that hold a joint.\n"
+      "q: shape (..., 4): theta1, theta2, d3, theta4.\n"
+      "Returns factors: shape (..., 1).\n"
+      ,
+      3, scara_values, scara_fields,
+      1, scara_singularities_in, 1, scara_singularities_out,
+      scara_singularities_one, scara_singularities_many },
+    { "scara.jacobian_space",
+      "Twist (v; omega) of the tool in the base frame per joint rate.\n"
+      "q: shape (..., 4): theta1, theta2, d3, theta4.\n"
+      "Returns J: shape (..., 6, 4).\n"
+      ,
+      3, scara_values, scara_fields,
+      1, scara_jacobian_space_in, 1, scara_jacobian_space_out,
+      scara_jacobian_space_one, scara_jacobian_space_many },
+    { "scara.jacobian_body",
+      "Twist (v; omega) of the tool in its own frame per joint rate.\n"
+      "q: shape (..., 4): theta1, theta2, d3, theta4.\n"
+      "Returns J: shape (..., 6, 4).\n"
+      ,
+      3, scara_values, scara_fields,
+      1, scara_jacobian_body_in, 1, scara_jacobian_body_out,
+      scara_jacobian_body_one, scara_jacobian_body_many },
+    { "scara.ik",
+      "Both elbows of a position and a yaw.\n"
+      "x: shape (..., 4): x_x, x_y, x_z, x_yaw.\n"
+      "Returns q: shape (..., 2, 4).\n"
+      "Branches: left, right.\n"
+      "SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is\n"
+      "    returned.\n"
+      "SINGULAR: a link without length: theta2 is free; 0.\n"
+      ,
+      3, scara_values, scara_fields,
+      1, scara_ik_in, 2, scara_ik_out,
+      scara_ik_one, scara_ik_many },
     { "spherical_wrist.fk",
       "Rotation of the hand.\n"
       "Source: eqs. (12) and (15).\n"
@@ -2504,6 +3064,80 @@ const cf_function cf_functions[] = {
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_ik_in, 2, stanford_arm_ik_out,
       stanford_arm_ik_one, stanford_arm_ik_many },
+    { "ur_arm.pose",
+      "Pose of the tool in the base frame.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      6, ur_arm_values, ur_arm_fields,
+      1, ur_arm_pose_in, 1, ur_arm_pose_out,
+      ur_arm_pose_one, ur_arm_pose_many },
+    { "ur_arm.fk",
+      "Pose of the tool in the base frame.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns T: shape (..., 4, 4).\n"
+      ,
+      6, ur_arm_values, ur_arm_fields,
+      1, ur_arm_fk_in, 1, ur_arm_fk_out,
+      ur_arm_fk_one, ur_arm_fk_many },
+    { "ur_arm.jacobian",
+      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      "The geometric Jacobian: rows (v; omega), v of the origin of the tool.\n"
+      ,
+      6, ur_arm_values, ur_arm_fields,
+      1, ur_arm_jacobian_in, 1, ur_arm_jacobian_out,
+      ur_arm_jacobian_one, ur_arm_jacobian_many },
+    { "ur_arm.determinant",
+      "Determinant of the Jacobian.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns det: shape (...).\n"
+      ,
+      6, ur_arm_values, ur_arm_fields,
+      1, ur_arm_determinant_in, 1, ur_arm_determinant_out,
+      ur_arm_determinant_one, ur_arm_determinant_many },
+    { "ur_arm.singularities",
+      "The factors of the determinant that hold a joint.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns factors: shape (..., 3).\n"
+      ,
+      6, ur_arm_values, ur_arm_fields,
+      1, ur_arm_singularities_in, 1, ur_arm_singularities_out,
+      ur_arm_singularities_one, ur_arm_singularities_many },
+    { "ur_arm.jacobian_space",
+      "Twist (v; omega) of the tool in the base frame per joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      ,
+      6, ur_arm_values, ur_arm_fields,
+      1, ur_arm_jacobian_space_in, 1, ur_arm_jacobian_space_out,
+      ur_arm_jacobian_space_one, ur_arm_jacobian_space_many },
+    { "ur_arm.jacobian_body",
+      "Twist (v; omega) of the tool in its own frame per joint rate.\n"
+      "q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.\n"
+      "Returns J: shape (..., 6, 6).\n"
+      ,
+      6, ur_arm_values, ur_arm_fields,
+      1, ur_arm_jacobian_body_in, 1, ur_arm_jacobian_body_out,
+      ur_arm_jacobian_body_one, ur_arm_jacobian_body_many },
+    { "ur_arm.ik",
+      "The joint angles of a pose, all eight postures.\n"
+      "T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33,\n"
+      "    T34, T41, T42, T43, T44.\n"
+      "Returns q: shape (..., 8, 6).\n"
+      "Branches: left_noflip_up, left_noflip_down, left_flip_up, left_flip_down,\n"
+      "    right_noflip_up, right_noflip_down, right_flip_up, right_flip_down.\n"
+      "SINGULAR: all coefficients of the equation for theta1 vanish; theta1 is free, 0\n"
+      "    is returned.\n"
+      "SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.\n"
+      "SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is\n"
+      "    returned.\n"
+      "SINGULAR: a link without length: theta3 is free; 0.\n"
+      ,
+      6, ur_arm_values, ur_arm_fields,
+      1, ur_arm_ik_in, 2, ur_arm_ik_out,
+      ur_arm_ik_one, ur_arm_ik_many },
 };
 
 const size_t cf_function_count = sizeof cf_functions / sizeof cf_functions[0];

@@ -7,27 +7,43 @@ from pathlib import Path
 import numpy
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
+from setuptools.modified import newer_group
 
 FOLDERS = (Path("closedform/extension"), Path("generated/c"))
 SOURCES = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.c"))
 HEADERS = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.h"))
 
 
+def read_by(source):
+    """The files that decide whether a source has to be compiled again."""
+    path = Path(source)
+    headers = [path.with_suffix(".h"), path.with_name("closedform.h")]
+    robot = all(header.exists() for header in headers) and path.stem != "closedform"
+    return [source, "setup.py", *(map(str, headers) if robot else HEADERS)]
+
+
 class BuildExtension(build_ext):
-    """Compiles the sources of the extension side by side."""
+    """Compiles what changed of the sources, side by side."""
 
     def finalize_options(self):
         super().finalize_options()
-        for extension in self.extensions:
-            # A checkout whose generated C is broken must still install, to be able to mend it.
-            extension.optional = self.editable_mode
+        if self.editable_mode:
+            # make derives first and then builds in place: a checkout whose generated C is broken
+            # must still install, to be able to mend it.
+            self.extensions = []
 
     def build_extensions(self):
         compile_in_turn = self.compiler.compile
 
-        def compile_side_by_side(sources, **options):
+        def compile_one(source, output_dir, **options):
+            made = self.compiler.object_filenames([source], output_dir=output_dir)
+            if newer_group(read_by(source), made[0]):
+                compile_in_turn([source], output_dir=output_dir, **options)
+            return made
+
+        def compile_side_by_side(sources, output_dir=None, **options):
             with ThreadPoolExecutor(os.cpu_count()) as pool:
-                compiled = pool.map(lambda source: compile_in_turn([source], **options), sources)
+                compiled = pool.map(lambda s: compile_one(s, output_dir, **options), sources)
                 return [name for names in compiled for name in names]
 
         self.compiler.compile = compile_side_by_side

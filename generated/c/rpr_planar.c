@@ -36,18 +36,17 @@ CF_INLINE void rpr_planar_fk_kernel(const rpr_planar_params *params, const real_
     const real_t t12 = cf_poison(invalid | unreachable);
     const real_t t13 = n_1 * t6 + t12;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t14 = cf_sqrt(slack) * cf_sqrt(t2) * cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0)));
-    const real_t t15 = t14 * cf_sqrt(cf_max(t10, CLOSEDFORM_C(0.0)));
-    const real_t t16 = cf_select(coincide, CLOSEDFORM_C(0.0), t15 / t5);
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t16);
+    const real_t t14 = cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t10, CLOSEDFORM_C(0.0)));
+    const real_t t15 = cf_select(coincide, CLOSEDFORM_C(0.0), t14 * cf_sqrt(slack) * cf_sqrt(t2) / t5);
+    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t15);
     const real_t P_y = n_1 * height;
-    const real_t t17 = cf_status(invalid, unreachable, coincide);
+    const real_t t16 = cf_status(invalid, unreachable, coincide);
     p[0] = t13;
     p[1] = P_y + t12;
     p[2] = t13;
     p[3] = -P_y + t12;
-    status[0] = t17;
-    status[1] = t17;
+    status[0] = t16;
+    status[1] = t16;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -91,8 +90,8 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params, const
     }
 }
 
-CF_INLINE void rpr_planar_passive_angles_kernel(const rpr_planar_params *params, const real_t q[2],
-    real_t theta[4])
+CF_INLINE void rpr_planar_passive_angles_kernel(const int vector, const rpr_planar_params *params,
+    const real_t q[2], real_t theta[4])
 {
     const real_t b = params->b;
     const real_t rho1 = q[0];
@@ -106,31 +105,38 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const rpr_planar_params *params,
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
     const real_t t6 = b - t5;
-    const real_t t7 = cf_sqrt(slack) * cf_sqrt(t2) * cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0)));
-    const real_t t8 = b + t5;
+    const real_t t7 = b + t5;
+    const real_t t8 = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
     const real_t t9 = b * CLOSEDFORM_C(2.0);
-    const real_t t10 = t7 * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0))) / t9;
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t10));
+    const real_t t10 = cf_select(coincide, CLOSEDFORM_C(0.0), t8 * cf_sqrt(slack) * cf_sqrt(t2) / t9);
+    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t10);
     const real_t P_y = n_1 * height;
     const real_t t11 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t5 * t1 / t9);
     const real_t P_x = n_1 * t11;
-    const real_t t12 = cf_atan2(P_y, P_x);
-    const int t13 = cf_is_finite(rho1) & cf_is_finite(rho2) & cf_is_finite(b);
-    const real_t t14 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = !(t13 & (CLOSEDFORM_C(0.0) <= b)) | !((t14 <= t4) & (t14 <= t8) & (t14 <= t6));
-    const real_t t15 = cf_poison(failed);
-    const real_t t16 = cf_atan2(P_y, P_x - b);
-    theta[0] = cf_wrap(t12) + t15;
-    theta[1] = cf_wrap(t16) + t15;
-    theta[2] = cf_wrap(-t12) + t15;
-    theta[3] = cf_wrap(-t16) + t15;
+    const int t12 = cf_is_finite(rho1) & cf_is_finite(rho2) & cf_is_finite(b);
+    const real_t t13 = -(CLOSEDFORM_FEASIBILITY * t2);
+    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= b))) | (!((t13 <= t4) & (t13 <= t7) & (t13 <= t6)));
+    const real_t t14 = cf_poison(failed);
+    const real_t opposite[2] = { P_y, P_y };
+    const real_t adjacent[2] = { P_x, P_x - b };
+    real_t angles[2];
+    if (vector) {
+        cf_atan2_block(2, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+    }
+    theta[0] = cf_wrap(angles[0]) + t14;
+    theta[1] = cf_wrap(angles[1]) + t14;
+    theta[2] = cf_wrap(-angles[0]) + t14;
+    theta[3] = cf_wrap(-angles[1]) + t14;
 }
 
 CLOSEDFORM_DISPATCHED
 void rpr_planar_passive_angles(const rpr_planar_params *params, const real_t q[2],
     real_t theta[4])
 {
-    rpr_planar_passive_angles_kernel(params, q, theta);
+    rpr_planar_passive_angles_kernel(1, params, q, theta);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -145,7 +151,7 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params, 
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
             real_t theta_i[4];
-            rpr_planar_passive_angles_kernel(&local, q_i, theta_i);
+            rpr_planar_passive_angles_kernel(0, &local, q_i, theta_i);
             theta[start + i] = theta_i[0];
             theta[theta_stride + start + i] = theta_i[1];
             theta[2 * theta_stride + start + i] = theta_i[2];
@@ -168,7 +174,7 @@ CF_INLINE void rpr_planar_jacobian_kernel(const rpr_planar_params *params, const
     const real_t t6 = rho1 - rho2;
     const real_t t7 = b + t6;
     const real_t t8 = b - t6;
-    const int failed = !(t1 & (CLOSEDFORM_C(0.0) <= b)) | !((t4 <= t5) & (t4 <= t7) & (t4 <= t8));
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b))) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
     const real_t t9 = cf_poison(failed);
     const real_t t10 = rho1 / b + t9;
     const real_t t11 = -(rho2 / b) + t9;
@@ -179,9 +185,9 @@ CF_INLINE void rpr_planar_jacobian_kernel(const rpr_planar_params *params, const
     const real_t t14 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t6 * t2 / t13);
     const real_t P_x = n_1 * t14;
     const real_t slack = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t t15 = cf_sqrt(slack) * cf_sqrt(t3) * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0)));
-    const real_t t16 = t15 * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0))) / t13;
-    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t16));
+    const real_t t15 = cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
+    const real_t t16 = cf_select(coincide, CLOSEDFORM_C(0.0), t15 * cf_sqrt(slack) * cf_sqrt(t3) / t13);
+    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), t16);
     const real_t t17 = b * (n_1 * height);
     const real_t t18 = (rho1 * b - rho1 * P_x) / t17;
     const real_t t19 = rho2 * P_x / t17;
@@ -242,14 +248,14 @@ CF_INLINE void rpr_planar_determinant_kernel(const rpr_planar_params *params, co
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
     const real_t t6 = b - t5;
-    const real_t t7 = cf_sqrt(slack) * cf_sqrt(t2) * cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0)));
-    const real_t t8 = b + t5;
-    const real_t t9 = t7 * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0))) / (b * CLOSEDFORM_C(2.0));
+    const real_t t7 = b + t5;
+    const real_t t8 = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
+    const real_t t9 = t8 * cf_sqrt(slack) * cf_sqrt(t2) / (b * CLOSEDFORM_C(2.0));
     const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
     const real_t t10 = rho1 * rho2 / (b * (n_1 * height));
     const int t11 = cf_is_finite(rho1) & cf_is_finite(rho2) & cf_is_finite(b);
     const real_t t12 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = !(t11 & (CLOSEDFORM_C(0.0) <= b)) | !((t12 <= t4) & (t12 <= t8) & (t12 <= t6));
+    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b))) | (!((t12 <= t4) & (t12 <= t7) & (t12 <= t6)));
     const real_t t13 = cf_poison(failed);
     det[0] = t10 + t13;
     det[1] = -t10 + t13;
@@ -295,7 +301,7 @@ CF_INLINE void rpr_planar_singularities_kernel(const rpr_planar_params *params, 
     const real_t t6 = rho1 - rho2;
     const real_t t7 = b + t6;
     const real_t t8 = b - t6;
-    const int failed = !(t1 & (CLOSEDFORM_C(0.0) <= b)) | !((t4 <= t5) & (t4 <= t7) & (t4 <= t8));
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b))) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
     const real_t t9 = cf_poison(failed);
     const real_t t10 = rho1 + t9;
     const real_t t11 = rho2 + t9;
@@ -303,8 +309,8 @@ CF_INLINE void rpr_planar_singularities_kernel(const rpr_planar_params *params, 
     const int coincide = b <= t12;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t slack = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t t13 = cf_sqrt(slack) * cf_sqrt(t3) * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0)));
-    const real_t t14 = t13 * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0))) / (b * CLOSEDFORM_C(2.0));
+    const real_t t13 = cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
+    const real_t t14 = t13 * cf_sqrt(slack) * cf_sqrt(t3) / (b * CLOSEDFORM_C(2.0));
     const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t14));
     const real_t P_y = n_1 * height;
     factors[0] = t10;

@@ -489,9 +489,9 @@ void scara_jacobian_body_batch(size_t n, const scara_params *params, const real_
     }
 }
 
-CF_INLINE void scara_ik_kernel(const scara_params *params, const real_t x[4], const
-    real_t *sines, const real_t *cosines, real_t q[8],
-    real_t status[2])
+CF_INLINE void scara_ik_kernel(const int vector, const scara_params *params, const
+    real_t x[4], const real_t *sines, const real_t
+    *cosines, real_t q[8], real_t status[2])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -519,8 +519,8 @@ CF_INLINE void scara_ik_kernel(const scara_params *params, const real_t x[4], co
     const real_t width_elbow = t5 + t7;
     const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t5 - t7) / width_elbow));
     const real_t t8 = x_y * c_base_elbow / r_elbow;
-    const real_t t9 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow) * cf_sqrt(S_elbow);
-    const real_t area_elbow = t9 * cf_sqrt(B_elbow) * cf_sqrt(C_elbow);
+    const real_t t9 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow) * cf_sqrt(B_elbow);
+    const real_t area_elbow = t9 * cf_sqrt(C_elbow) * cf_sqrt(S_elbow);
     const real_t s_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow / width_elbow);
     const real_t t10 = x_x * s_base_elbow / r_elbow;
     const real_t s1 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t8 - t10);
@@ -541,27 +541,36 @@ CF_INLINE void scara_ik_kernel(const scara_params *params, const real_t x[4], co
     const real_t sum_elbow = t20 + t21;
     const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow / sum_elbow);
     const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t20 - t21) / sum_elbow));
-    const real_t t22 = cf_atan2(s2, c2);
-    const real_t t23 = h - x_z + t19;
-    const real_t t24 = c1 * c2 - s1 * s2;
-    const real_t t25 = c1 * s2 + s1 * c2;
-    const real_t t26 = cf_atan2(s_x_yaw * t24 - c_x_yaw * t25, c_x_yaw * t24 + s_x_yaw * t25);
+    const real_t t22 = h - x_z + t19;
+    const real_t t23 = c1 * c2 - s1 * s2;
+    const real_t t24 = c1 * s2 + s1 * c2;
     const real_t s1_right = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t8 + t10);
     const real_t c1_right = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t11 - t12);
-    const real_t t27 = c2 * c1_right + s2 * s1_right;
-    const real_t t28 = s2 * c1_right - c2 * s1_right;
-    const real_t t29 = cf_atan2(s_x_yaw * t27 + c_x_yaw * t28, c_x_yaw * t27 - s_x_yaw * t28);
-    const real_t t30 = cf_status(invalid, unreachable, no_link_elbow | folded_elbow);
-    q[0] = cf_wrap(cf_atan2(s1, c1)) + t19;
-    q[1] = cf_wrap(t22) + t19;
-    q[2] = t23;
-    q[3] = cf_wrap(-t26) + t19;
-    q[4] = cf_wrap(cf_atan2(s1_right, c1_right)) + t19;
-    q[5] = cf_wrap(-t22) + t19;
-    q[6] = t23;
-    q[7] = cf_wrap(-t29) + t19;
-    status[0] = t30;
-    status[1] = t30;
+    const real_t t25 = c2 * c1_right + s2 * s1_right;
+    const real_t t26 = s2 * c1_right - c2 * s1_right;
+    const real_t t27 = cf_status(invalid, unreachable, no_link_elbow | folded_elbow);
+    const real_t opposite[8] = { s1, s2, s_x_yaw * t23 - c_x_yaw * t24, s1_right, s_x_yaw * t25 + c_x_yaw * t26 };
+    const real_t adjacent[8] = { c1, c2, c_x_yaw * t23 + s_x_yaw * t24, c1_right, c_x_yaw * t25 - s_x_yaw * t26 };
+    real_t angles[8];
+    if (vector) {
+        cf_atan2_block(8, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+        angles[2] = cf_atan2(opposite[2], adjacent[2]);
+        angles[3] = cf_atan2(opposite[3], adjacent[3]);
+        angles[4] = cf_atan2(opposite[4], adjacent[4]);
+    }
+    q[0] = cf_wrap(angles[0]) + t19;
+    q[1] = cf_wrap(angles[1]) + t19;
+    q[2] = t22;
+    q[3] = cf_wrap(-angles[2]) + t19;
+    q[4] = cf_wrap(angles[3]) + t19;
+    q[5] = cf_wrap(-angles[1]) + t19;
+    q[6] = t22;
+    q[7] = cf_wrap(-angles[4]) + t19;
+    status[0] = t27;
+    status[1] = t27;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -572,7 +581,7 @@ void scara_ik(const scara_params *params, const real_t x[4],
     const real_t lanes[1] = { x[3] };
     cf_sincos_block(1, lanes, sines, cosines);
     real_t status_real[2];
-    scara_ik_kernel(params, x, sines, cosines, q, status_real);
+    scara_ik_kernel(1, params, x, sines, cosines, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -595,7 +604,7 @@ void scara_ik_batch(size_t n, const scara_params *params, const real_t
             const real_t cosines_i[1] = { cosines[0][i] };
             real_t q_i[8];
             real_t status_i[2];
-            scara_ik_kernel(&local, x_i, sines_i, cosines_i, q_i, status_i);
+            scara_ik_kernel(0, &local, x_i, sines_i, cosines_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];

@@ -82,8 +82,8 @@ def _fk(rho1, rho2, b):
     t12 = _runtime.poison(invalid | unreachable)
     t13 = n_1 * t6 + t12
     slack = np.maximum(t9, 0.0)
-    t14 = np.sqrt(slack) * np.sqrt(t2) * np.sqrt(np.maximum(t11, 0.0))
-    t15 = np.where(coincide, 0.0, t14 * np.sqrt(np.maximum(t10, 0.0)) / t5)
+    t14 = np.sqrt(np.maximum(t11, 0.0)) * np.sqrt(np.maximum(t10, 0.0))
+    t15 = np.where(coincide, 0.0, t14 * np.sqrt(slack) * np.sqrt(t2) / t5)
     P_y = n_1 * np.where(slack <= t3, 0.0, t15)
     t16 = _runtime.status(invalid, unreachable, coincide)
     return (
@@ -130,17 +130,17 @@ def _passive_angles(rho1, rho2, b):
     slack = np.maximum(t4, 0.0)
     t5 = rho1 - rho2
     t6 = b - t5
-    t7 = np.sqrt(slack) * np.sqrt(t2) * np.sqrt(np.maximum(t6, 0.0))
-    t8 = b + t5
+    t7 = b + t5
+    t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
     t9 = b * 2.0
-    t10 = np.where(coincide, 0.0, t7 * np.sqrt(np.maximum(t8, 0.0)) / t9)
+    t10 = np.where(coincide, 0.0, t8 * np.sqrt(slack) * np.sqrt(t2) / t9)
     P_y = n_1 * np.where(slack <= t3, 0.0, t10)
     t11 = np.where(coincide, rho1, b / 2.0 + t5 * t1 / t9)
     P_x = n_1 * t11
     t12 = np.arctan2(P_y, P_x)
     t13 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(b)
     t14 = -(_runtime.FEASIBILITY * t2)
-    unreachable = np.logical_not((t14 <= t4) & (t14 <= t8) & (t14 <= t6))
+    unreachable = np.logical_not((t14 <= t4) & (t14 <= t7) & (t14 <= t6))
     failed = np.logical_not(t13 & (0.0 <= b)) | unreachable
     t15 = _runtime.poison(failed)
     t16 = np.arctan2(P_y, P_x - b)
@@ -194,8 +194,8 @@ def _jacobian(rho1, rho2, b):
     t14 = np.where(coincide, rho1, b / 2.0 + t6 * t2 / t13)
     P_x = n_1 * t14
     slack = np.maximum(t5, 0.0)
-    t15 = np.sqrt(slack) * np.sqrt(t3) * np.sqrt(np.maximum(t8, 0.0))
-    t16 = np.where(coincide, 0.0, t15 * np.sqrt(np.maximum(t7, 0.0)) / t13)
+    t15 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    t16 = np.where(coincide, 0.0, t15 * np.sqrt(slack) * np.sqrt(t3) / t13)
     t17 = b * (n_1 * np.where(slack <= t12, 0.0, t16))
     t18 = (rho1 * b - rho1 * P_x) / t17
     t19 = rho2 * P_x / t17
@@ -241,15 +241,15 @@ def _determinant(rho1, rho2, b):
     slack = np.maximum(t4, 0.0)
     t5 = rho1 - rho2
     t6 = b - t5
-    t7 = np.sqrt(slack) * np.sqrt(t2) * np.sqrt(np.maximum(t6, 0.0))
-    t8 = b + t5
-    t9 = t7 * np.sqrt(np.maximum(t8, 0.0)) / (b * 2.0)
+    t7 = b + t5
+    t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    t9 = t8 * np.sqrt(slack) * np.sqrt(t2) / (b * 2.0)
     height = np.where(slack <= t3, 0.0, np.where(coincide, 0.0, t9))
     t10 = b * (np.where(coincide, 1.0, b / b) * height)
     t11 = rho1 * rho2 / t10
     t12 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(b)
     t13 = -(_runtime.FEASIBILITY * t2)
-    unreachable = np.logical_not((t13 <= t4) & (t13 <= t8) & (t13 <= t6))
+    unreachable = np.logical_not((t13 <= t4) & (t13 <= t7) & (t13 <= t6))
     failed = np.logical_not(t12 & (0.0 <= b)) | unreachable
     t14 = _runtime.poison(failed)
     return (
@@ -296,8 +296,8 @@ def _singularities(rho1, rho2, b):
     t12 = _runtime.VANISHING * t3
     coincide = b <= t12
     slack = np.maximum(t5, 0.0)
-    t13 = np.sqrt(slack) * np.sqrt(t3) * np.sqrt(np.maximum(t8, 0.0))
-    t14 = t13 * np.sqrt(np.maximum(t7, 0.0)) / (b * 2.0)
+    t13 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    t14 = t13 * np.sqrt(slack) * np.sqrt(t3) / (b * 2.0)
     height = np.where(slack <= t12, 0.0, np.where(coincide, 0.0, t14))
     P_y = np.where(coincide, 1.0, b / b) * height
     return (

@@ -378,8 +378,8 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     width_elbow = t5 + t7
     c_base_elbow = np.where(no_link_elbow, 1.0, -((t5 - t7) / width_elbow))
     t8 = x_y * c_base_elbow / r_elbow
-    t9 = 2.0 * np.sqrt(A_elbow) * np.sqrt(S_elbow) * np.sqrt(B_elbow)
-    area_elbow = t9 * np.sqrt(C_elbow)
+    t9 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
+    area_elbow = t9 * np.sqrt(S_elbow)
     s_base_elbow = np.where(no_link_elbow, 0.0, area_elbow / width_elbow)
     t10 = x_x * s_base_elbow / r_elbow
     s1 = np.where(folded_elbow, 0.0, t8 - t10)

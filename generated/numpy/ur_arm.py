@@ -97,22 +97,22 @@ def _pose(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6
     t7 = c1 * s5
     t8 = L2 * c2
     t9 = L3 * (c2 * c3 - s2 * s3)
-    t10 = d4 * s1 + d6 * t6 + d5 * t2 - c1 * t8 - c1 * t9
+    t10 = d4 * s1 - c1 * t8 - c1 * t9 + d5 * t2 + d6 * t6
     t11 = d6 * c234
     t12 = s1 * s234
-    t13 = d4 * c1 + d6 * t3 - d5 * t12 + s1 * t8 + s1 * t9
+    t13 = d4 * c1 + s1 * t8 + s1 * t9 - d5 * t12 + t1 * t11
     t14 = c5 * s234
     t15 = s5 * s234
     t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234
     return (
         c6 * t1 - s6 * t2 + t3 * t4,
-        -(s6 * t1 + c6 * t2 + t3 * t5),
+        -(s6 * t1 + t3 * t5 + c6 * t2),
         t6 - c234 * t7,
         t10 - t7 * t11,
-        t6 * t4 - (c6 * t7 + s6 * t12),
-        s6 * t7 - c6 * t12 - t6 * t5,
+        -(s6 * t12 - t6 * t4 + c6 * t7),
+        s6 * t7 - (t6 * t5 + c6 * t12),
         -(t3 + c234 * t1),
-        -(t13 + t1 * t11),
+        -(t13 + d6 * t3),
         t5 + c6 * t14,
         t4 - s6 * t14,
         -t15,
@@ -164,22 +164,22 @@ def _fk(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6):
     t7 = c1 * s5
     t8 = L2 * c2
     t9 = L3 * (c2 * c3 - s2 * s3)
-    t10 = d4 * s1 + d6 * t6 + d5 * t2 - c1 * t8 - c1 * t9
+    t10 = d4 * s1 - c1 * t8 - c1 * t9 + d5 * t2 + d6 * t6
     t11 = d6 * c234
     t12 = s1 * s234
-    t13 = d4 * c1 + d6 * t3 - d5 * t12 + s1 * t8 + s1 * t9
+    t13 = d4 * c1 + s1 * t8 + s1 * t9 - d5 * t12 + t1 * t11
     t14 = c5 * s234
     t15 = s5 * s234
     t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234
     return (
         c6 * t1 - s6 * t2 + t3 * t4,
-        -(s6 * t1 + c6 * t2 + t3 * t5),
+        -(s6 * t1 + t3 * t5 + c6 * t2),
         t6 - c234 * t7,
         t10 - t7 * t11,
-        t6 * t4 - (c6 * t7 + s6 * t12),
-        s6 * t7 - c6 * t12 - t6 * t5,
+        -(s6 * t12 - t6 * t4 + c6 * t7),
+        s6 * t7 - (t6 * t5 + c6 * t12),
         -(t3 + c234 * t1),
-        -(t13 + t1 * t11),
+        -(t13 + d6 * t3),
         t5 + c6 * t14,
         t4 - s6 * t14,
         -t15,
@@ -213,51 +213,51 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
 
 def _jacobian(theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d4, d5, d6):
     s1, c1 = _runtime.sincos(theta1)
-    s5, c5 = _runtime.sincos(theta5)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     s4, c4 = _runtime.sincos(theta4)
-    t1 = d6 * c5
-    t2 = d6 * s5
+    s5, c5 = _runtime.sincos(theta5)
+    t1 = L2 * c2
+    t2 = L3 * (c2 * c3 - s2 * s3)
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
-    c234 = c2 * c34 - s2 * s34
-    t3 = s1 * c234
-    t4 = L2 * c2
-    t5 = L3 * (c2 * c3 - s2 * s3)
-    t6 = d4 * c1 + c1 * t1 + t2 * t3 + s1 * t4 + s1 * t5
     s234 = s2 * c34 + c2 * s34
-    t7 = d5 * s234
+    t3 = d5 * s234
+    t4 = d6 * s5
+    c234 = c2 * c34 - s2 * s34
+    t5 = s1 * c234
+    t6 = d4 * c1 + s1 * t1 + s1 * t2 - s1 * t3 + t4 * t5
+    t7 = d6 * c5
     t8 = L2 * s2
     t9 = L3 * (s2 * c3 + c2 * s3)
     t10 = c1 * c234
     t11 = c1 * s234
-    t12 = d5 * t10 + t11 * t2
+    t12 = d5 * t10 + t11 * t4
     t13 = c1 * t9 + t12
-    t14 = d4 * s1 + s1 * t1 - t2 * t10 - c1 * t4 - c1 * t5
+    t14 = d4 * s1 - c1 * t1 - c1 * t2 + c1 * t3 + s1 * t7
     t15 = s1 * s234
-    t16 = d5 * t3 + t15 * t2
+    t16 = d5 * t5 + t15 * t4
     t17 = s1 * t9 + t16
-    t18 = t7 - c234 * t2
-    t19 = t5 - t18
+    t18 = t3 - c234 * t4
+    t19 = t2 - t18
     return (
-        t6 - s1 * t7,
+        t6 + c1 * t7,
         c1 * t8 + t13,
         t13,
         t12,
-        -(s1 * t2 + t1 * t10),
+        -(s1 * t4 + t7 * t10),
         0.0,
-        t14 + c1 * t7,
+        t14 - t4 * t10,
         s1 * t8 + t17,
         t17,
         t16,
-        c1 * t2 - t1 * t3,
+        c1 * t4 - t7 * t5,
         0.0,
         0.0,
-        -(t4 + t19),
+        -(t1 + t19),
         -t19,
         t18,
-        -(s234 * t1),
+        -(s234 * t7),
         0.0,
         0.0,
         s1,
@@ -270,7 +270,7 @@ def _jacobian(theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d4, d5, d
         -c1,
         -c1,
         t15,
-        -(c1 * c5 + s5 * t3),
+        -(c1 * c5 + s5 * t5),
         1.0,
         0.0,
         0.0,
@@ -379,63 +379,63 @@ def _jacobian_space(theta1, theta2, theta3, theta4, theta5, _theta6, d1, L2, L3,
     t4 = L3 * (s2 * c3 + c2 * s3)
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
-    c234 = c2 * c34 - s2 * s34
-    t5 = c1 * c234
     s234 = s2 * c34 + c2 * s34
-    t6 = s1 * s234
-    t7 = L2 * c2
-    t8 = s1 * c234
-    t9 = L3 * (c2 * c3 - s2 * s3)
-    t10 = d1 * t6 - t6 * t2 - t6 * t4 - t7 * t8 - t9 * t8
-    t11 = c1 * c5
-    t12 = c234 * s5
-    t13 = s1 * t12
-    t14 = d1 * t11 - t11 * t2 - t11 * t4 + d1 * t13 - t13 * t2
-    t15 = c1 * s234
-    t16 = s5 * t15
-    t17 = s5 * t6
-    t18 = t14 - t13 * t4 + d4 * t16 + t7 * t17 + t9 * t17
-    t19 = d5 * c234
-    t20 = d5 * s5
+    t5 = s1 * s234
+    t6 = L2 * c2
+    c234 = c2 * c34 - s2 * s34
+    t7 = s1 * c234
+    t8 = L3 * (c2 * c3 - s2 * s3)
+    t9 = t5 * t2 + t6 * t7 + t5 * t4 + t8 * t7 - d1 * t5
+    t10 = c1 * c234
+    t11 = c234 * s5
+    t12 = s1 * t11
+    t13 = s5 * t5
+    t14 = c1 * c5
+    t15 = t2 * t12 - t6 * t13 + t14 * t2 + t4 * t12 - t8 * t13
+    t16 = c1 * s234
+    t17 = s5 * t16
+    t18 = t15 + t14 * t4 - d1 * t12 - d1 * t14 - d4 * t17
+    t19 = d5 * s5
+    t20 = d5 * c234
     t21 = d1 * s1
     t22 = t21 - s1 * t2
-    t23 = d1 * t15 - t15 * t2 - t15 * t4 + d4 * t8 - t7 * t5
+    t23 = t16 * t2 + t6 * t10 + t16 * t4 + t8 * t10 - d1 * t16
     t24 = s1 * c5
-    t25 = c1 * t12
-    t26 = d1 * t24 - t24 * t2 - t24 * t4 - d1 * t25 + t25 * t2
-    t27 = t26 + t25 * t4 - t7 * t16 - t9 * t16 + d4 * t17
-    t28 = c5 * t9 - (d5 * s234 * c5 + d4 * t12 - c5 * t7)
+    t25 = c1 * t11
+    t26 = t24 * t2 - t2 * t25 + t6 * t17 + t24 * t4 - t4 * t25
+    t27 = t26 + t8 * t17 - d1 * t24 + d1 * t25 - d4 * t13
+    t28 = d5 * s234 * c5 - c5 * t6 - c5 * t8 + d4 * t11
     return (
         0.0,
         t1,
         t3,
         t3 - c1 * t4,
-        d4 * t5 - t10,
-        t18 - t11 * t19 - s1 * t20,
+        t9 + d4 * t10,
+        -(t18 + s1 * t19 + t14 * t20),
         0.0,
         t21,
         t22,
         t22 - s1 * t4,
-        t23 - t9 * t5,
-        t27 - t24 * t19 + c1 * t20,
+        d4 * t7 - t23,
+        c1 * t19 - (t27 + t24 * t20),
         0.0,
         0.0,
-        t7,
-        t7 + t9,
+        t6,
+        t6 + t8,
         d4 * s234,
-        t28,
+        -t28,
         0.0,
         s1,
         s1,
         s1,
-        t15,
+        t16,
         t24 - t25,
         0.0,
         -c1,
         -c1,
         -c1,
-        t6,
-        -(t11 + t13),
+        t5,
+        -(t14 + t12),
         1.0,
         0.0,
         0.0,
@@ -474,60 +474,60 @@ def _jacobian_body(_theta1, theta2, theta3, theta4, theta5, theta6, L2, L3, d4, 
     t1 = s5 * c6
     t2 = L2 * c2
     t3 = L3 * (c2 * c3 - s2 * s3)
-    t4 = c5 * c6
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
-    c234 = c2 * c34 - s2 * s34
-    t5 = d4 * c234
     s234 = s2 * c34 + c2 * s34
-    t6 = d5 * s234
-    t7 = d4 * s234
-    t8 = t1 * t2 + t1 * t3 + t4 * t5 - t1 * t6 - s6 * t7
-    t9 = d6 * c6
-    t10 = c5 * s6
-    t11 = d6 * s234
-    t12 = L2 * s34
-    t13 = L2 * c34
-    t14 = L3 * c4
-    t15 = s5 * s6
-    t16 = d5 * t4 - d6 * t15
-    t17 = L3 * s4
-    t18 = s6 * t14 - (t16 - t4 * t17)
-    t19 = t15 * t2 + t15 * t3 + t10 * t5 - t15 * t6 + c6 * t7
+    t4 = d4 * s234
+    t5 = c5 * c6
+    c234 = c2 * c34 - s2 * s34
+    t6 = d4 * c234
+    t7 = d5 * s234
+    t8 = t1 * t2 + t1 * t3 - s6 * t4 + t5 * t6 - t1 * t7
+    t9 = c5 * s6
+    t10 = d6 * s234
+    t11 = d6 * c6
+    t12 = s5 * s6
+    t13 = d5 * t5 - d6 * t12
+    t14 = L3 * s4
+    t15 = L3 * c4
+    t16 = t13 - (t5 * t14 + s6 * t15)
+    t17 = L2 * c34
+    t18 = L2 * s34
+    t19 = t12 * t2 + t12 * t3 + t9 * t6 + c6 * t4 - t12 * t7
     t20 = d6 * s6
-    t21 = d5 * t10 + d6 * t1
-    t22 = c6 * t14 + (t21 - t10 * t17)
+    t21 = d5 * t9 + d6 * t1
+    t22 = t21 - (t9 * t14 - c6 * t15)
     t23 = d5 * s5
-    t24 = t23 - s5 * t17
+    t24 = t23 - s5 * t14
     return (
-        t8 + c234 * t9 - t10 * t11,
-        -(t4 * t12 + s6 * t13 + t18),
-        -t18,
+        t8 - t9 * t10 + c234 * t11,
+        t16 - (s6 * t17 + t5 * t18),
         t16,
-        -t9,
+        t13,
+        -t11,
         0.0,
-        -(t19 + c234 * t20 + t4 * t11),
-        t10 * t12 - c6 * t13 - t22,
+        -(t19 + c234 * t20 + t5 * t10),
+        t9 * t18 - c6 * t17 - t22,
         -t22,
         -t21,
         t20,
         0.0,
-        c5 * t2 + c5 * t3 - s5 * t5 - c5 * t6,
-        s5 * t12 - t24,
+        c5 * t2 + c5 * t3 - s5 * t6 - c5 * t7,
+        s5 * t18 - t24,
         -t24,
         -t23,
         0.0,
         0.0,
-        s6 * c234 + s234 * t4,
+        s6 * c234 + s234 * t5,
         t1,
         t1,
         t1,
         -s6,
         0.0,
-        c6 * c234 - s234 * t10,
-        -t15,
-        -t15,
-        -t15,
+        c6 * c234 - s234 * t9,
+        -t12,
+        -t12,
+        -t12,
         -c6,
         0.0,
         -(s5 * s234),
@@ -567,7 +567,7 @@ def _ik(
     w_y = T24 - T23 * d6
     h1 = np.sqrt(w_x * w_x + w_y * w_y)
     t1 = L2 + L3
-    t2 = d5 + d6 + t1 + (d1 + d4)
+    t2 = d1 + d4 + d5 + d6 + t1
     t3 = _runtime.VANISHING * t2
     free1 = h1 <= t3
     t4 = h1 - d4
@@ -624,7 +624,7 @@ def _ik(
     t41 = _runtime.VANISHING * (t2 * t2)
     any_mid = n_mid <= t41
     uc_mid = np.where(any_mid, 1.0, (k_mid - d_mid) / n_mid)
-    t42 = 2.0 * np.sqrt(k_mid) * np.sqrt(d_mid) / n_mid
+    t42 = 2.0 * np.sqrt(d_mid) * np.sqrt(k_mid) / n_mid
     us_mid = np.where(any_mid, 0.0, t42)
     c_mid = np.where(hub_mid, 1.0, (across * uc_mid + t35 * us_mid) / r_hub)
     s_phi = np.where(aligned_wrist, 0.0, T33 / h_wrist)
@@ -643,8 +643,8 @@ def _ik(
     t47 = t35 * s_phi
     t48 = across * c_phi - t47
     t49 = np.abs(t48)
-    t50 = 2.0 * np.where(t49 <= t3, 1.0, -(t48 / t49)) * np.sqrt(k_near)
-    us_near = np.where(any_near, 0.0, t50 * np.sqrt(d_near) / n_near)
+    t50 = 2.0 * np.where(t49 <= t3, 1.0, -(t48 / t49)) * np.sqrt(d_near)
+    us_near = np.where(any_near, 0.0, t50 * np.sqrt(k_near) / n_near)
     c_near = np.where(hub_mid, 1.0, (across * uc_near + t35 * us_near) / r_hub)
     t51 = s_phi - c_near
     s_near = np.where(hub_mid, 0.0, (across * us_near - t35 * uc_near) / r_hub)
@@ -669,16 +669,16 @@ def _ik(
     t62 = t14 + t61
     folded_elbow = r_elbow <= t3
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (t1 * t1)
-    C_elbow = np.maximum(t59, 0.0)
     A_elbow = np.maximum(t57, 0.0)
-    t63 = C_elbow * A_elbow
-    B_elbow = np.maximum(t58, 0.0)
+    C_elbow = np.maximum(t59, 0.0)
+    t63 = A_elbow * C_elbow
     S_elbow = t1 + r_elbow
-    t64 = B_elbow * S_elbow
+    B_elbow = np.maximum(t58, 0.0)
+    t64 = S_elbow * B_elbow
     width_elbow = t63 + t64
     c_base_elbow = np.where(no_link_elbow, 1.0, -((t63 - t64) / width_elbow))
     t65 = ey * c_base_elbow / r_elbow
-    t66 = 2.0 * np.sqrt(B_elbow) * np.sqrt(C_elbow) * np.sqrt(A_elbow)
+    t66 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
     area_elbow = t66 * np.sqrt(S_elbow)
     s_base_elbow = np.where(no_link_elbow, 0.0, area_elbow / width_elbow)
     t67 = t55 * s_base_elbow / r_elbow
@@ -686,11 +686,11 @@ def _ik(
     t68 = ey * s_base_elbow / r_elbow
     t69 = t55 * c_base_elbow / r_elbow
     c2 = np.where(folded_elbow, 1.0, t68 - t69)
-    t70 = C_elbow * B_elbow
-    t71 = A_elbow * S_elbow
+    t70 = A_elbow * S_elbow
+    t71 = C_elbow * B_elbow
     sum_elbow = t70 + t71
     s3 = np.where(no_link_elbow, 0.0, area_elbow / sum_elbow)
-    c3 = np.where(no_link_elbow, 1.0, (t70 - t71) / sum_elbow)
+    c3 = np.where(no_link_elbow, 1.0, -((t70 - t71) / sum_elbow))
     t72 = np.arctan2(s3, c3)
     t73 = sphi * c2 - cphi * s2
     t74 = cphi * c2 + sphi * s2
@@ -723,8 +723,8 @@ def _ik(
     uc_near_left_flip_up = np.where(any_near_left_flip_up, 1.0, t88)
     t89 = t47 + across * c_phi_left_flip_up
     t90 = np.abs(t89)
-    t91 = 2.0 * np.where(t90 <= t3, 1.0, -(t89 / t90)) * np.sqrt(k_near_left_flip_up)
-    t92 = t91 * np.sqrt(d_near_left_flip_up) / n_near_left_flip_up
+    t91 = 2.0 * np.where(t90 <= t3, 1.0, -(t89 / t90)) * np.sqrt(d_near_left_flip_up)
+    t92 = t91 * np.sqrt(k_near_left_flip_up) / n_near_left_flip_up
     us_near_left_flip_up = np.where(any_near_left_flip_up, 0.0, t92)
     t93 = across * uc_near_left_flip_up + t35 * us_near_left_flip_up
     c_near_left_flip_up = np.where(hub_mid, 1.0, t93 / r_hub)
@@ -753,17 +753,17 @@ def _ik(
     t106 = _runtime.poison(invalid | unreachable_2)
     t107 = t14 + t106
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t3
-    C_elbow_left_flip_up = np.maximum(t104, 0.0)
     A_elbow_left_flip_up = np.maximum(t102, 0.0)
-    t108 = C_elbow_left_flip_up * A_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t103, 0.0)
+    C_elbow_left_flip_up = np.maximum(t104, 0.0)
+    t108 = A_elbow_left_flip_up * C_elbow_left_flip_up
     S_elbow_left_flip_up = t1 + r_elbow_left_flip_up
-    t109 = B_elbow_left_flip_up * S_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t103, 0.0)
+    t109 = S_elbow_left_flip_up * B_elbow_left_flip_up
     width_elbow_left_flip_up = t108 + t109
     c_base_elbow_left_flip_up = np.where(no_link_elbow, 1.0, -((t108 - t109) / width_elbow_left_flip_up))
     t110 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up
-    t111 = 2.0 * np.sqrt(B_elbow_left_flip_up) * np.sqrt(C_elbow_left_flip_up)
-    area_elbow_left_flip_up = t111 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
+    t111 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
+    area_elbow_left_flip_up = t111 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
     t112 = area_elbow_left_flip_up / width_elbow_left_flip_up
     s_base_elbow_left_flip_up = np.where(no_link_elbow, 0.0, t112)
     t113 = t99 * s_base_elbow_left_flip_up / r_elbow_left_flip_up
@@ -772,12 +772,12 @@ def _ik(
     t115 = t99 * c_base_elbow_left_flip_up / r_elbow_left_flip_up
     c2_left_flip_up = np.where(folded_elbow_left_flip_up, 1.0, t114 - t115)
     t116 = _runtime.wrap(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t117 = C_elbow_left_flip_up * B_elbow_left_flip_up
-    t118 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t117 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t118 = C_elbow_left_flip_up * B_elbow_left_flip_up
     sum_elbow_left_flip_up = t117 + t118
     t119 = area_elbow_left_flip_up / sum_elbow_left_flip_up
     s3_left_flip_up = np.where(no_link_elbow, 0.0, t119)
-    c3_left_flip_up = np.where(no_link_elbow, 1.0, (t117 - t118) / sum_elbow_left_flip_up)
+    c3_left_flip_up = np.where(no_link_elbow, 1.0, -((t117 - t118) / sum_elbow_left_flip_up))
     t120 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
     t121 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
     t122 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
@@ -818,7 +818,7 @@ def _ik(
     t143 = k_mid_right_noflip_up - d_mid_right_noflip_up
     uc_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 1.0, t143 / n_mid_right_noflip_up)
     t144 = across_right_noflip_up * uc_mid_right_noflip_up
-    t145 = 2.0 * np.sqrt(k_mid_right_noflip_up) * np.sqrt(d_mid_right_noflip_up)
+    t145 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
     us_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 0.0, t145 / n_mid_right_noflip_up)
     t146 = (t144 + t35 * us_mid_right_noflip_up) / r_hub_right_noflip_up
     c_mid_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t146)
@@ -844,7 +844,7 @@ def _ik(
     t157 = t155 - t156
     t158 = np.abs(t157)
     t159 = 2.0 * np.where(t158 <= t3, 1.0, -(t157 / t158))
-    t160 = t159 * np.sqrt(k_near_right_noflip_up) * np.sqrt(d_near_right_noflip_up)
+    t160 = t159 * np.sqrt(d_near_right_noflip_up) * np.sqrt(k_near_right_noflip_up)
     us_near_right_noflip_up = np.where(any_near_right_noflip_up, 0.0, t160 / n_near_right_noflip_up)
     t161 = (t154 + t35 * us_near_right_noflip_up) / r_hub_right_noflip_up
     c_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t161)
@@ -877,19 +877,19 @@ def _ik(
     t178 = _runtime.poison(invalid | unreachable_3)
     t179 = t136 + t178
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
-    C_elbow_right_noflip_up = np.maximum(t176, 0.0)
     A_elbow_right_noflip_up = np.maximum(t174, 0.0)
-    t180 = C_elbow_right_noflip_up * A_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t175, 0.0)
+    C_elbow_right_noflip_up = np.maximum(t176, 0.0)
+    t180 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
-    t181 = B_elbow_right_noflip_up * S_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t175, 0.0)
+    t181 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
     width_elbow_right_noflip_up = t180 + t181
     t182 = -((t180 - t181) / width_elbow_right_noflip_up)
     c_base_elbow_right_noflip_up = np.where(no_link_elbow, 1.0, t182)
     t183 = ey_right_noflip_up * c_base_elbow_right_noflip_up
     t184 = t183 / r_elbow_right_noflip_up
-    t185 = 2.0 * np.sqrt(B_elbow_right_noflip_up) * np.sqrt(C_elbow_right_noflip_up)
-    area_elbow_right_noflip_up = t185 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
+    t185 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
+    area_elbow_right_noflip_up = t185 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
     t186 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
     s_base_elbow_right_noflip_up = np.where(no_link_elbow, 0.0, t186)
     t187 = t169 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
@@ -899,12 +899,12 @@ def _ik(
     t190 = t169 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
     c2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 1.0, t189 - t190)
     t191 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t192 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t193 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t192 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t193 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     sum_elbow_right_noflip_up = t192 + t193
     t194 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
     s3_right_noflip_up = np.where(no_link_elbow, 0.0, t194)
-    c3_right_noflip_up = np.where(no_link_elbow, 1.0, (t192 - t193) / sum_elbow_right_noflip_up)
+    c3_right_noflip_up = np.where(no_link_elbow, 1.0, -((t192 - t193) / sum_elbow_right_noflip_up))
     t195 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
     t196 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
     t197 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
@@ -943,7 +943,7 @@ def _ik(
     t217 = t156 + across_right_noflip_up * c_phi_right_flip_up
     t218 = np.abs(t217)
     t219 = 2.0 * np.where(t218 <= t3, 1.0, -(t217 / t218))
-    t220 = t219 * np.sqrt(k_near_right_flip_up) * np.sqrt(d_near_right_flip_up)
+    t220 = t219 * np.sqrt(d_near_right_flip_up) * np.sqrt(k_near_right_flip_up)
     us_near_right_flip_up = np.where(any_near_right_flip_up, 0.0, t220 / n_near_right_flip_up)
     t221 = (t216 + t35 * us_near_right_flip_up) / r_hub_right_noflip_up
     c_near_right_flip_up = np.where(hub_mid_right_noflip_up, 1.0, t221)
@@ -974,18 +974,18 @@ def _ik(
     t236 = _runtime.poison(invalid | unreachable_4)
     t237 = t136 + t236
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3
-    C_elbow_right_flip_up = np.maximum(t234, 0.0)
     A_elbow_right_flip_up = np.maximum(t232, 0.0)
-    t238 = C_elbow_right_flip_up * A_elbow_right_flip_up
-    B_elbow_right_flip_up = np.maximum(t233, 0.0)
+    C_elbow_right_flip_up = np.maximum(t234, 0.0)
+    t238 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = t1 + r_elbow_right_flip_up
-    t239 = B_elbow_right_flip_up * S_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t233, 0.0)
+    t239 = S_elbow_right_flip_up * B_elbow_right_flip_up
     width_elbow_right_flip_up = t238 + t239
     c_base_elbow_right_flip_up = np.where(no_link_elbow, 1.0, -((t238 - t239) / width_elbow_right_flip_up))
     t240 = ey_right_flip_up * c_base_elbow_right_flip_up
     t241 = t240 / r_elbow_right_flip_up
-    t242 = 2.0 * np.sqrt(B_elbow_right_flip_up) * np.sqrt(C_elbow_right_flip_up)
-    area_elbow_right_flip_up = t242 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    t242 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
+    area_elbow_right_flip_up = t242 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
     t243 = area_elbow_right_flip_up / width_elbow_right_flip_up
     s_base_elbow_right_flip_up = np.where(no_link_elbow, 0.0, t243)
     t244 = t229 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
@@ -995,12 +995,12 @@ def _ik(
     t247 = t229 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
     c2_right_flip_up = np.where(folded_elbow_right_flip_up, 1.0, t246 - t247)
     t248 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t249 = C_elbow_right_flip_up * B_elbow_right_flip_up
-    t250 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t249 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t250 = C_elbow_right_flip_up * B_elbow_right_flip_up
     sum_elbow_right_flip_up = t249 + t250
     t251 = area_elbow_right_flip_up / sum_elbow_right_flip_up
     s3_right_flip_up = np.where(no_link_elbow, 0.0, t251)
-    c3_right_flip_up = np.where(no_link_elbow, 1.0, (t249 - t250) / sum_elbow_right_flip_up)
+    c3_right_flip_up = np.where(no_link_elbow, 1.0, -((t249 - t250) / sum_elbow_right_flip_up))
     t252 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
     t253 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
     t254 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up

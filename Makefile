@@ -36,8 +36,8 @@ build/native.stamp: build/derived.txt $(C_SOURCES) setup.py
 	@$(BIN)/python setup.py --quiet build_ext --inplace
 	@touch $@
 
-test: all  ## run the tests; ARGS="-k name" selects
-	$(BIN)/python -m pytest $(ARGS)
+test: all  ## run the tests on all cores; ARGS="-k name" selects
+	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
 check: lint types regenerated warnings  ## lint, types, warnings of C; generated/ is what is printed
 
@@ -76,14 +76,14 @@ build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
 		> $(@D)/$*.txt || { tail -n 30 $(@D)/$*.txt; exit 1; }; done
 	@echo $@
 
-bench: all  ## time the generated code; the numbers also go to build/benchmarks.json
-	$(BIN)/python -m pytest benchmarks --benchmark-json=build/benchmarks.json $(ARGS)
+bench: all  ## time the generated code beside the peers installed; writes benchmarks/RESULTS.md
+	$(BIN)/python -m benchmarks $(ARGS)
 
 accuracy: all  ## compare a billion sines, cosines and arctangents with libm; ARGS="--samples N"
 	$(BIN)/python -m benchmarks.accuracy $(ARGS)
 
 clean:  ## remove what was built, but neither .venv nor generated sources
-	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .benchmarks .hypothesis
+	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	rm -f generated/c/_native*.so
 	find closedform derivations generated templates tests -name __pycache__ -exec rm -rf {} +
 

@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from . import batches, inverses, native
-from .cases import CASES, Case, NotApplicable, check
+from .cases import CASES, Case, NotApplicableError, check
 
 MILLION = 1_000_000
 PACKAGES = {"sympy.cse": "sympy", "lambdify": "sympy"}
@@ -80,7 +80,7 @@ def compared(
     for name, make in makers.items():
         try:
             competitors[name] = make()
-        except NotApplicable:
+        except NotApplicableError:
             continue
         except Exception as error:
             failures.append(f"- {name}: {explained(error)}")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .cases import Case, NotApplicable
+from .cases import Case, NotApplicableError
 
 Run = Callable[[], Any]
 Peer = Callable[[Case, str, np.ndarray], tuple[Run, Run]]
@@ -75,7 +75,7 @@ def lambdify(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
 
 def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     if layout == "planes":
-        raise NotApplicable("takes rows")
+        raise NotApplicableError("takes rows")
     import symengine as se
 
     backend = "llvm" if se.have_llvm else "lambda"
@@ -87,7 +87,7 @@ def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
 
 def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     if layout == "planes":
-        raise NotApplicable("takes rows")
+        raise NotApplicableError("takes rows")
     import casadi as ca
 
     names = {"sin": ca.sin, "cos": ca.cos, "atan2": ca.atan2, "sqrt": ca.sqrt, "abs": ca.fabs}

@@ -14,7 +14,7 @@ import sympy as sp
 from closedform.functions import Function
 
 
-class NotApplicable(Exception):
+class NotApplicableError(Exception):
     """This competitor does not take part in this table."""
 
 

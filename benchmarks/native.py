@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import sympy as sp
 
-from .cases import Case, NotApplicable
+from .cases import Case, NotApplicableError
 
 HERE = Path(__file__).parent
 GENERATED = HERE.parent / "generated" / "c"
@@ -60,7 +60,7 @@ def limit(case: Case) -> str:
     """A kernel written by hand for this function, with one eight-lane sincos."""
     source = HERE / "limits" / f"{case.full}.c"
     if not source.exists():
-        raise NotApplicable("no kernel written by hand")
+        raise NotApplicableError("no kernel written by hand")
     return f'#include "closedform.h"\n#include "{source}"\n'
 
 

@@ -1,4 +1,4 @@
-"""The command line: list, show, derive, check, errata.
+"""The command line: list, show, derive, check, new, errata.
 
 Results go to stdout, progress and errors to stderr.  The exit code is 0 on success, 1 where a proof
 or a comparison failed, 2 where the command was called wrongly.
@@ -136,10 +136,29 @@ def parser() -> argparse.ArgumentParser:
     derive.add_argument(
         "--backend", action="append", choices=pipeline.BACKENDS, help="repeatable; all by default"
     )
+    derive.add_argument(
+        "--no-crosscheck",
+        action="store_true",
+        help="with -o: do not compare the printed code with the symbolic source",
+    )
     check = command("check", check_command)
     for added in (derive, check):
         added.add_argument("-j", "--jobs", type=_positive, metavar="N", help="processes to use")
         added.add_argument("--fresh", action="store_true", help="prove everything again")
+    new = command("new", new_command)
+    new.add_argument("name", metavar="NAME")
+    new.add_argument(
+        "--from",
+        dest="table",
+        nargs=2,
+        required=True,
+        metavar=("KIND", "FILE"),
+        help="dh TABLE.csv, or screws FILE.toml",
+    )
+    new.add_argument("--modified", action="store_true", help="the dh table is Craig's (proximal)")
+    new.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, default=Path(), help="by default the current"
+    )
     errata = command("errata", errata_command)
     errata.add_argument("paper", metavar="PAPER", nargs="?", help="the key of one paper")
     return top
@@ -185,12 +204,37 @@ def derive_command(options: argparse.Namespace) -> None:
     result = _run(options, chosen, backends, pipeline.sources() if own else chosen)
     printed = result.files if own else pipeline.standalone(result.files)
     _write(root, printed)
+    for failure in result.neighbours:
+        print(f"closedform: warning: {failure}", file=sys.stderr)
+    if result.neighbours:
+        print(
+            "closedform: warning: the files that all robots share were left as they are",
+            file=sys.stderr,
+        )
+    if not own and not options.no_crosscheck:
+        _crosscheck(root, chosen, backends)
     width = max(len(robot.name) for robot in result.robots)
     for robot in result.robots:
         print(robot.line(width))
     if own and not options.names:
         for path in pipeline.extra_files(root, printed, backends):
             (root / path).unlink()
+
+
+def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
+    """Compare what was printed with the symbolic source, and write down what was found."""
+    from closedform.report import report
+
+    with Progress() as progress:
+        for source in chosen:
+            progress(source.name, "cross-check")
+            text, failures = report(pipeline.load(source), root, backends)
+            _write(root, {Path(f"{source.name}-crosscheck.md"): text})
+            if failures:
+                raise CommandError(
+                    f"{source.name}: the generated code differs from its symbolic source; see "
+                    f"{root / f'{source.name}-crosscheck.md'}: {failures[0]}"
+                )
 
 
 def check_command(options: argparse.Namespace) -> None:
@@ -202,6 +246,27 @@ def check_command(options: argparse.Namespace) -> None:
         print("\n".join(differences))
         raise CommandError(f"{root} is not what the derivations print: run make")
     print(f"{len(printed)} generated files are up to date")
+
+
+def new_command(options: argparse.Namespace) -> None:
+    """Write the skeleton of a derivation, with pose, Jacobians and a proposed inverse."""
+    kind, path = options.table[0], Path(options.table[1])
+    if kind not in ("dh", "screws"):
+        raise CommandError(f"--from dh TABLE.csv or --from screws FILE.toml, not {kind}", 2)
+    if not path.is_file():
+        raise CommandError(f"there is no file {path}", 2)
+    _require_extra()
+    from closedform.new import new
+
+    target = options.output / f"{options.name}.py"
+    if target.exists():
+        raise CommandError(f"{target} exists already")
+    try:
+        text = new(options.name, kind, path, modified=options.modified)
+    except (ValueError, TypeError) as error:
+        raise CommandError(str(error)) from error
+    _write(options.output, {Path(target.name): text})
+    print(f"{target}; now: closedform derive {target} -o out")
 
 
 def errata_command(options: argparse.Namespace) -> None:

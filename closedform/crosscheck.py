@@ -1,7 +1,7 @@
 """Compares generated code with the symbolic source, evaluated in Arb balls.
 
 A function of the joints is compared value by value; its error is counted in ulps of the natural
-scale (see :func:`closedform.samples.magnitude`).  An inverse is compared three ways: its answers
+scale (see :func:`closedform.samples.Magnitudes`).  An inverse is compared three ways: its answers
 are put into the exact forward map, its statuses are compared with the exact bounds, and every
 posture whose image is the target must be among the branches.
 """
@@ -22,11 +22,15 @@ from numpy.typing import NDArray
 from closedform.derivation import Derivation, Inverse
 from closedform.functions import Bound, Function, Let, Vanishes, substitute
 from closedform.reference import Evaluator, to_float
-from closedform.samples import Sample, inverse_postures, joint_samples, magnitude, perturbed
+from closedform.samples import Magnitudes, Sample, inverse_postures, joint_samples, perturbed
 from closedform.tolerances import DOUBLE, FLOAT, Tolerances
 
 WELL_CONDITIONED = 3.0
 """An error of more ulps is set against how much the value moves when its inputs do."""
+
+NESTED = 64.0
+"""The natural scale counts for at most so many times the largest value or parameter: that of a long
+chain of steps, each with the scale of the one before, says nothing any more."""
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 
@@ -107,6 +111,11 @@ def _round(sample: Sample, backend: Backend) -> Sample:
     return Sample(sample.name, values[keep], tuple(float(p) for p in parameters))
 
 
+def _thinned(sample: Sample, entries: int) -> Sample:
+    """Fewer rows of a function with many entries, which all are evaluated in Arb."""
+    return Sample(sample.name, sample.values[:: max(1, entries // 12)], sample.parameters)
+
+
 def _call(backend: Backend, function: Function, sample: Sample) -> tuple[NDArray[Any], ...]:
     inputs, column = [], 0
     for argument in function.inputs:
@@ -125,10 +134,12 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     exprs = [e for case in cases for e in case]
     symbols = _symbols(derivation, function)
     reference = Evaluator(symbols, exprs)
-    scales = [sp.lambdify(symbols, magnitude(e), "math") for e in exprs]
+    magnitudes = Magnitudes(symbols, exprs)
+    margins = [Evaluator(symbols, _margins(function, signs)) for _, signs in function.cases()]
+    entries = len(exprs) // len(cases)
     flags = Evaluator(symbols, _flagged(function))
     for sample in joint_samples(derivation, function):
-        sample = _round(sample, backend)
+        sample = _round(_thinned(sample, len(exprs)), backend)
         if not len(sample.values):
             continue
         rows = len(sample.values) if function.inputs else 1
@@ -138,8 +149,18 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
             values = [*map(float, sample.values[row]), *sample.parameters]
             if any(to_float(f) < 2 * backend.tolerances.vanishing for f in flags(values)):
                 continue
-            for k, exact in enumerate(reference(values)):
-                scale = _scale(scales[k], values, backend)
+            slack = 2 * backend.tolerances.feasibility
+            exists = [_feasible(margin, values, slack) for margin in margins]
+            scales = magnitudes(values, backend.dtype)
+            exacts = reference(values)
+            sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
+            most = NESTED * max([*sizes, *map(abs, sample.parameters)], default=1.0)
+            for k, exact in enumerate(exacts):
+                if not exists[k // entries]:
+                    if exists[k // entries] is False and not np.isnan(computed[row, k]):
+                        finding.fail(f"a value out of bounds, entry {k} at {values}")
+                    continue
+                scale = min(scales[k], most) if math.isfinite(scales[k]) else scales[k]
                 error = _ulps(float(computed[row, k]), exact, scale, backend)
                 if error > WELL_CONDITIONED:
                     scale += _variation(reference, k, values, exact, backend) / backend.eps
@@ -148,15 +169,6 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     if not finding.worst <= backend.tolerances.ulps:
         finding.fail(f"{finding.worst:.3g} ulp: {finding.where}")
     return finding
-
-
-def _scale(magnitude: Callable[..., Any], values: Sequence[float], backend: Backend) -> float:
-    """The natural scale; infinite, so that nothing is compared, where the float type overflows."""
-    try:
-        with np.errstate(over="ignore", under="ignore"):
-            return float(magnitude(*map(backend.dtype, values)))
-    except OverflowError:
-        return math.inf
 
 
 def _flagged(function: Function) -> list[sp.Expr]:
@@ -197,8 +209,8 @@ def _variation(
 ) -> float:
     """How far the exact value moves when every input moves by an ulp: near a singularity, far."""
     moved = []
-    for pattern in range(4):
-        signs = [1 if (pattern >> (i % 2)) & 1 else -1 for i in range(len(values))]
+    for pattern in range(8):  # neighbours, and joints of the same place in twin arms, move apart
+        signs = [1 if (pattern >> (i % 3)) & 1 else -1 for i in range(len(values))]
         nearby = [v * (1 + s * backend.eps) for v, s in zip(values, signs, strict=True)]
         moved.append(abs(to_float(reference(nearby)[k] - exact)))
     return max((m for m in moved if math.isfinite(m)), default=0.0)
@@ -224,13 +236,16 @@ def check_inverse(
     back; else (the assembly modes of a loop) inputs are sampled as they are.
     """
     finding = Finding(derivation.name, function.name, backend.name, unit="residual / eps")
+    if inverse.chain:
+        inverse = inverse.posed(function.symbols, derivation[inverse.images].values({}))
     truth = _Truth(derivation, function, inverse)
     if not truth.has_images:
         for sample in joint_samples(derivation, function):
             _check_batch(finding, truth, backend, _round(sample, backend), None, exact=True)
         return finding
-    for sample in inverse_postures(derivation, len(inverse.unknowns)):
-        postures = _round(sample, backend)
+    answers = len(inverse.unknowns) * len(list(function.cases()))
+    for sample in inverse_postures(derivation, inverse.unknowns):
+        postures = _round(_thinned(sample, answers), backend)
         images, known_postures = truth.images(postures)
         if not len(images):
             continue
@@ -255,7 +270,7 @@ class _Truth:
             t for _, x in pairs for t in [x in inverse.angles] * (1 + (x in inverse.angles))
         ]
         lengths = [f for f, x in pairs if x not in inverse.angles]
-        self._scales = [sp.lambdify(place, magnitude(f), "math") for f in lengths]
+        self._scales = Magnitudes(place, lengths)
         explicit = tuple(inverse.targets) == function.symbols
         self.has_images = explicit or bool(inverse.images)
         maps = [inverse.forward] if explicit else []
@@ -293,7 +308,7 @@ class _Truth:
         The sine and the cosine of an angle have a scale of their own, which is 1.
         """
         point = [*map(float, solution), *map(float, given), *map(float, parameters)]
-        scale = max((float(s(*point)) for s in self._scales), default=1.0) or 1.0
+        scale = max(self._scales(point), default=1.0) or 1.0
         errors = [abs(to_float(e)) for e in self._equations(point)]
         return max(e / (1.0 if t else scale) for e, t in zip(errors, self._is_turn, strict=True))
 
@@ -312,6 +327,14 @@ class _Truth:
         difference = solutions.astype(float) - posture
         turned = np.abs(np.angle(np.exp(1j * difference)))
         return np.asarray(np.where(self.angular, turned, np.abs(difference)).max(axis=-1))
+
+
+def _feasible(margins: Evaluator, values: Sequence[float], slack: float) -> bool | None:
+    """Whether all margins are positive; ``None`` if that hangs on one within ``slack`` of zero."""
+    found = list(map(to_float, margins(values)))
+    if min(found, default=1.0) > slack:
+        return True
+    return False if min(found) < -slack else None
 
 
 def _margins(
@@ -348,6 +371,10 @@ def _check_batch(
             margin = truth.margin(given, sample.parameters, branch)
             feasible = margin > 0 if abs(margin) > slack else None
             problem = _contradiction(truth, backend, solution, int(code), feasible, exact)
+            if feasible is False and code in (OK, SINGULAR):
+                # where a joint is free, another turn of it may reach what the generic one does not
+                missed = truth.residual(solution, given, sample.parameters)
+                problem = "" if missed <= backend.tolerances.round_trip else problem
             if problem:
                 finding.fail(f"branch {branch} {problem}; {where}")
             elif exact and code in (OK, SINGULAR):
@@ -394,7 +421,8 @@ def _check_known(
     """The posture that made the input is among the branches, unless a joint is free."""
     parameters = sample.parameters
     condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
-    spread = max(parameters) / min(parameters) if parameters else 1.0
+    sizes = [abs(p) for p in parameters if p]
+    spread = max(sizes) / min(sizes) if sizes else 1.0
     nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
     if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, sample):
         return
@@ -420,7 +448,7 @@ def _leaves_the_workspace(truth: _Truth, backend: Backend, sample: Sample) -> bo
     slack = backend.tolerances.feasibility
     branches = range(len(list(truth.function.cases())))
     return any(
-        all(truth.feasible(row, sample.parameters, b, slack) is False for b in branches)
+        all(truth.margin(row, sample.parameters, b) < -slack for b in branches)
         for row in _nearby(backend, sample).values
     )
 

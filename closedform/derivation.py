@@ -9,12 +9,22 @@ nothing else.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, Literal
 
 import sympy as sp
 
-from closedform.functions import Branches, Function, Number, Program, array, real
+from closedform.functions import (
+    Branches,
+    Function,
+    Number,
+    Program,
+    Statement,
+    array,
+    real,
+    reject_floats,
+)
 
 if TYPE_CHECKING:
     from closedform.claims import Check
@@ -58,6 +68,8 @@ class Joint:
     kind: Literal["revolute", "prismatic"]
     passive: bool = False
     coupling: sp.Expr | None = None
+    beside: sp.Symbol | None = None
+    """A joint that this one stays close to, as in a twin arm; samples are drawn accordingly."""
 
     @property
     def name(self) -> str:
@@ -115,7 +127,8 @@ class Stage:
     ``equations`` are places in the system; they hold no unknowns but those of this stage and of
     earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
     equations of those earlier stages hold identically whose unknowns occur.  ``mixed``, an
-    orthogonal matrix in the earlier unknowns, multiplies the equations where that makes them simpler.
+    orthogonal matrix in the earlier unknowns, multiplies the equations where that makes them
+    simpler.
 
     An inverse that is solved in the same stages is proved sound in them, if its stages say which
     names of the program are ``carried`` into them, and what these are in the earlier unknowns: the
@@ -130,6 +143,47 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class Reduction:
+    """An inverse that is too large for one Groebner basis, certified lemma by lemma.
+
+    ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas``.  The equations
+    of the lemmas, multiplied by the invertible matrix ``combination``, are those of the inverse: so
+    both have the same solutions, and each lemma is proved to give all of its own.  Where a side
+    condition keeps one in ``kept_of`` of them, ``because`` says why.
+    """
+
+    lemmas: tuple[Lemma, ...]
+    joints: Mapping[sp.Symbol, sp.Expr]
+    combination: sp.Matrix
+    kept_of: int = 1
+    because: str = ""
+
+
+@dataclass(frozen=True)
+class Degenerate:
+    """A flagged case of a lemma: on ``locus``, for its coefficients, the joint ``free`` is free."""
+
+    flags: tuple[sp.Symbol, ...]
+    locus: Mapping[sp.Symbol, sp.Expr]
+    free: sp.Symbol | None
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """A lemma in a chain: the statements it added, and what its names ``means`` at a posture.
+
+    ``given`` writes coefficients that depend on each other in free symbols.
+    """
+
+    lemma: Lemma
+    body: tuple[Statement, ...]
+    means: Mapping[sp.Symbol, sp.Expr]
+    given: Mapping[sp.Symbol, sp.Expr]
+    degenerate: tuple[Degenerate, ...] = ()
+
+
+@dataclass(frozen=True)
 class Inverse:
     """What an inverse must satisfy: ``forward`` in the ``unknowns`` equals the ``targets``.
 
@@ -140,17 +194,39 @@ class Inverse:
     A closed loop gives equations in unknowns and inputs together: they are ``forward``, the
     ``targets`` are zeros, and ``images`` names the function whose values, in each assembly mode,
     are inputs with a known solution.  ``stages`` count the solutions step by step.
+
+    Where the equations that are solved are not the forward map itself, targets are expressions in
+    the inputs (such as ``tan(psi)``), and ``forward`` may hold inputs too; then ``reduction``
+    proves the inverse lemma by lemma, a step shows that the map named by ``images`` satisfies the
+    equations, and the cross-check puts the answers into that map.
+    An inverse with a ``chain`` is proved link by link.
     """
 
     function: str
     unknowns: tuple[sp.Symbol, ...]
-    targets: tuple[sp.Symbol, ...]
+    targets: tuple[Any, ...]
     forward: tuple[sp.Expr, ...]
     continua: tuple[Continuum, ...] = ()
     parametrisation: tuple[sp.Expr, ...] = ()
     angles: tuple[sp.Symbol, ...] = ()
     images: str = ""
     stages: tuple[Stage, ...] = ()
+    nonnegative: tuple[sp.Symbol, ...] = ()
+    """Unknowns that are lengths: of two solutions that differ in their sign one counts."""
+    chain: tuple[Link, ...] = ()
+    meaning: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """What names of the program stand for at a posture, in the unknowns."""
+    defined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """Auxiliary angles: sums of the unknowns."""
+    lengths: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """Auxiliary lengths, at a posture."""
+    units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
+    """Sines and cosines of free choices, and the names that may have any value in them."""
+    reduction: Reduction | None = None
+
+    def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
+        """The same inverse with the forward map, ``image``, for its equations."""
+        return replace(self, targets=inputs, forward=image, images="")
 
     @property
     def equations(self) -> tuple[sp.Expr, ...]:
@@ -228,7 +304,8 @@ class Derivation:
         symbol = real(name, positive=True) if nonnegative else real(name)
         exact = sp.sympify(value)
         if not exact.is_Rational:
-            raise TypeError(f"{self.name}: the value of {name} must be an exact rational")
+            hint = f": write sympy.Rational('{value}')" if isinstance(value, float) else ""
+            raise TypeError(f"{self.name}: the value of {name} must be an exact rational{hint}")
         self.parameters.append(Parameter(symbol, unit, exact, meaning, source, nonnegative))
         return symbol
 
@@ -239,6 +316,7 @@ class Derivation:
         *,
         passive: bool = False,
         coupling: sp.Expr | None = None,
+        beside: sp.Symbol | None = None,
     ) -> sp.Symbol:
         """Declare a joint variable.
 
@@ -247,7 +325,7 @@ class Derivation:
         """
         self._check_new(name)
         symbol = real(name)
-        self.joints.append(Joint(symbol, kind, passive, coupling))
+        self.joints.append(Joint(symbol, kind, passive, coupling, beside))
         return symbol
 
     def couple(self, expr: Any) -> Any:
@@ -275,6 +353,8 @@ class Derivation:
         Each pair in ``equal`` is proved equal; the build fails where the proof does.  ``rows`` is
         a table, see :class:`Step`.
         """
+        for value in (*shown.values(), *(e for pair in equal for e in pair)):
+            self._reject_floats(value, f"{self.name}, step {title!r}")
         self.steps.append(
             Step(
                 title,
@@ -335,10 +415,24 @@ class Derivation:
 
         return notebook(self)
 
+    def _reject_floats(self, value: Any, where: str) -> None:
+        for part in value if isinstance(value, list | tuple) else [value]:
+            if isinstance(part, float):
+                raise TypeError(
+                    f"{where}: {part} is a float; write an integer or sympy.Rational('{part}')"
+                )
+            if isinstance(part, sp.Basic | sp.MatrixBase):
+                for entry in part if isinstance(part, sp.MatrixBase) else [part]:
+                    reject_floats(entry, where)
+
     def _check_new(self, name: str) -> None:
-        taken = {p.name for p in self.parameters} | {j.name for j in self.joints}
-        if name in taken:
-            raise ValueError(f"{self.name}: the name {name} is declared twice")
+        kinds = {p.name: "parameter" for p in self.parameters}
+        kinds |= {j.name: "joint" for j in self.joints}
+        if name in kinds:
+            raise ValueError(
+                f"{self.name}: the name {name} is declared twice: there is a {kinds[name]} {name} "
+                f"already; every joint and parameter needs a name of its own"
+            )
 
     def _check_symbols(self, function: Function) -> None:
         known: set[sp.Basic] = {p.symbol for p in self.parameters} | set(function.symbols)
@@ -357,7 +451,12 @@ class Derivation:
     def _require_known(self, function: Function, unknown: set[sp.Basic]) -> None:
         if unknown:
             name = sorted(map(str, unknown))[0]
+            declared = [p.name for p in self.parameters] + [j.name for j in self.joints]
+            close = get_close_matches(name, [*declared, *map(str, function.symbols)], 1)
+            hint = f"; did you mean {close[0]}?" if close and close[0] != name else ""
+            if name in declared and name not in map(str, function.symbols):
+                hint = f"; it is a joint: name it among the inputs of {function.name}"
             raise ValueError(
                 f"{self.name}.{function.name}: the symbol {name} is neither a parameter nor an "
-                f"input nor defined by an earlier statement"
+                f"input nor defined by an earlier statement{hint}"
             )

@@ -56,12 +56,17 @@ class Let:
 
 @dataclass(frozen=True)
 class Bound:
-    """``symbol = value``, where a negative ``value`` means that the target is out of reach."""
+    """``symbol = value``, where a negative ``value`` means that the target is out of reach.
+
+    Generated code clamps it at zero; with ``positive`` just above, where a zero would lose the side
+    on which an arm is bent: such a value goes with the square of the angle.
+    """
 
     symbol: sp.Symbol
     value: sp.Expr
     scale: sp.Expr
     meaning: str
+    positive: bool = False
 
 
 @dataclass(frozen=True)
@@ -281,9 +286,12 @@ class Program:
         self.body.append(Let(symbol, value))
         return symbol
 
-    def bound(self, name: str, value: sp.Expr, scale: sp.Expr, meaning: str) -> sp.Symbol:
+    def bound(
+        self, name: str, value: sp.Expr, scale: sp.Expr, meaning: str, *, positive: bool = False
+    ) -> sp.Symbol:
         symbol = real(name, nonnegative=True)
-        self.body.append(Bound(symbol, value, scale, meaning))
+        reject_floats(sp.sympify(value), name)
+        self.body.append(Bound(symbol, value, scale, meaning, positive))
         return symbol
 
     def match(self, value: sp.Expr, scale: sp.Expr, meaning: str) -> None:

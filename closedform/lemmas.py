@@ -11,12 +11,12 @@ satisfy the equations, and the equations have no others.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import sympy as sp
 
-from closedform.functions import Program, choose
+from closedform.functions import Number, Program, Statement, choose, real
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,10 @@ class Lemma:
     """A lemma applied: ``equations`` vanish at ``solution`` (unknown -> closed form).
 
     ``excluded`` solutions of the equations violate the inequality that ``statement`` names.
+    ``pairs`` holds the names of the cosine and the sine of an unknown, computed without its angle,
+    for the steps that follow; ``body`` are the statements that the lemma added to the program.
+    ``premises`` says what names of earlier statements must stand for; where the inverse is proved,
+    so is that.
     """
 
     name: str
@@ -32,6 +36,9 @@ class Lemma:
     solution: Mapping[sp.Symbol, sp.Expr]
     branches: int
     excluded: int = 0
+    pairs: Mapping[sp.Symbol, tuple[sp.Symbol, sp.Symbol]] = field(default_factory=dict)
+    body: tuple[Statement, ...] = ()
+    premises: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]
@@ -62,24 +69,45 @@ def sine_cosine(
     sigma: sp.Symbol,
     *,
     suffix: str = "",
+    free: Sequence[sp.Symbol] = (),
+    scale: sp.Expr = sp.S.One,
 ) -> Lemma:
     """``a sin x + b cos x = c``: two solutions where ``a^2 + b^2 >= c^2``.
 
     With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``; half the angle
     ``x - atan2(a, b)`` has the tangent ``sqrt(h - c) / sqrt(h + c)``.  x is free where
-    ``a = b = c = 0``.
+    ``a = b = c = 0``; with ``free`` joints that is flagged, on the ``scale`` of the coefficients,
+    the answer there is x = 0, and cosine and sine of x are named too.
     """
+    start = len(program.body)
     h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
-    below = program.bound(f"below{suffix}", h - c, h, "the amplitude is not smaller than c")
-    above = program.bound(f"above{suffix}", h + c, h, "the amplitude is not smaller than -c")
+    size = scale if free else h
+    below = program.bound(f"below{suffix}", h - c, size, "the amplitude is not smaller than c")
+    above = program.bound(f"above{suffix}", h + c, size, "the amplitude is not smaller than -c")
     half = sp.atan2(sp.sqrt(below), sp.sqrt(above))
+    pairs = {}
+    if free:
+        nowhere = program.vanishes(f"nowhere{suffix}", h, scale, "the amplitude is zero", free)
+        total = program.let(f"total{suffix}", below + above)
+        turn = program.let(f"s_turn{suffix}", 2 * sigma * sp.sqrt(below) * sp.sqrt(above) / total)
+        ahead = program.let(f"c_turn{suffix}", (above - below) / total)
+        label = x.name.removeprefix("theta")
+        pairs[x] = (
+            program.let(f"c{label}", choose(nowhere, 1, (b * ahead - a * turn) / h)),
+            program.let(f"s{label}", choose(nowhere, 0, (a * ahead + b * turn) / h)),
+        )
+        direction = choose(nowhere, 0, sp.atan2(a, b) + 2 * sigma * half)
+    else:
+        direction = sp.atan2(a, b) + 2 * sigma * half
     return Lemma(
         "a sin x + b cos x = c",
         r"a\sin x + b\cos x = c \;\Rightarrow\; x = \operatorname{atan2}(a, b) + "
         r"2\sigma\operatorname{atan2}(\sqrt{h-c}, \sqrt{h+c}),\ h = \sqrt{a^2+b^2}",
         (a * sp.sin(x) + b * sp.cos(x) - c,),
-        {x: sp.atan2(a, b) + 2 * sigma * half},
+        {x: direction},
         2,
+        pairs=pairs,
+        body=tuple(program.body[start:]),
     )
 
 
@@ -225,6 +253,268 @@ def zyz_angles(
     )
 
 
+def two_link_arm(
+    program: Program,
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    target: tuple[sp.Expr, sp.Expr],
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    sigma: sp.Symbol,
+    *,
+    suffix: str = "",
+    free: Sequence[sp.Symbol] = (),
+) -> Lemma:
+    """A planar arm with a cranked fore-arm, by the triangle of its elbow.
+
+    ``lengths`` are the upper arm l, and of the fore-arm the length a along it and its offset b;
+    ``unknowns`` are the absolute angles of both, ``target`` is (r, h):
+
+        l cos(x) + a sin(y) + b cos(y) = r,   l sin(x) - a cos(y) + b sin(y) = h.
+
+    The fore-arm is a link of length sqrt(a^2 + b^2) that lags behind y by atan2(a, b).  Both angles
+    turn together where r = h = 0, and one of them is free where a link has no length.
+    """
+    upper, along, across = lengths
+    start = len(program.body)
+    second = program.let(f"fore{suffix}", sp.sqrt(along**2 + across**2), nonnegative=True)
+    reach = program.let(
+        f"reach{suffix}", sp.sqrt(target[0] ** 2 + target[1] ** 2), nonnegative=True
+    )
+    triangle = two_link_triangle(
+        program, upper, second, reach, real("elbow"), real("base"), sigma, suffix=suffix
+    )
+    S, A, B, C, rS, rA, rB, rC = (
+        real(f"{root}{name}{suffix}", nonnegative=True) for root in ("", "r") for name in "SABC"
+    )
+    folded, short = _degenerate(program, upper, second, reach, suffix, free)
+    at_elbow = program.let(f"at_elbow{suffix}", B * C + S * A)
+    at_base = program.let(f"at_base{suffix}", S * B + A * C)
+    area = program.let(f"area{suffix}", 2 * sigma * (rS * rA) * (rB * rC))
+    bend = (choose(short, 1, (B * C - S * A) / at_elbow), choose(short, 0, area / at_elbow))
+    lost = sp.Or(folded, short)
+    base = (choose(lost, 1, (S * B - A * C) / at_base), choose(lost, 0, area / at_base))
+    sight = tuple(choose(folded, k, e / reach) for k, e in zip((1, 0), target, strict=True))
+    sight, base, bend = (
+        tuple(program.let(f"{f}_{name}{suffix}", e) for f, e in zip("cs", pair, strict=True))
+        for name, pair in (("sight", sight), ("base", base), ("bend", bend))
+    )
+    direction = (
+        sight[0] * base[0] + sight[1] * base[1],
+        sight[1] * base[0] - sight[0] * base[1],
+    )
+    angles = (
+        choose(folded, 0, sp.atan2(*reversed(target))) - choose(lost, 0, triangle[real("base")]),
+        choose(short, 0, triangle[real("elbow")]),
+    )
+    return _arm(program, lengths, target, unknowns, suffix, start, direction, bend, angles)
+
+
+def two_link_arm_beside(
+    program: Program,
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    second: sp.Symbol,
+    target: tuple[sp.Expr, sp.Expr],
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    sigma: sp.Symbol,
+    squares: tuple[sp.Expr, sp.Expr],
+    scale: sp.Expr,
+    *,
+    suffix: str = "",
+    sided: bool = False,
+    free: Sequence[sp.Symbol] = (),
+    rest: tuple[Number, Number] = (1, 0),
+) -> Lemma:
+    """The two-link arm, where another arm knows better than the target how far it is bent.
+
+    As :func:`two_link_arm`, for a fore-arm of length ``second``.  With the reach R the ``squares``
+    are N = (l + f)^2 - R^2 and M = R^2 - (l - f)^2, so that tan(elbow / 2) = sqrt(N / M).  Taken
+    from the target, N has lost all its digits where the arm is straight, and the elbow half of
+    them; an arm nearby gives them without a difference of nearly equal lengths.  ``scale`` is that
+    of the distance between both, which decides how far the target may be missed.  ``sided`` keeps
+    the elbow from being quite straight, so that its side can be read from the answer.  ``rest`` is
+    the direction of the upper arm where the end is on the shoulder.
+    """
+    upper, along, across = lengths
+    r, h = target
+    area = (upper + second) * scale
+    N, M = (
+        program.bound(f"{name}{suffix}", value, area, meaning, positive=sided)
+        for name, value, meaning in (
+            ("N", squares[0], "nearer than full stretch"),
+            ("M", squares[1], "farther than the fold"),
+        )
+    )
+    start = len(program.body)
+    reach = program.let(f"reach{suffix}", sp.sqrt(r**2 + h**2), nonnegative=True)
+    folded, short = _degenerate(program, upper, second, reach, suffix, free)
+    rN, rM = (program.let(f"r{e.name}", sp.sqrt(e), nonnegative=True) for e in (N, M))
+    whole = program.let(f"whole{suffix}", N + M)
+    bend = (
+        program.let(f"c_bend{suffix}", choose(short, 1, (M - N) / whole)),
+        program.let(f"s_bend{suffix}", choose(short, 0, 2 * sigma * rN * rM / whole)),
+    )
+    beyond = (program.let(f"ahead_1{suffix}", upper + second * bend[0]), second * bend[1])
+    out = program.let(f"out{suffix}", r * beyond[0] + h * beyond[1])
+    up = program.let(f"up{suffix}", h * beyond[0] - r * beyond[1])
+    norm = program.let(f"norm{suffix}", sp.sqrt(out**2 + up**2), nonnegative=True)
+    direction = (choose(folded, rest[0], out / norm), choose(folded, rest[1], up / norm))
+    angles = (
+        choose(folded, sp.atan2(rest[1], rest[0]), sp.atan2(up, out)),
+        choose(short, 0, 2 * sigma * sp.atan2(rN, rM)),
+    )
+    lemma = _arm(program, lengths, target, unknowns, suffix, start, direction, bend, angles)
+    squared = r**2 + h**2
+    premises = {
+        second: sp.sqrt(along**2 + across**2),
+        N: (upper + second) ** 2 - squared,
+        M: squared - (upper - second) ** 2,
+    }
+    return replace(lemma, premises=premises)
+
+
+def elbow_squares(
+    program: Program,
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    second: sp.Symbol,
+    elbow: tuple[sp.Expr, sp.Expr],
+    *,
+    suffix: str = "",
+) -> tuple[tuple[sp.Symbol, sp.Symbol], sp.Symbol]:
+    """N and M of an arm from cosine and sine of y - x, and the sine of its bend times ``second``.
+
+    N = 2 l (f - f cos(bend)) and M = 2 l (f + f cos(bend)); of f - |..| and f + |..| the smaller
+    one is the square of f sin(bend) over the larger one.
+    """
+    upper, along, across = lengths
+    c, s = elbow
+    straight = program.let(f"straight{suffix}", along * s + across * c)
+    bent = program.let(f"bent{suffix}", across * s - along * c)
+    stretched = straight >= 0
+    large = program.let(
+        f"large{suffix}", second + sp.Piecewise((straight, stretched), (-straight, True))
+    )
+    small = program.let(f"small{suffix}", bent**2 / large)
+    N = program.let(f"N{suffix}", 2 * upper * sp.Piecewise((small, stretched), (large, True)))
+    M = program.let(f"M{suffix}", 2 * upper * sp.Piecewise((large, stretched), (small, True)))
+    return (N, M), bent
+
+
+def _degenerate(
+    program: Program,
+    upper: sp.Expr,
+    second: sp.Expr,
+    reach: sp.Expr,
+    suffix: str,
+    free: Sequence[sp.Symbol],
+) -> tuple[sp.Symbol, sp.Symbol]:
+    """The flags of an arm: its end is on the shoulder, or a link has no length."""
+    size = upper + second
+    return (
+        program.vanishes(f"folded{suffix}", reach, size, "the end is on the shoulder", free),
+        program.vanishes(f"short{suffix}", upper * second, size**2, "a link has no length", free),
+    )
+
+
+def _arm(
+    program: Program,
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    target: tuple[sp.Expr, sp.Expr],
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    suffix: str,
+    start: int,
+    direction: tuple[sp.Expr, sp.Expr],
+    bend: tuple[sp.Expr, sp.Expr],
+    angles: tuple[sp.Expr, sp.Expr],
+) -> Lemma:
+    """The lemma of an arm from the pairs and the angles of its upper arm and of its bend."""
+    (upper, along, across), (r, h), (x, y) = lengths, target, unknowns
+    length = program.let(f"length{suffix}", sp.sqrt(along**2 + across**2), nonnegative=True)
+    bare = program.vanishes(f"bare{suffix}", length, upper + length, "the fore-arm has no length")
+    cx, sx = (program.let(f"{f}{x.name}", e) for f, e in zip("cs", direction, strict=True))
+    lag = (choose(bare, 1, across / length), choose(bare, 0, along / length))
+    lag = tuple(program.let(f"{f}_lag{suffix}", e) for f, e in zip("cs", lag, strict=True))
+    turn = (bend[0] * lag[0] - bend[1] * lag[1], bend[1] * lag[0] + bend[0] * lag[1])
+    turn = tuple(program.let(f"{f}_relative{suffix}", e) for f, e in zip("cs", turn, strict=True))
+    cy = program.let(f"c{y.name}", cx * turn[0] - sx * turn[1])
+    sy = program.let(f"s{y.name}", sx * turn[0] + cx * turn[1])
+    return Lemma(
+        "two-link arm",
+        r"l e^{ix} + (b - ia) e^{iy} = r + ih \;\Rightarrow\; x = \operatorname{atan2}(h, r) - "
+        r"\alpha,\ y = x + \theta + \operatorname{atan2}(a, b), \text{ with } \theta, \alpha "
+        r"\text{ of the two-link triangle}",
+        (
+            upper * sp.cos(x) + along * sp.sin(y) + across * sp.cos(y) - r,
+            upper * sp.sin(x) - along * sp.cos(y) + across * sp.sin(y) - h,
+        ),
+        {x: angles[0], y: angles[0] + angles[1] + sp.atan2(lag[1], lag[0])},
+        2,
+        pairs={x: (cx, sx), y: (cy, sy)},
+        body=tuple(program.body[start:]),
+    )
+
+
+def two_sines(
+    program: Program,
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    u: tuple[sp.Expr, sp.Expr],
+    v: tuple[sp.Expr, sp.Expr],
+    p: tuple[sp.Expr, sp.Expr],
+    scale: sp.Expr,
+    *,
+    free: Sequence[sp.Symbol] = (),
+) -> Lemma:
+    """``u sin x + v sin y = p`` for vectors of the plane, and cosines that are not negative.
+
+    The part of the equation across u gives sin y; what is left along u gives sin x, so that an
+    error of y does no harm where u and v are nearly parallel.  Where they are parallel a
+    combination of the sines is free; the convention is y = 0.  The directions of u and v are known
+    to a few units in the last place, so that a multiple of the usual tolerance counts as parallel.
+    Cosines are kept from zero, so that their sign can be read from the answer.  ``scale`` is the
+    natural scale of p, which decides how far the equation may be missed.
+    """
+    x, y = unknowns
+    area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
+    sigma = program.let("sigma_uv", sp.Piecewise((1, area >= 0), (-1, True)))
+    start = len(program.body)
+    size = program.let("size_u", sp.sqrt(u[0] ** 2 + u[1] ** 2), nonnegative=True)
+    other = program.let("size_v", sp.sqrt(v[0] ** 2 + v[1] ** 2), nonnegative=True)
+    uv = program.let("uv", sigma * (u[0] * v[1] - u[1] * v[0]))
+    up = program.let("up", sigma * (u[0] * p[1] - u[1] * p[0]))
+    parallel = program.vanishes(
+        "parallel", uv, 64 * size * other, "both vectors are parallel", free
+    )
+    cy, sy = _from_sine(program, y, up, uv, size * scale, parallel)
+    along = program.let("along", ((p[0] - sy * v[0]) * u[0] + (p[1] - sy * v[1]) * u[1]) / size)
+    cx, sx = _from_sine(program, x, along, size, scale, sp.false)
+    return Lemma(
+        "two sines",
+        r"u\sin x + v\sin y = p,\ \cos x \ge 0,\ \cos y \ge 0 \;\Rightarrow\; "
+        r"\sin y = \frac{u \times p}{u \times v},\ "
+        r"\sin x = \frac{u \cdot (p - v \sin y)}{u \cdot u}",
+        tuple(u[k] * sp.sin(x) + v[k] * sp.sin(y) - p[k] for k in (0, 1)),
+        {x: sp.atan2(sx, cx), y: sp.atan2(sy, cy)},
+        1,
+        excluded=3,
+        pairs={x: (cx, sx), y: (cy, sy)},
+        body=tuple(program.body[start:]),
+    )
+
+
+def _from_sine(
+    program: Program, x: sp.Symbol, part: sp.Expr, whole: sp.Expr, scale: sp.Expr, flag: sp.Basic
+) -> tuple[sp.Symbol, sp.Symbol]:
+    """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""
+    below, above = (
+        program.bound(f"{name}_{x.name}", value, scale, meaning, positive=True)
+        for name, value, meaning in (
+            ("below", whole - part, "a sine is at most 1"),
+            ("above", whole + part, "a sine is at least -1"),
+        )
+    )
+    total = program.let(f"total_{x.name}", below + above)
+    cosine = program.let(f"c{x.name}", choose(flag, 1, 2 * sp.sqrt(below) * sp.sqrt(above) / total))
+    return cosine, program.let(f"s{x.name}", choose(flag, 0, (above - below) / total))
+
+
 @dataclass(frozen=True)
 class Chord:
     """Where two circles meet, seen from the line of their centres.
@@ -237,7 +527,7 @@ class Chord:
     distance: sp.Expr
     along: sp.Expr
     height: sp.Expr
-    flag: sp.Symbol | None
+    flag: sp.Symbol
 
 
 def circle_intersection(
@@ -258,8 +548,8 @@ def circle_intersection(
     first to the point.  With the factors of Heron's formula the height of the triangle is
     ``sqrt(S A B C) / (2 d)``.  ``scale`` is the size of the coordinates, whose rounding decides
     what counts as zero.  Where the radii are equal and the centres coincide, the point is free on
-    a circle; the convention is that of centres which are parted along the first axis.  Circles that
-    touch meet in one point.
+    a circle; for one radius the convention is that of centres which are parted along the first
+    axis, for two it is the point on this axis.  Circles that touch meet in one point.
     """
     x, y = unknowns
     apart = program.let(
@@ -268,19 +558,21 @@ def circle_intersection(
     S = first + second + apart
     A = program.bound(f"slack{suffix}", first + second - apart, scale, "the bars meet")
     touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")
-    flag = None
-    d, along, height = apart, apart / 2, sp.sqrt(S) * sp.sqrt(A) / 2
-    n: tuple[sp.Expr, sp.Expr] = (centres[0] / apart, centres[1] / apart)
+    flag = program.vanishes(f"coincide{suffix}", apart, scale, "the centres coincide", free)
+    n: tuple[sp.Expr, sp.Expr] = (
+        choose(flag, 1, centres[0] / apart),
+        choose(flag, 0, centres[1] / apart),
+    )
     if first == second:
-        flag = program.vanishes(f"coincide{suffix}", apart, scale, "the centres coincide", free)
-        n = (choose(flag, 1, n[0]), choose(flag, 0, n[1]))
         d = program.let(f"distance{suffix}", choose(flag, 0, apart), nonnegative=True)
-        along = d / 2
+        along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     else:
+        d = apart
         B = program.bound(f"outer{suffix}", apart + first - second, scale, "the bars meet")
         C = program.bound(f"inner{suffix}", apart - first + second, scale, "the bars meet")
-        along = (apart + (first - second) * (first + second) / apart) / 2
-        height = height * sp.sqrt(B) * sp.sqrt(C) / apart
+        along = choose(flag, first, (apart + (first - second) * (first + second) / apart) / 2)
+        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * apart)
+        height = choose(flag, 0, rise)
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
     height = program.let(f"height{suffix}", choose(touching, 0, height), nonnegative=True)
     return Lemma(

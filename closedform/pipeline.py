@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 BACKENDS = ("numpy", "c", "latex", "data")
 EXTRA = ("sympy", "flint", "jinja2")
-TOOLS = frozenset({"cli.py", "pipeline.py", "__main__.py"})
+TOOLS = frozenset({"cli.py", "pipeline.py", "new.py", "report.py", "__main__.py"})
 OUTPUT = frozenset({"emit", "lower", "derivations", "generated", "templates"})
 """With ``TOOLS`` what no proof depends on, by its first name below ``closedform/``."""
 COMPILED = frozenset({".so", ".pyd", ".pyc"})
@@ -84,11 +84,16 @@ class Printed:
 
 @dataclass(frozen=True)
 class Result:
-    """Every robot that was printed, the files they share, and what failed."""
+    """Every robot that was printed, the files they share, and what failed.
+
+    A robot that was not chosen, but shares files with the chosen, is a neighbour.  If one fails,
+    nothing is shared.
+    """
 
     robots: tuple[Printed, ...]
     shared: Files
     failures: tuple[DerivationError, ...]
+    neighbours: tuple[DerivationError, ...] = ()
 
     @property
     def files(self) -> Files:
@@ -376,7 +381,12 @@ def run(
             [load(s) for s in together], [proofs[s.name] for s in together], backends
         )
     names = {source.name for source in chosen}
-    return Result(tuple(r for r in robots if r.name in names), shared, tuple(failures))
+    return Result(
+        tuple(r for r in robots if r.name in names),
+        shared,
+        tuple(f for f in failures if f.args[0] in names),
+        tuple(f for f in failures if f.args[0] not in names),
+    )
 
 
 def _each(

@@ -8,7 +8,7 @@ that does not hold gets its verdict.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -18,10 +18,13 @@ import sympy as sp
 from closedform.algebra import Decision, Undecided, decide, normal
 from closedform.claims import VERDICTS
 from closedform.derivation import Continuum, Derivation, Inverse, Stage
-from closedform.functions import Array, Bound, Function, Let, Program, substitute
+from closedform.functions import Array, Bound, Function, Let, Program, real, substitute
 from closedform.lemmas import Lemma
 from closedform.refute import Counterexample
+from closedform.shapes import ShapeError, require_shape
 from closedform.solutions import InfinitelyManyError, count_solutions
+from closedform.tower import shortened
+from closedform.witness import uncovered
 
 Progress = Callable[[str], None]
 
@@ -107,7 +110,7 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
     for step in derivation.steps:
         progress(f"step: {step.title}")
         for difference in step.vanishes:
-            _require(difference, step.nonnegative, f"{derivation.name}, step {step.title!r}")
+            require(difference, step.nonnegative, f"{derivation.name}, step {step.title!r}")
             identities += 1
     inverses = []
     for inverse in derivation.inverses:
@@ -143,6 +146,10 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
 def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     """Sound: each branch satisfies the equations.  Complete: there are no other solutions."""
     function = derivation[inverse.function]
+    if inverse.chain:
+        return _prove_by_chain(derivation, function, inverse)
+    if inverse.reduction:
+        return _prove_by_reduction(derivation, function, inverse)
     assumptions = _prove_sound(derivation, function, inverse)
     for continuum in inverse.continua:
         _prove_continuum(derivation, function, inverse, continuum)
@@ -151,8 +158,9 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     branches = len(function.branches) if function.branches else 1
     if count != branches:
         raise ProofError(
-            f"{derivation.name}.{function.name}: the system has {count} solutions, "
-            f"but {branches} branches are given"
+            f"{derivation.name}.{function.name}: the system has {count} solutions "
+            f"({_how_counted(method)}), but {branches} branches are given. "
+            f"{uncovered(derivation, function, inverse)}".rstrip()
         )
     return InverseResult(
         function.name,
@@ -163,6 +171,41 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
         tuple(str(a) for a in assumptions),
         lemmas,
     )
+
+
+def _prove_by_chain(derivation: Derivation, function: Function, inverse: Inverse) -> InverseResult:
+    from closedform.prove_chain import prove_chain
+
+    count, assumptions, continua = prove_chain(derivation, inverse)
+    branches = len(function.branches) if function.branches else 1
+    if count != branches:
+        lost = uncovered(derivation, function, inverse)
+        raise ProofError(
+            f"{derivation.name}.{function.name}: the lemmas have {count} solutions together, "
+            f"but {branches} branches are given. {lost}".rstrip()
+        )
+    return InverseResult(
+        function.name,
+        branches,
+        continua,
+        count,
+        "lemma by lemma",
+        tuple(str(a) for a in assumptions),
+        tuple(dict.fromkeys(link.lemma.name for link in inverse.chain)),
+    )
+
+
+def _prove_by_reduction(
+    derivation: Derivation, function: Function, inverse: Inverse
+) -> InverseResult:
+    from closedform.prove_reduction import prove_reduction
+
+    branches, method, lemmas = prove_reduction(derivation, function, inverse)
+    return InverseResult(function.name, branches, 0, branches, method, (), lemmas)
+
+
+def _how_counted(method: str) -> str:
+    return "counted step by step" if method == "step by step" else "counted from a Groebner basis"
 
 
 def _targets(inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:
@@ -222,7 +265,7 @@ def _prove_case(function: Function, inverse: Inverse, case: _Case) -> tuple[sp.E
         [substitute(substitute(e, solution), case.given) for e in inverse.equations]
     )
     bounds = tuple(substitute(b, case.given) for b in function.bounds(case.signs))
-    return _require(difference, bounds, case.where).assumptions
+    return require(difference, bounds, case.where, _names_of(inverse)).assumptions
 
 
 def _prove_case_in_stages(
@@ -254,8 +297,17 @@ def _prove_case_in_stages(
         vanishing += [value - substitute(e, solution) for value, e in handed]
         difference = sp.Matrix([substitute(e, given) for e in vanishing])
         guards = tuple(dict.fromkeys(substitute(b, given) for b in bounds))
-        assumptions += _require(difference, guards, where).assumptions
+        assumptions += require(difference, guards, where).assumptions
     return assumptions
+
+
+def _names_of(inverse: Inverse) -> list[str]:
+    """What each equation of an inverse is about, to tell a user which one fails."""
+    names = []
+    for k, x in enumerate(inverse.targets, 1):
+        name = str(x) if isinstance(x, sp.Symbol) else f"equation {k}"
+        names += [f"cos({name})", f"sin({name})"] if x in inverse.angles else [name]
+    return names
 
 
 def _equations_of(inverse: Inverse, stage: Stage) -> list[sp.Expr]:
@@ -275,8 +327,12 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
             f"{derivation.name}.{inverse.function}: the equation solved for {solved.unknown} by "
             f"the lemma {solved.lemma.name!r} must follow from the forward map"
         )
+        try:
+            require_shape(solved.lemma.name, solved.equation, solved.unknown)
+        except ShapeError as error:
+            raise ProofError(f"{derivation.name}.{inverse.function}: {error}") from error
         posture = graph if solved.posture is None else solved.posture
-        _require(substitute(solved.equation, posture), (), where)
+        require(substitute(solved.equation, posture), (), where)
         lemmas.append(solved.lemma.name)
     return tuple(dict.fromkeys(lemmas))
 
@@ -290,9 +346,15 @@ def _count(inverse: Inverse) -> tuple[int, str]:
         if equation.has(*inverse.unknowns):
             equations.append(equation)
         else:
-            _require(equation, (), f"{inverse.function}: a target that no joint moves")
+            require(equation, (), f"{inverse.function}: a target that no joint moves")
+    squares = {u: sp.sqrt(real(f"{u}_squared")) for u in inverse.nonnegative}
+    equations = [sp.expand(e).xreplace({u**2: s**2 for u, s in squares.items()}) for e in equations]
+    if odd := [u for u in squares if any(e.has(u) for e in equations)]:
+        raise ProofError(f"{inverse.function}: the sign of {odd[0]} matters in the equations")
+    unknowns = [s**2 for s in squares.values()]
+    unknowns += [u for u in inverse.unknowns if u not in squares]
     try:
-        counted = count_solutions(equations, inverse.unknowns)
+        counted = count_solutions(equations, unknowns)
     except InfinitelyManyError as error:
         raise ProofError(f"{inverse.function}: {error}") from error
     return counted.count, counted.method
@@ -311,20 +373,20 @@ def _count_in_stages(inverse: Inverse) -> int:
             if stage.mixed.has(*(u for s in inverse.stages[k:] for u in s.unknowns)):
                 raise ProofError(f"{where}: a matrix holds an unknown of a later stage")
             square = stage.mixed * stage.mixed.T
-            _require(square - sp.eye(len(stage.equations)), (), f"{where}: orthonormal rows")
+            require(square - sp.eye(len(stage.equations)), (), f"{where}: orthonormal rows")
         equations = [substitute(e, stage.given) for e in _equations_of(inverse, stage)]
         if stage.mixed is not None:
             equations = [normal(e) for e in equations]
         depends = [s for s in inverse.stages[:k] if any(e.has(*s.unknowns) for e in equations)]
         for i in (i for s in depends for i in s.equations):
             earlier = substitute(inverse.equations[i], stage.given)
-            _require(earlier, (), f"{where}: an earlier equation")
+            require(earlier, (), f"{where}: an earlier equation")
         before += len(stage.unknowns)
         if any(e.has(*solved[before:]) for e in equations if solved[before:]):
             raise ProofError(f"{where}: an equation holds an unknown of a later stage")
         constant = [e for e in equations if not e.has(*stage.unknowns)]
         if constant:
-            _require(sp.Matrix(constant), (), f"{where}: an equation that no joint moves")
+            require(sp.Matrix(constant), (), f"{where}: an equation that no joint moves")
         try:
             count *= count_solutions(
                 [e for e in equations if e.has(*stage.unknowns)], stage.unknowns
@@ -339,23 +401,27 @@ def prove_lemma(
 ) -> None:
     """Prove a lemma for the coefficients it was applied to: symbols, so for all.
 
-    Its solutions satisfy its equations for either sign, and the equations have no others.
-    ``given`` writes dependent coefficients in free parameters.
+    Its solutions satisfy its equations for either sign, its pairs are their cosines and sines, and
+    the equations have no others.  ``given`` writes dependent coefficients in free parameters.
     """
     given = dict(given or {})
-    outputs = tuple(lemma.solution.values())
-    steps = [s.value for s in program.body if isinstance(s, (Let, Bound))]
+    pairs = [value for pair in lemma.pairs.values() for value in pair]
+    outputs = (*lemma.solution.values(), *pairs)
+    premises = [Bound(name, meaning, sp.S.One, "") for name, meaning in lemma.premises.items()]
+    body = [*premises, *program.body]
+    steps = [s.value for s in body if isinstance(s, (Let, Bound))]
     free = {s for e in (*outputs, *steps) for s in e.free_symbols}
     sign = next((s for s in free if s.name.startswith("sigma")), None)
-    function = Function(
-        "lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(program.body)
-    )
+    function = Function("lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(body))
     for value in (1, -1) if sign else (1,):
         signs = {sign: value} if sign else {}
-        solution = dict(zip(lemma.solution, function.values(signs), strict=True))
-        vanishing = sp.Matrix([substitute(e, solution) for e in lemma.equations])
+        values = function.values(signs)
+        solution = dict(zip(lemma.solution, values, strict=False))
+        circle = [f(solution[x]) for x in lemma.pairs for f in (sp.cos, sp.sin)]
+        named = [a - b for a, b in zip(circle, values[len(solution) :], strict=True)]
+        vanishing = sp.Matrix([*(substitute(e, solution) for e in lemma.equations), *named])
         bounds = tuple(substitute(b, given) for b in function.bounds(signs))
-        _require(substitute(vanishing, given), bounds, f"the lemma {lemma.name!r}")
+        require(substitute(vanishing, given), bounds, f"the lemma {lemma.name!r}")
     count = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given).count
     if count != lemma.branches + lemma.excluded:
         raise ProofError(f"the lemma {lemma.name!r} has {count} solutions")
@@ -367,12 +433,27 @@ def _decide(difference: sp.ImmutableMatrix, nonnegative: tuple[sp.Expr, ...]) ->
     return decide(difference, nonnegative)
 
 
-def _require(difference: Any, nonnegative: tuple[sp.Expr, ...], where: str) -> Decision:
+def require(
+    difference: Any, nonnegative: tuple[sp.Expr, ...], where: str, names: Sequence[str] = ()
+) -> Decision:
+    """Prove that a difference vanishes, or say what is left of it and at which simple point.
+
+    ``names`` say what the entries are about.
+    """
     try:
         decision = _decide(sp.ImmutableMatrix([difference]), nonnegative)
     except Undecided as error:
         raise ProofError(f"{where}: {error}") from error
     if not decision.holds:
         assert isinstance(decision.counterexample, Counterexample)
-        raise ProofError(f"{where}: does not vanish. {decision.counterexample.describe()}")
+        entry = decision.counterexample.entry
+        about = f" in {names[entry]}" if entry < len(names) else ""
+        residual = sp.Matrix([difference])[entry]
+        if decision.proof is not None and entry < len(decision.proof.remainders):
+            short = decision.proof.remainders[entry]
+            residual = min((residual, short), key=sp.count_ops) if short != 0 else residual
+        raise ProofError(
+            f"{where}: does not vanish. {decision.counterexample.describe()}; "
+            f"the residual{about} is {shortened(residual)}"
+        )
     return decision

@@ -77,7 +77,7 @@ class Evaluator:
         self.symbols = tuple(symbols)
         self.exprs = tuple(sp.sympify(e) for e in exprs)
         self.rel_bits, self.max_bits = rel_bits, max_bits
-        missing = {s for e in self.exprs for s in e.free_symbols} - set(self.symbols)
+        missing = _free_symbols(self.exprs) - set(self.symbols)
         if missing:
             raise KeyError(f"no value for {', '.join(sorted(map(str, missing)))}")
         self._program = _Program(self.symbols, self.exprs)
@@ -111,8 +111,20 @@ class Evaluator:
             return True
         if not ball.is_finite():
             return False
-        tolerance = self._program.scale(e, registers) * arb(2) ** -self.rel_bits
+        tolerance = self._program.scale(e, registers, {}) * arb(2) ** -self.rel_bits
         return bool(ball.rad() <= tolerance)
+
+
+def _free_symbols(exprs: Iterable[Expr]) -> set[Expr]:
+    """The symbols in expressions; a part that occurs many times is looked at once."""
+    seen: set[Expr] = set()
+    pending = list(exprs)
+    while pending:
+        e = pending.pop()
+        if e not in seen:
+            seen.add(e)
+            pending += e.args
+    return {e for e in seen if e.is_Symbol}
 
 
 def to_float(ball: arb) -> float:
@@ -180,15 +192,20 @@ class _Program:
         _execute(self._block, registers)
         return registers
 
-    def scale(self, e: Expr, registers: Registers) -> arb:
+    def scale(self, e: Expr, registers: Registers, known: dict[Expr, arb]) -> arb:
         """Size of what was added up to `e`: the measure for the width of its enclosure."""
+        if e not in known:
+            known[e] = self._scale(e, registers, known)
+        return known[e]
+
+    def _scale(self, e: Expr, registers: Registers, known: dict[Expr, arb]) -> arb:
         if e.is_Add:
-            return reduce(operator.add, (self.scale(a, registers) for a in e.args))
+            return reduce(operator.add, (self.scale(a, registers, known) for a in e.args))
         if e.is_Mul:
-            return reduce(operator.mul, (self.scale(a, registers) for a in e.args))
+            return reduce(operator.mul, (self.scale(a, registers, known) for a in e.args))
         value = registers[self._register[e]].abs_upper()
         if e.is_Pow and e.exp.is_positive:
-            return self.scale(e.base, registers) ** fmpq(int(e.exp.p), int(e.exp.q))
+            return self.scale(e.base, registers, known) ** fmpq(int(e.exp.p), int(e.exp.q))
         return value if e.is_Atom or e.is_Pow else value.max(arb(1))
 
     # Compilation

@@ -7,8 +7,10 @@ every run.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -16,6 +18,7 @@ from numpy.typing import NDArray
 
 from closedform.derivation import Derivation
 from closedform.functions import Function
+from closedform.reference import Evaluator, to_float
 
 Array = NDArray[np.float64]
 
@@ -57,25 +60,44 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
         "huge": rng.choice(HUGE, (24, n)) * rng.uniform(-1, 1, (24, n)),
     }
     return [
-        Sample(name, values, parameters)
+        Sample(
+            name,
+            values if name == "huge" else _besides(derivation, function.symbols, values),
+            parameters,
+        )
         for parameters in parameter_sets(derivation, rng)
         for name, values in rows.items()
     ]
 
 
-def inverse_postures(derivation: Derivation, n: int, seed: int = 2) -> list[Sample]:
+def inverse_postures(
+    derivation: Derivation, unknowns: Sequence[sp.Symbol], seed: int = 2
+) -> list[Sample]:
     """Joint values whose images are the targets of an inverse, singular ones among them."""
     rng = np.random.default_rng(seed)
+    n = len(unknowns)
     rows = {
         "random": rng.uniform(-np.pi, np.pi, (60, n)),
         "right angles": _approaches(rng, n, 60),
         "one joint singular": _one_singular(rng, n),
     }
     return [
-        Sample(name, values, parameters)
+        Sample(name, _besides(derivation, unknowns, values), parameters)
         for parameters in parameter_sets(derivation, rng)
         for name, values in rows.items()
     ]
+
+
+def _besides(derivation: Derivation, symbols: Sequence[sp.Symbol], values: Array) -> Array:
+    """A joint that stays beside another is drawn close to it."""
+    values = values.copy()
+    for joint in derivation.joints:
+        if joint.beside is not None and joint.symbol in symbols:
+            own, other = symbols.index(joint.symbol), symbols.index(joint.beside)
+            for start, fraction in ((0, 8.0), (1, 32.0), (2, 512.0)):
+                rows = values[start::3]
+                values[start::3, own] = rows[:, other] + rows[:, own] / fraction
+    return values
 
 
 def perturbed(targets: Array, seed: int = 3) -> Array:
@@ -103,17 +125,58 @@ def _one_singular(rng: np.random.Generator, n: int) -> Array:
     return np.array(rows)
 
 
-def magnitude(expr: sp.Expr) -> sp.Expr:
-    """The natural scale of a value: all signs positive, sines and cosines at their largest."""
-    if isinstance(expr, (sp.sin, sp.cos)):
-        return sp.Integer(1)
-    if isinstance(expr, (sp.atan2, sp.asin, sp.acos, sp.atan)):
-        return sp.pi
-    if isinstance(expr, (sp.Piecewise, sp.Max, sp.Min)):
-        branches = [e for e, _ in expr.args] if isinstance(expr, sp.Piecewise) else expr.args
-        return sp.Add(*(magnitude(e) for e in branches))
-    if expr.is_Symbol or expr.is_number:
-        return sp.Abs(expr)
-    if isinstance(expr, sp.Pow) and expr.exp.is_negative:
-        return sp.Abs(expr)
-    return expr.func(*(magnitude(a) for a in expr.args))
+class Magnitudes:
+    """The natural scales of values: all signs positive, sines and cosines at their largest.
+
+    What is divided by keeps its value.  Nested expressions are gone through once for each of their
+    parts: as a tree they are far too large.
+    """
+
+    def __init__(self, symbols: Sequence[sp.Symbol], exprs: Sequence[sp.Expr]):
+        self._places = {s: k for k, s in enumerate(symbols)}
+        self._steps: list[Callable[[list[Any], Sequence[Any]], Any]] = []
+        self._known: dict[sp.Basic, int] = {}
+        self._divisors: list[sp.Expr] = []
+        self._results = [self._place(sp.sympify(e)) for e in exprs]
+        self._evaluate = Evaluator(tuple(symbols), self._divisors)
+
+    def __call__(self, values: Sequence[float], dtype: type = float) -> list[float]:
+        """Infinite where the float type overflows, zero where the value does not exist."""
+        found = [abs(to_float(d)) for d in self._evaluate(values)] if self._divisors else []
+        with np.errstate(all="ignore"):
+            given = [dtype(abs(v)) for v in (*values, *found)]
+            done: list[Any] = []
+            for step in self._steps:
+                done.append(step(done, given))
+            scales = [float(done[k]) for k in self._results]
+        return [0.0 if math.isnan(s) else s for s in scales]
+
+    def _place(self, e: sp.Basic) -> int:
+        if e not in self._known:
+            step = self._step(e)
+            self._steps.append(step)
+            self._known[e] = len(self._steps) - 1
+        return self._known[e]
+
+    def _step(self, e: sp.Basic) -> Callable[[list[Any], Sequence[Any]], Any]:
+        if isinstance(e, (sp.sin, sp.cos)):
+            return lambda done, given: 1.0
+        if isinstance(e, (sp.atan2, sp.asin, sp.acos, sp.atan)):
+            return lambda done, given: math.pi
+        if e.is_Number or e.is_NumberSymbol:
+            number = abs(float(e))
+            return lambda done, given: number
+        if e in self._places:
+            place = self._places[e]
+            return lambda done, given: given[place]
+        if isinstance(e, (sp.Add, sp.Mul, sp.Max, sp.Min, sp.Piecewise, sp.Abs)):
+            branches = [b for b, _ in e.args] if isinstance(e, sp.Piecewise) else e.args
+            parts = [self._place(b) for b in branches]
+            total = math.prod if isinstance(e, sp.Mul) else sum
+            return lambda done, given: total(done[k] for k in parts)
+        if isinstance(e, sp.Pow) and e.exp.is_Number and e.exp > 0:
+            base, power = self._place(e.base), float(e.exp)
+            return lambda done, given: np.power(done[base], power)
+        self._divisors.append(e)
+        place = len(self._places) + len(self._divisors) - 1
+        return lambda done, given: given[place]

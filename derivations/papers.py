@@ -21,6 +21,12 @@ CHABLAT_WENGER_ANGELES = Paper(
     "Integrated Design and Manufacturing in Mechanical Engineering, Compiègne, 1998",
 )
 
+TEXTBOOK = Paper(
+    "textbook",
+    "Arms of common structure, by the lemmas that solve them",
+    ("The closedform authors",),
+)
+
 PUMA_TEXTBOOKS = Paper(
     "puma-textbooks",
     "The Puma 560 in the textbooks",
@@ -35,4 +41,11 @@ STANFORD_TEXTBOOKS = Paper(
     "The Stanford arm in the textbooks",
     ("R. P. Paul", "M. W. Spong", "S. Hutchinson", "M. Vidyasagar"),
     "Paul: Robot Manipulators; Spong, Hutchinson, Vidyasagar: Robot Modeling and Control",
+)
+
+RAO_RAJU = Paper(
+    "rao-raju",
+    "Forward and inverse kinematics of a hybrid series-parallel manipulator",
+    ("Sachit Rao", "Jagannath Raju"),
+    "15th National Conference on Machines and Mechanisms, NaCoMM2011-134",
 )

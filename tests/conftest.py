@@ -1,5 +1,8 @@
 """What all tests share: repeatable examples, and the table of the worst errors found."""
 
+import pickle
+from typing import Any
+
 import pytest
 from hypothesis import settings
 
@@ -18,11 +21,27 @@ def findings(pytestconfig: pytest.Config) -> list[Finding]:
     return pytestconfig.stash.setdefault(FINDINGS, [])
 
 
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """With several processes (-n), each hands what it found to the first."""
+    output = getattr(session.config, "workeroutput", None)
+    if output is not None:
+        output["findings"] = pickle.dumps(session.config.stash.get(FINDINGS, [])).hex()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    output = getattr(node, "workeroutput", {})
+    if "findings" in output:
+        found = pickle.loads(bytes.fromhex(output["findings"]))
+        node.config.stash.setdefault(FINDINGS, []).extend(found)
+
+
 def pytest_terminal_summary(
     terminalreporter: pytest.TerminalReporter, config: pytest.Config
 ) -> None:
     found = config.stash.get(FINDINGS, [])
     if found:
         terminalreporter.section("worst error of each generated function")
+        found.sort(key=lambda f: (f.robot, f.function, f.backend))
         for line in table(found):
             terminalreporter.write_line(line)

@@ -70,7 +70,7 @@ def test_an_unknown_name_gets_a_suggestion(
     command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([command, "planar2r"]) == 2
-    assert "did you mean planar_2r?" in capsys.readouterr().err
+    assert "did you mean planar_2r" in capsys.readouterr().err
     assert main([command, "xyz"]) == 2
     assert "known: " in capsys.readouterr().err
 
@@ -115,7 +115,7 @@ def test_a_script_outside_the_repository_is_derived(
 def test_backends_are_chosen(slider: Path, tmp_path: Path) -> None:
     output = tmp_path / "out"
     assert main(["derive", str(slider), "-o", str(output), "--backend", "c"]) == 0
-    assert sorted(path.name for path in output.iterdir()) == ["c"]
+    assert sorted(path.name for path in output.iterdir()) == ["c", "slider-crosscheck.md"]
     c = sorted(path.name for path in (output / "c").iterdir())
     assert c == [
         "CMakeLists.txt",
@@ -124,6 +124,67 @@ def test_backends_are_chosen(slider: Path, tmp_path: Path) -> None:
         "slider.c",
         "slider.h",
     ]
+
+
+def test_what_is_printed_elsewhere_is_cross_checked(slider: Path, tmp_path: Path) -> None:
+    """With a page on what was found; the installation is left as it is."""
+    root = Path(pipeline.__file__).parents[1]
+    watched = [root / name for name in ("closedform", "derivations", "generated", "templates")]
+    before = [{p: t for p, t in times(f).items() if p.suffix != ".pyc"} for f in watched]
+    output = tmp_path / "out"
+    assert main(["derive", str(slider), "-o", str(output)]) == 0
+    page = (output / "slider-crosscheck.md").read_text("utf-8")
+    assert "| fk | ulp |" in page and "Nothing exceeds its tolerance." in page
+    after = [{p: t for p, t in times(f).items() if p.suffix != ".pyc"} for f in watched]
+    assert before == after
+    assert main(["derive", str(slider), "-o", str(output / "2"), "--no-crosscheck"]) == 0
+    assert not (output / "2" / "slider-crosscheck.md").exists()
+
+
+def test_a_difference_found_by_the_cross_check_fails(
+    slider: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
+) -> None:
+    """The page says what differs, and so does the command."""
+    from closedform import cli
+
+    write = cli._write
+
+    def spoiled(root: Path, printed: pipeline.Files) -> None:
+        path = Path("numpy/slider.py")
+        if path in printed:
+            assert "q1 + a," in printed[path]
+            printed[path] = printed[path].replace("q1 + a,", "q1 - a,")
+        write(root, printed)
+
+    monkeypatch.setattr(cli, "_write", spoiled)
+    output = tmp_path / "out"
+    assert main(["derive", str(slider), "-o", str(output), "--backend", "numpy"]) == 1
+    assert "slider: the generated code differs from its symbolic source" in capsys.readouterr().err
+    assert "ulp" in (output / "slider-crosscheck.md").read_text("utf-8")
+
+
+def test_a_broken_neighbour_does_not_hold_up_a_robot(
+    only_planar: Path,
+    slider: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    (planar,) = pipeline.sources()
+    slider.write_text(SLIDER.replace("(q1 + a, a + q1)", "(q1 - a, a + q1)"), "utf-8")
+    broken = pipeline.Source("slider", slider)
+    monkeypatch.setattr(pipeline, "sources", lambda: [planar, broken])
+    target = only_planar / "numpy" / "planar_2r.py"
+    whole = target.read_text("utf-8")
+    target.write_text("stale", "utf-8")
+    shared = only_planar / "c" / "extension.c"
+    shared.write_text("as it was", "utf-8")
+    assert main(["derive", "planar_2r"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out.startswith("planar_2r")
+    assert "warning: slider: not proved: step 'Position'" in printed.err
+    assert "the files that all robots share were left as they are" in printed.err
+    assert target.read_text("utf-8") == whole
+    assert shared.read_text("utf-8") == "as it was"
 
 
 @pytest.mark.parametrize(

@@ -104,6 +104,49 @@ ROBOTS = {
         "branches": 8,
         "assembly_modes": 2,
     },
+    "scara": {
+        "fields": ("l1", "l2", "h"),
+        "joints": ("theta1", "theta2", "d3", "theta4"),
+        "task": ("x", "y", "z", "yaw"),
+        "shapes": {
+            "fk": (4,),
+            "pose": (4, 4),
+            "jacobian": (4, 4),
+            "jacobian_space": (6, 4),
+            "jacobian_body": (6, 4),
+            "determinant": (),
+            "singularities": (1,),
+        },
+        "branches": 2,
+    },
+    "ur_arm": {
+        "fields": ("d1", "L2", "L3", "d4", "d5", "d6"),
+        "joints": tuple(f"theta{i}" for i in range(1, 7)),
+        "task": tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)),
+        "shapes": {
+            "fk": (4, 4),
+            "pose": (4, 4),
+            "jacobian": (6, 6),
+            "jacobian_space": (6, 6),
+            "jacobian_body": (6, 6),
+            "determinant": (),
+            "singularities": (3,),
+        },
+        "branches": 8,
+    },
+    "rpr_planar": {
+        "fields": ("b",),
+        "joints": ("rho1", "rho2"),
+        "task": ("x", "y"),
+        "shapes": {
+            "passive_angles": (2, 2),
+            "jacobian": (2, 2, 2),
+            "determinant": (2,),
+            "singularities": (2, 3),
+        },
+        "branches": 1,
+        "assembly_modes": 2,
+    },
 }
 BACKENDS = ("numpy", "c")
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)

@@ -20,7 +20,19 @@ from closedform.crosscheck import (
 from closedform.derivation import Derivation
 from closedform.tolerances import DOUBLE
 
-ROBOTS = ("hybrid_five_bar", "irb260", "planar_2r", "puma560", "spherical_wrist", "stanford_arm")
+ROBOTS = (
+    "h6ar",
+    "h6ar_loop_closed",
+    "hybrid_five_bar",
+    "irb260",
+    "planar_2r",
+    "puma560",
+    "rpr_planar",
+    "scara",
+    "spherical_wrist",
+    "stanford_arm",
+    "ur_arm",
+)
 GENERATED = Path(__file__).parent.parent / "generated"
 
 
@@ -80,7 +92,7 @@ def never_reachable(solutions):
     return solutions._replace(q=nan, status=np.ones_like(solutions.status))
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", [r for r in ROBOTS if r != "ur_arm"])  # a minute each
 @pytest.mark.parametrize("change", [swapped_sign, first_branch_only, never_reachable])
 def test_a_wrong_inverse_is_found(robot: str, change) -> None:
     assert broken(robot, "ik", change)

@@ -13,7 +13,10 @@ from closedform.lemmas import (
     linear_pair,
     parallelogram,
     sine_cosine,
+    two_link_arm,
+    two_link_arm_beside,
     two_link_triangle,
+    two_sines,
     zyz_angles,
 )
 from closedform.loops import eliminate, velocity_matrices
@@ -47,6 +50,18 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
             program, first, second, reach, x, y, sigma, first + second, free=(x, y)
         )
         return lemma, program, {}
+    lengths = tuple(real(n, positive=True) for n in ("l", "a", "b"))
+    if name == "arm":
+        lemma = two_link_arm(program, lengths, (a, b), (x, y), sigma)
+        return lemma, Program(list(lemma.body)), {}
+    if name == "arm beside another":
+        f, N, M = (real(n, positive=True) for n in ("f", "N_0", "M_0"))
+        lemma = two_link_arm_beside(program, lengths, f, (a, b), (x, y), sigma, (N, M), f)
+        return lemma, Program(list(lemma.body)), {}
+    if name == "two sines":
+        u, v, p = ((real(f"{n}_1"), real(f"{n}_2")) for n in "uvp")
+        lemma = two_sines(program, (x, y), u, v, p, real("size", positive=True))
+        return lemma, Program(list(lemma.body)), {}
     if name == "parallelogram":
         crank, coupler = (real(n, positive=True) for n in ("l", "a"))
         return parallelogram(crank, coupler, z, real("gamma"), x, y, sigma), program, {}
@@ -65,6 +80,9 @@ NAMES = [
     "linear pair",
     "sine and cosine",
     "triangle",
+    "arm",
+    "arm beside another",
+    "two sines",
     "parallelogram",
     "sine and cosine by pairs",
     "triangle by pairs",

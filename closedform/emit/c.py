@@ -133,7 +133,7 @@ class CPrinter(Printer):
         if op in ("true", "false"):
             return Text("1" if op == "true" else "0")
         if op == "not":
-            return Text(f"!{self.text[node.args[0].id].at(6)}", 6)
+            return Text(f"!{self.text[node.args[0].id].at(6)}", 5)  # gcc warns of `!a | b`
         if op == "tolerance":
             return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
         return Text(f"{CALLS[op]}({', '.join(args)})")

@@ -113,6 +113,8 @@ class Printer:
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
         if node.op in ("const", "input", "nan", "tolerance", "sin", "cos", "true", "false"):
             return False
+        if node.id in self._sines:  # printed before all else, where its sine is taken
+            return False
         if node.op == "neg" and self.text[node.args[0].id].precedence == ATOM:
             return False
         return uses > 1 or len(text.code) > LONGEST

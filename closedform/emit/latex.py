@@ -250,7 +250,8 @@ class Page:
     def proved(self, result: InverseResult) -> dict[str, Any]:
         symbols = {s.name: s for f in self.derivation.functions for s in f.symbols}
         symbols |= {p.name: p.symbol for p in self.derivation.parameters}
-        named = self.named_bounds(self.derivation[result.function])
+        known = self.derivation[result.function]
+        named = self.named_bounds(known) if result.assumptions else {}
         assumed = dict.fromkeys(
             self.math(named.get(a) or sp.sympify(a, symbols)) for a in result.assumptions
         )

@@ -68,6 +68,11 @@ class Builder:
             return sine if isinstance(expr, sp.sin) else cosine
         if isinstance(expr, sp.atan2):
             return graph.atan2(*map(self, expr.args))
+        if isinstance(expr, sp.atan):  # SymPy writes atan2(y, x) so where x is positive
+            top, bottom = sp.fraction(expr.args[0])
+            if not bottom.is_nonnegative:
+                top, bottom = expr.args[0], sp.S.One
+            return graph.atan2(self(top), self(bottom))
         if isinstance(expr, sp.Abs):
             return graph.even("abs", self(expr.args[0]))
         if isinstance(expr, (sp.Max, sp.Min)):
@@ -158,7 +163,7 @@ class Builder:
     def _suggest_names(self, angle: sp.Add, sine: Node, cosine: Node) -> None:
         """``s12`` and ``c12`` for the sine and the cosine of theta1 + theta2."""
         terms = [str(t) for t in angle.as_ordered_terms()]
-        if all(t.startswith("theta") for t in terms):
+        if all(t.startswith("theta") and t.isalnum() for t in terms):
             label = "".join(t.removeprefix("theta") for t in terms)
             self.names.setdefault(sine.id, f"s{label}")
             self.names.setdefault(cosine.id, f"c{label}")

@@ -147,7 +147,7 @@ class _Branch:
         valid, reachable, singular = self._valid_input(), [], []
 
         def limit(name: str, scale: sp.Expr) -> Node:
-            return graph.product([graph.node("tolerance", payload=name), build(scale)])
+            return graph.product([graph.node("tolerance", payload=name), build(sp.sympify(scale))])
 
         for statement in self.function.body:
             if isinstance(statement, Let):
@@ -156,7 +156,11 @@ class _Branch:
                 raw = build(statement.value)
                 allowed = graph.neg(limit("feasibility", statement.scale))
                 reachable.append(graph.node("le", allowed, raw))
-                clamped = graph.node("max", raw, graph.const(0))
+                scale = statement.scale
+                least = graph.const(0)
+                if statement.positive:  # the square of an angle of four times the tolerance
+                    least = graph.product([limit("vanishing", 16 * scale), limit("vanishing", 1)])
+                clamped = graph.node("max", raw, least)
                 self._name(names, build, statement.symbol, clamped, label)
             elif isinstance(statement, Match):
                 size = graph.even("abs", build(statement.value))

@@ -163,7 +163,7 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int vector, const hyb
     const int t13 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t14 = t13 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t15 = t14 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t15 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
+    const int failed = (!(t15 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t8));
     const real_t t16 = cf_poison(failed);
     const real_t DP_r = t6 + t10;
     const real_t CP_y_right_of_CD = t11 - t12;
@@ -245,7 +245,7 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const hybrid_five_bar_pa
     const real_t t7 = L1 * c2 - (L0 + L1 * c3);
     const real_t apart = cf_sqrt(t6 * t6 + t7 * t7);
     const real_t t8 = t5 - apart;
-    const int failed = !(t3 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t8);
+    const int failed = (!(t3 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t8));
     const real_t t9 = cf_poison(failed);
     const real_t t10 = L2 * s1 + t9;
     const real_t t11 = CLOSEDFORM_C(0.0) + t9;
@@ -379,7 +379,7 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_para
     const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t14 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const int failed = (!(t14 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t15 = cf_poison(failed);
     const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t17 = t6 * height;
@@ -473,7 +473,7 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *par
     const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t14 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const int failed = (!(t14 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t15 = cf_poison(failed);
     const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t17 = t6 * height;
@@ -608,7 +608,7 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *
     const int t16 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t17 = t16 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t18 = t17 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t18 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const int failed = (!(t18 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t19 = cf_poison(failed);
     const real_t t20 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
     const real_t t21 = t20 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
@@ -688,7 +688,7 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params
     const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t14 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t4) <= t9);
+    const int failed = (!(t14 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t15 = cf_poison(failed);
     const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t17 = t6 * height;
@@ -777,7 +777,7 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_par
     const int t10 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
     const int t11 = t10 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t12 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(CLOSEDFORM_FEASIBILITY * t3) <= t7);
+    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t7));
     const real_t t13 = t9 / cf_min(t5, height) + cf_poison(failed);
     kappa[0] = t13;
     kappa[1] = t13;
@@ -1030,7 +1030,7 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     const real_t t9 = y - L0;
     const real_t reach_d = cf_sqrt(t6 + t9 * t9);
     const int t10 = t8 & (t5 <= t4 - reach_d) & (t5 <= reach_d + t7);
-    const int failed = !(t3 & (CLOSEDFORM_C(0.0) <= L2)) | !(t10 & (t5 <= reach_d - t7));
+    const int failed = (!(t3 & (CLOSEDFORM_C(0.0) <= L2))) | (!(t10 & (t5 <= reach_d - t7)));
     inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -1101,7 +1101,7 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_par
     const real_t t23 = cf_select(t3 <= L0, t10, cf_select(t11, t16 / CLOSEDFORM_C(6.0), t22));
     const int t24 = cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
     const int t25 = t24 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = !(t25 & (CLOSEDFORM_C(0.0) <= L2)) | !(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1);
+    const int failed = (!(t25 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1));
     const real_t t26 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t23) + cf_poison(failed);
     volume[0] = t26;
 }

@@ -1130,7 +1130,7 @@ CF_INLINE void irb260_workspace_contains_kernel(const irb260_params *params, con
     const real_t t13 = r - t7;
     const real_t reach_front = cf_sqrt(t10 + t13 * t13);
     const real_t t14 = cf_max(cf_min(reach_back - t12, t8 - reach_back), cf_min(reach_front - t12, t8 - reach_front));
-    inside[0] = (!(!t6 | !(t9 <= t14))) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    inside[0] = (!((!t6) | (!(t9 <= t14)))) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CLOSEDFORM_DISPATCHED

@@ -1,0 +1,494 @@
+"""Serial chains: from a table of joints to the pose, the Jacobians and their determinant.
+
+A chain is given by rows of Denavit-Hartenberg (standard or modified) or by the screws of its axes
+at home.  What every serial arm has, one call derives, proves and exports.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+
+from closedform.algebra import normal
+from closedform.derivation import Derivation
+from closedform.frames import (
+    denavit_hartenberg,
+    exponential,
+    homogeneous,
+    merge_angles,
+    reduce_circle,
+    rotation,
+    twist_matrix,
+)
+
+
+class RowError(ValueError):
+    """A row of a table of joints that cannot be read."""
+
+
+@dataclass(frozen=True)
+class Serial:
+    """A serial chain of joints: ``pose`` of the tool, and the twist of each joint as it stands.
+
+    ``space`` and ``body`` are the 6xn Jacobians, twists ``(v; omega)`` in the base frame and in
+    that of the tool; ``geometric`` has the velocity of the tool's origin and the angular velocity,
+    both in base axes.
+    """
+
+    joints: tuple[sp.Symbol, ...]
+    pose: sp.Matrix
+    space: sp.Matrix
+    body: sp.Matrix
+    geometric: sp.Matrix
+    moves: tuple[sp.Matrix, ...]
+    middle: sp.Matrix
+    """The twists in the frame, somewhere along the chain, where they are shortest."""
+    groups: tuple[Group, ...]
+    """The joints by parallel axes, between the frames ``lead`` and ``last``."""
+    lead: sp.Matrix
+    last: sp.Matrix
+
+    @property
+    def position(self) -> sp.Matrix:
+        return self.pose[:3, 3]
+
+    def determinant(self) -> sp.Expr:
+        """Of either Jacobian of an arm of six joints, factored.
+
+        A change of frame does not change it, so it is taken where the twists are shortest.
+        """
+        return _determinant(self.middle)
+
+    def coordinates(self) -> Coordinates | None:
+        """As many task coordinates as joints: of x, y, z and the yaw those that the joints move.
+
+        None where the whole pose is the task, or where no such choice is plain.
+        """
+        n = len(self.joints)
+        moved = [i for i in range(6) if any(e != 0 for e in self.geometric.row(i))]
+        linear = [i for i in moved if i < 3]
+        rows = next((r for r in (moved, linear) if len(r) == n and set(r) <= {0, 1, 2, 5}), None)
+        if rows is None:
+            return None
+        values = [self.position[i] if i < 3 else self._yaw() for i in rows]
+        names = tuple(("x", "y", "z", "roll", "pitch", "yaw")[i] for i in rows)
+        return Coordinates(names, sp.Matrix(values), self.geometric.extract(rows, list(range(n))))
+
+    def _yaw(self) -> sp.Expr:
+        """The angle of the tool about z, for an arm whose joints turn it about z alone."""
+        turns = self.geometric.row(5)
+        home = self.pose[:3, :3].subs(dict.fromkeys(self.joints, 0))
+        return sum(
+            (w * joint for w, joint in zip(turns, self.joints, strict=True)),
+            sp.atan2(home[1, 0], home[0, 0]),
+        )
+
+    def export(self, d: Derivation) -> Any:
+        """Record pose, Jacobians and determinant as proved steps, and export them as functions.
+
+        Returns the forward map that an inverse must solve: the task coordinates in the joints
+        where the arm has as many (see :meth:`coordinates`), else the pose.
+        """
+        q, task = self.joints, self.coordinates()
+        d.step(
+            "Pose",
+            "The product of the motions from link to link, the angles of parallel axes added.",
+            {**{f"A_{i}": A for i, A in enumerate(self.moves, 1)}, "T": self.pose},
+            equal=[(sp.prod(self.moves), self.pose)],
+        )
+        d.function("pose", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
+        d.step(
+            "Jacobians",
+            "The columns are the twists (v; omega) of the joints as they stand: that of a revolute "
+            "joint is its axis w and the velocity -w x p that it gives to the origin, that of a "
+            "prismatic joint its direction.  Differentiating the pose gives the same.",
+            {"J": self.geometric, "J_s": self.space, "J_b": self.body},
+            equal=[(self.geometric[:3, :], self.position.jacobian(q))]
+            + [(self.geometric[3:, :], self.space[3:, :])]
+            + [
+                pair
+                for i, joint in enumerate(q)
+                for pair in (
+                    (self.pose.diff(joint), twist_matrix(self.space[:, i]) * self.pose),
+                    (self.pose.diff(joint), self.pose * twist_matrix(self.body[:, i])),
+                )
+            ],
+        )
+        if task is None:
+            self._export_pose_task(d)
+        else:
+            self._export_coordinates(d, task)
+        for name, J, frame in (
+            ("jacobian_space", self.space, "the base frame"),
+            ("jacobian_body", self.body, "its own frame"),
+        ):
+            summary = f"Twist (v; omega) of the tool in {frame} per joint rate."
+            d.function(name, summary, {"q": q}, {"J": J})
+        return self.pose if task is None else task.values
+
+    def _export_pose_task(self, d: Derivation) -> None:
+        q = self.joints
+        if not d.task:
+            d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
+        d.function("fk", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
+        d.function(
+            "jacobian",
+            "Velocity of the tool over its angular velocity, in base axes, per joint rate.",
+            {"q": q},
+            {"J": self.geometric},
+            notes=("The geometric Jacobian: rows (v; omega), v of the origin of the tool.",),
+        )
+        if len(q) == 6:
+            self._export_determinant(d, self.determinant(), ())
+
+    def _export_coordinates(self, d: Derivation, task: Coordinates) -> None:
+        q, values = self.joints, list(task.values)
+        if not d.task:
+            d.task = list(task.names)
+        if "yaw" in task.names:
+            turn = values[-1]
+            d.step(
+                "Task coordinates",
+                "The joints turn the tool about z alone: its yaw is the direction of its x axis.",
+                {r"\psi": turn},
+                equal=[(self.pose[:2, 0], sp.Matrix([sp.cos(turn), sp.sin(turn)]))],
+            )
+            values[-1] = sp.atan2(sp.sin(turn), sp.cos(turn))
+        shown = ", ".join(task.names)
+        notes = ("The yaw is reduced to (-pi, pi].",) if "yaw" in task.names else ()
+        d.function("fk", f"Task coordinates ({shown}).", {"q": q}, {"x": values}, notes=notes)
+        d.function("jacobian", f"Derivative of ({shown}) by the joints.", {"q": q}, {"J": task.J})
+        det = _determinant(task.J)
+        check = [
+            (task.values.jacobian(q), task.J),
+            (task.J.det(method="berkowitz"), det),
+        ]
+        self._export_determinant(d, det, check)
+
+    def _export_determinant(
+        self, d: Derivation, det: sp.Expr, equal: Sequence[tuple[Any, Any]]
+    ) -> None:
+        q = self.joints
+        factors = joint_factors(det, q)
+        d.step(
+            "Determinant and singular set",
+            "The arm is singular exactly where a factor that holds a joint vanishes (for links "
+            "that have a length): the joints then cannot move the tool in some direction.",
+            {r"\det J": det},
+            equal=[*equal, (det, sp.cancel(det / sp.prod(factors)) * sp.prod(factors))],
+        )
+        d.function("determinant", "Determinant of the Jacobian.", {"q": q}, {"det": det})
+        summary = "The factors of the determinant that hold a joint."
+        d.function("singularities", summary, {"q": q}, {"factors": factors})
+        if len(d.singularities) != len(factors):
+            d.singularities = tuple(f"{f} = 0".replace("**", "^") for f in factors)
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """Task coordinates: their names, their values in the joints, and their derivative."""
+
+    names: tuple[str, ...]
+    values: sp.Matrix
+    J: sp.Matrix
+
+
+def joint_factors(det: sp.Expr, joints: Sequence[sp.Symbol]) -> list[sp.Expr]:
+    """The factors of a determinant that hold a joint, each once."""
+    return [f.as_base_exp()[0] for f in sp.Mul.make_args(det) if f.has(*joints)] or [det]
+
+
+def from_dh(
+    d: Derivation, rows: Sequence[Sequence[Any]], *, modified: bool = False, tool: Any = None
+) -> Serial:
+    """The chain of a Denavit-Hartenberg table with rows ``(a, alpha, d, theta)``.
+
+    The variable of a row is the joint that stands in it: in ``theta`` for a revolute joint, in
+    ``d`` for a prismatic one.  ``modified`` rows are Craig's (proximal).  ``tool`` is the pose of
+    the tool in the last frame.
+    """
+    for i, row in enumerate(rows, 1):
+        if len(row) != 4:
+            raise RowError(
+                f"{d.name}: row {i} of the Denavit-Hartenberg table has {len(row)} entries "
+                f"({', '.join(map(str, row))}); it needs 4: a, alpha, d, theta"
+            )
+    known = {p.symbol for p in d.parameters} | {j.symbol for j in d.joints}
+    joints = {j.symbol: j.kind for j in d.joints}
+    motions: list[tuple[sp.Symbol, str]] = []
+    for i, row in enumerate(rows, 1):
+        entries = [_exact(e, f"{d.name}: row {i} of the Denavit-Hartenberg table") for e in row]
+        unknown = sorted(map(str, {s for e in entries for s in e.free_symbols} - known))
+        if unknown:
+            raise RowError(
+                f"{d.name}: row {i} of the Denavit-Hartenberg table: the symbol {unknown[0]} is "
+                f"neither a parameter nor a joint; declare it with d.parameter or d.joint"
+            )
+        here = sorted({s for e in entries for s in e.free_symbols if s in joints}, key=str)
+        if len(here) != 1:
+            raise RowError(
+                f"{d.name}: row {i} of the Denavit-Hartenberg table must hold exactly one joint, "
+                f"not {', '.join(map(str, here)) or 'none'}"
+            )
+        place, kind = (entries[3], "theta") if joints[here[0]] == "revolute" else (entries[2], "d")
+        if not place.has(here[0]):
+            raise RowError(
+                f"{d.name}: row {i} of the Denavit-Hartenberg table: the {joints[here[0]]} joint "
+                f"{here[0]} must stand in the column {kind}"
+            )
+        motions.append((here[0], joints[here[0]]))
+    exact = [tuple(map(sp.sympify, row)) for row in rows]
+    moves = [
+        denavit_hartenberg(a, alpha, d_, theta, modified=modified) for a, alpha, d_, theta in exact
+    ]
+    lead = sp.eye(4)
+    if modified:  # cut before each rotation about z instead of before each one about x
+        lead = denavit_hartenberg(exact[0][0], exact[0][1], sp.S.Zero, sp.S.Zero)
+        following = [*(row[:2] for row in exact[1:]), (sp.S.Zero, sp.S.Zero)]
+        exact = [(*x, *row[2:]) for row, x in zip(exact, following, strict=True)]
+    last = sp.eye(4) if tool is None else sp.Matrix(tool)
+    rest = () if tool is None else (last,)
+    return _assembled(motions, _groups(exact, motions), lead, last, (*moves, *rest))
+
+
+def from_screws(
+    d: Derivation, axes: Sequence[tuple[sp.Symbol, Sequence[Any], Sequence[Any]]], home: Any
+) -> Serial:
+    """The chain of axes at home: ``(joint, direction, point)``, and the ``home`` pose of the tool.
+
+    A direction is a unit vector; the point of a prismatic joint does not matter.
+    """
+    kinds = {j.symbol: j.kind for j in d.joints}
+    motions: list[tuple[sp.Symbol, str]] = []
+    directions, points, moves = [], [], []
+    for i, (joint, direction, point) in enumerate(axes, 1):
+        where = f"{d.name}: axis {i}"
+        if joint not in kinds:
+            raise RowError(f"{where}: {joint} is not a joint; declare it with d.joint")
+        w = sp.Matrix([_exact(e, where) for e in direction])
+        at = sp.Matrix([_exact(e, where) for e in point])
+        if len(w) != 3 or len(at) != 3:
+            raise RowError(f"{where} needs a direction and a point of 3 coordinates each")
+        if sp.simplify(w.dot(w) - 1) != 0:
+            raise RowError(f"{where}: the direction ({', '.join(map(str, w))}) has no unit length")
+        revolute = kinds[joint] == "revolute"
+        twist = sp.Matrix([*at.cross(w), *w]) if revolute else sp.Matrix([*w, 0, 0, 0])
+        motions.append((joint, kinds[joint]))
+        directions.append(w)
+        points.append(at)
+        moves.append(exponential(twist, joint))
+    home = sp.Matrix(home)
+    frame = _frame_along(directions[0])
+    lead = homogeneous(frame, tuple(points[0]))
+    groups: list[Group] = []
+    current: list[Row] = []
+    for i, (joint, kind) in enumerate(motions):
+        sign = 1 if frame[:, 2] == directions[i] else -1
+        last = i == len(motions) - 1
+        step = frame.T * ((home[:3, 3] if last else points[i + 1]) - points[i])
+        slides = kind == "prismatic"
+        turn = sp.S.Zero if slides else sign * joint
+        shift = tuple(step + sp.Matrix([0, 0, sign * joint if slides else 0]))
+        current.append(Row(sign, turn, shift, slides))
+        if last or directions[i + 1] not in (frame[:, 2], -frame[:, 2]):
+            after = home[:3, :3] if last else _frame_along(directions[i + 1])
+            groups.append(Group(tuple(current), frame.T * after))
+            frame, current = after, []
+    return _assembled(motions, groups, lead, sp.eye(4), (*moves, home))
+
+
+def _frame_along(w: sp.Matrix) -> sp.Matrix:
+    """A rotation whose z is the unit vector ``w``."""
+    across = next(e for k in (0, 1) if (e := sp.eye(3)[:, k].cross(w)) != sp.zeros(3, 1))
+    x = across / sp.sqrt(across.dot(across))
+    if w == sp.Matrix([0, 0, 1]):
+        return sp.eye(3)
+    return sp.Matrix.hstack(x, w.cross(x), w)
+
+
+def _assembled(
+    motions: Sequence[tuple[sp.Symbol, str]],
+    groups: Sequence[Group],
+    lead: sp.Matrix,
+    last: sp.Matrix,
+    moves: tuple[sp.Matrix, ...],
+) -> Serial:
+    pose = lead
+    for group in groups:
+        pose = (pose * group.transform()).applyfunc(sp.expand)
+    places = [(k, j) for k, group in enumerate(groups) for j in range(len(group.rows))]
+    middle = min(
+        (
+            sp.Matrix.hstack(*(_seen_from(k, j, groups, cut) for k, j in places))
+            for cut in range(1, len(groups) + 1)
+        ),
+        key=sp.count_ops,
+    )
+    return Serial(
+        tuple(joint for joint, _ in motions),
+        reduce_circle((pose * last).applyfunc(sp.expand)),
+        sp.Matrix.hstack(*(_to_base(*groups[k].twist(j), groups[:k], lead) for k, j in places)),
+        sp.Matrix.hstack(*(_to_frame(k, j, groups, len(groups), last) for k, j in places)),
+        sp.Matrix.hstack(*(_at_tool(k, j, groups, lead, last) for k, j in places)),
+        moves,
+        middle,
+        tuple(groups),
+        lead,
+        last,
+    )
+
+
+class Row(NamedTuple):
+    """The sign of an axis along z, its turn, the shift to the next axis, and whether it slides."""
+
+    sign: int
+    turn: sp.Expr
+    shift: tuple[sp.Expr, ...]
+    slides: bool
+
+
+@dataclass(frozen=True)
+class Group:
+    """Consecutive joints with parallel axes, and the constant rotation that ends them.
+
+    What turns in a plane adds up, so no product of two sines of one group ever occurs.
+    """
+
+    rows: tuple[Row, ...]
+    end: sp.Matrix
+
+    def angle(self, start: int, stop: int | None = None) -> sp.Expr:
+        return sp.Add(*(row.turn for row in self.rows[start:stop]))
+
+    def span(self, start: int, stop: int | None = None, turned: sp.Expr = sp.S.Zero) -> sp.Matrix:
+        """From the axis ``start`` to the axis ``stop``, seen from a frame that is turned."""
+        total = sp.zeros(3, 1)
+        for i, row in list(enumerate(self.rows))[start:stop]:
+            total += rotation("z", self.angle(start, i + 1) - turned) * sp.Matrix(row.shift)
+        return total
+
+    @property
+    def rotation(self) -> sp.Matrix:
+        return rotation("z", self.angle(0)) * self.end
+
+    def transform(self) -> sp.Matrix:
+        return homogeneous(self.rotation, tuple(self.span(0)))
+
+    def twist(self, j: int) -> tuple[sp.Matrix, sp.Matrix]:
+        """The axis ``j`` in the frame where the group starts: angular and linear part."""
+        axis = sp.Matrix([0, 0, self.rows[j].sign])
+        if self.rows[j].slides:
+            return sp.zeros(3, 1), axis
+        return axis, self.span(0, j).cross(axis)
+
+    def twist_at_end(self, j: int) -> tuple[sp.Matrix, sp.Matrix]:
+        """The axis ``j`` in the frame where the group ends."""
+        axis, back = sp.Matrix([0, 0, self.rows[j].sign]), self.end.T
+        if self.rows[j].slides:
+            return sp.zeros(3, 1), back * axis
+        return back * axis, back * axis.cross(self.span(j, None, self.angle(j)))
+
+
+def _groups(
+    rows: Sequence[tuple[sp.Expr, ...]], motions: Sequence[tuple[sp.Symbol, str]]
+) -> list[Group]:
+    """The rows of a distal table by parallel axes; a half turn about x mirrors what follows."""
+    groups: list[Group] = []
+    current: list[Row] = []
+    sign = 1
+    for i, ((a, alpha, offset, theta), (_, kind)) in enumerate(zip(rows, motions, strict=True)):
+        shift = (a, sp.S.Zero, sign * offset)
+        current.append(Row(sign, sign * theta, shift, kind == "prismatic"))
+        flipped = alpha in (sp.pi, -sp.pi)
+        sign = -sign if flipped else sign
+        if i == len(rows) - 1 or not (flipped or alpha == 0):
+            total = (sp.S.Zero if flipped else alpha) + (sp.pi if sign < 0 else 0)
+            groups.append(Group(tuple(current), rotation("x", total)))
+            current, sign = [], 1
+    return groups
+
+
+def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[Group], lead: sp.Matrix) -> sp.Matrix:
+    """A twist in the frame where the ``groups`` end, in the base frame."""
+    for T in [*(group.transform() for group in reversed(groups)), lead]:
+        w, v = T[:3, :3] * w, T[:3, :3] * v
+        v = (v + T[:3, 3].cross(w)).applyfunc(sp.expand)
+    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
+
+
+def _to_frame(k: int, j: int, groups: Sequence[Group], cut: int, last: sp.Matrix) -> sp.Matrix:
+    """The axis ``j`` of group ``k`` where group ``cut`` starts, seen from the frame ``last``."""
+    w, v = groups[k].twist_at_end(j)
+    for group in groups[k + 1 : cut]:
+        back = group.rotation.T
+        w, v = back * w, back * (v + w.cross(group.span(0))).applyfunc(sp.expand)
+        w, v = w.applyfunc(sp.expand), v.applyfunc(sp.expand)
+    w, v = last[:3, :3].T * w, last[:3, :3].T * (v + w.cross(last[:3, 3]))
+    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
+
+
+def _at_tool(
+    k: int, j: int, groups: Sequence[Group], lead: sp.Matrix, last: sp.Matrix
+) -> sp.Matrix:
+    """The velocity that an axis gives to the tool, and the axis, in base axes."""
+    tool = last[:3, 3]
+    for group in reversed(groups[k + 1 :]):
+        tool = (group.rotation * tool + group.span(0)).applyfunc(sp.expand)
+    group = groups[k]
+    axis = sp.Matrix([0, 0, group.rows[j].sign])
+    w, v = axis, axis.cross(group.rotation * tool + group.span(0) - group.span(0, j))
+    if group.rows[j].slides:
+        w, v = sp.zeros(3, 1), axis
+    for R in [*(g.rotation for g in reversed(groups[:k])), lead[:3, :3]]:
+        w, v = (R * w).applyfunc(sp.expand), (R * v).applyfunc(sp.expand)
+    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
+
+
+def _seen_from(k: int, j: int, groups: Sequence[Group], cut: int) -> sp.Matrix:
+    """The axis ``j`` of group ``k`` where group ``cut`` starts, before or after it."""
+    if k < cut:
+        return _to_frame(k, j, groups, cut, sp.eye(4))
+    return _to_base(*groups[k].twist(j), groups[cut:k], sp.eye(4))
+
+
+def _exact(value: Any, where: str) -> sp.Expr:
+    if isinstance(value, float):
+        raise TypeError(
+            f"{where}: {value} is a float; write an integer or sympy.Rational('{value}')"
+        )
+    exact = sp.sympify(value)
+    if exact.atoms(sp.Float):
+        raise TypeError(
+            f"{where}: the float {sorted(exact.atoms(sp.Float), key=str)[0]} stands in {exact}; "
+            f"write an integer or sympy.Rational instead"
+        )
+    return exact
+
+
+def _determinant(J: sp.Matrix) -> sp.Expr:
+    """Over the polynomials in sines and cosines, reduced on their circles, factored."""
+    det = _polynomial_determinant(J)
+    reduced = normal(det)
+    found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
+    return found
+
+
+def _polynomial_determinant(J: sp.Matrix) -> sp.Expr:
+    matrix = DomainMatrix.from_Matrix(J.applyfunc(sp.expand))
+    return matrix.domain.to_sympy(matrix.charpoly()[-1]) * (-1) ** J.rows
+
+
+__all__ = [
+    "Coordinates",
+    "Group",
+    "Row",
+    "RowError",
+    "Serial",
+    "from_dh",
+    "from_screws",
+    "joint_factors",
+]

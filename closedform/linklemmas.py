@@ -1,0 +1,430 @@
+"""The lemmas of :mod:`closedform.lemmas` as links of a chain: each hands its joint on as a pair.
+
+The first argument is the :class:`~closedform.chain.Chain`; coefficients that are no symbols get
+names, so that a lemma is proved for all values of them.  Boundary and degenerate cases are as in
+:mod:`closedform.lemmas`: products of differences under the roots, ``atan2`` at the output, a
+convention where a joint is free.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from closedform.derivation import Degenerate
+from closedform.functions import choose, real
+from closedform.lemmas import Lemma
+from closedform.shapes import ShapeError
+from closedform.solutions import rotation_parametrisation
+
+if TYPE_CHECKING:
+    from closedform.chain import Chain, Choice
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The sine and the cosine of an angle."""
+
+    s: sp.Expr
+    c: sp.Expr
+
+    @property
+    def angle(self) -> sp.Expr:
+        return sp.atan2(self.s, self.c)
+
+    def __add__(self, other: Pair) -> Pair:
+        return Pair(self.s * other.c + self.c * other.s, self.c * other.c - self.s * other.s)
+
+    def __neg__(self) -> Pair:
+        return Pair(-self.s, self.c)
+
+
+def turned(pair: Pair) -> sp.Matrix:
+    """The rotation about z by the angle of a pair."""
+    return sp.Matrix([[pair.c, -pair.s, 0], [pair.s, pair.c, 0], [0, 0, 1]])
+
+
+@dataclass(frozen=True)
+class Applied:
+    """A lemma applied: what it hands on, and what the names it made stand for."""
+
+    lemma: Lemma
+    result: Any
+    means: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    degenerate: tuple[Degenerate, ...] = ()
+
+
+def label(angle: sp.Symbol) -> str:
+    return str(angle.name).removeprefix("theta")
+
+
+def named(chain: Chain, angle: sp.Symbol, pair: Pair) -> tuple[Pair, dict[sp.Symbol, sp.Expr]]:
+    """The pair, named ``s`` and ``c`` with the number of the joint, and what the names mean."""
+    s = chain.program.let(f"s{label(angle)}", pair.s)
+    c = chain.program.let(f"c{label(angle)}", pair.c)
+    return Pair(s, c), {s: sp.sin(angle), c: sp.cos(angle)}
+
+
+def turn(
+    chain: Chain,
+    x: sp.Symbol,
+    a: sp.Expr,
+    b: sp.Expr,
+    c: sp.Expr,
+    choice: Choice,
+    *,
+    name: str = "",
+) -> Applied:
+    """``a sin x + b cos x = c``: both solutions.  x is free where ``a = b = c = 0``."""
+    p, tag = chain.program, name or label(x)
+    sigma = chain.sign(tag, choice)
+    h = p.let(f"h{tag}", sp.sqrt(a**2 + b**2), nonnegative=True)
+    half = chain.size / 2  # what is clamped stays well within the round trip that is promised
+    below = p.bound(f"below{tag}", h - c, half, "the amplitude is not smaller than c")
+    above = p.bound(f"above{tag}", h + c, half, "the amplitude is not smaller than -c")
+    flag = p.vanishes(f"free{tag}", h, chain.size, f"the axis of {x.name} is met", free=(x,))
+    root = p.let(f"root{tag}", sp.sqrt(below) * sp.sqrt(above), nonnegative=True)
+    width = p.let(f"width{tag}", below + above, nonnegative=True)
+    away = Pair(2 * sigma * root / width, (above - below) / width)
+    both = Pair(a / h, b / h) + away
+    pair, means = named(chain, x, Pair(choose(flag, 0, both.s), choose(flag, 1, both.c)))
+    coefficients = sorted({s for e in (a, b, c) for s in e.free_symbols}, key=str)
+    lemma = Lemma(
+        "a sin x + b cos x = c",
+        r"a\sin x + b\cos x = c \;\Rightarrow\; x = \operatorname{atan2}(a, b) + \sigma\delta,\ "
+        r"(\cos\delta, \sin\delta) = \frac{(c, \sqrt{(h - c)(h + c)})}{h},\ h = \sqrt{a^2+b^2}",
+        (a * sp.sin(x) + b * sp.cos(x) - c,),
+        {x: pair.angle},
+        2,
+    )
+    free = Degenerate(
+        (flag,),
+        dict.fromkeys(coefficients, sp.S.Zero),
+        x,
+        f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned.",
+    )
+    return Applied(lemma, pair, means, {}, (free,))
+
+
+def two_links(
+    chain: Chain,
+    first: sp.Symbol,
+    second: sp.Symbol,
+    x: sp.Expr,
+    y: sp.Expr,
+    l1: sp.Expr,
+    l2: sp.Expr,
+    choice: Choice,
+    *,
+    scale: sp.Expr | None = None,
+    name: str = "elbow",
+) -> Applied:
+    """The planar two-link arm: ``l1 u(first) + l2 u(first + second) = (x, y)``, two elbows.
+
+    ``u`` is the unit vector at an angle.  With the factors S, A, B, C of Heron's formula
+
+        (cos, sin)(second) = (BC - SA, 2 sigma sqrt(SABC)) / (BC + SA),
+
+    and first is the direction of (x, y) less the angle at the base of the triangle.  ``scale`` is
+    the size of what x and y are differences of, by default that of the whole arm.
+    """
+    p, scale = chain.program, chain.size if scale is None else scale
+    sigma = chain.sign(name, choice)
+    r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
+    half = scale / 2  # what is clamped stays well within the round trip that is promised
+    S = p.let(f"S_{name}", l1 + l2 + r, nonnegative=True)
+    A = p.bound(f"A_{name}", l1 + l2 - r, half, "nearer than full stretch")
+    B = p.bound(f"B_{name}", r + l1 - l2, half, "farther than the fold")
+    C = p.bound(f"C_{name}", r - l1 + l2, half, "farther than the fold")
+    no_link = p.vanishes(
+        f"no_link_{name}", l1 * l2, (l1 + l2) ** 2, "a link has no length", free=(second,)
+    )
+    folded = p.vanishes(
+        f"folded_{name}", r, scale, f"the arm ends on the axis of {first}", free=(first,)
+    )
+    root = p.let(
+        f"area_{name}", 2 * sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C), nonnegative=True
+    )
+    at_elbow = p.let(f"sum_{name}", B * C + S * A, nonnegative=True)
+    at_base = p.let(f"width_{name}", S * B + A * C, nonnegative=True)
+    bend, means = named(
+        chain,
+        second,
+        Pair(
+            choose(no_link, 0, sigma * root / at_elbow),
+            choose(no_link, 1, (B * C - S * A) / at_elbow),
+        ),
+    )
+    off = Pair(
+        choose(no_link, 0, sigma * root / at_base), choose(no_link, 1, (S * B - A * C) / at_base)
+    )
+    off = Pair(p.let(f"s_base_{name}", off.s), p.let(f"c_base_{name}", off.c))
+    bearing = Pair(y / r, x / r) + -off
+    lift, more = named(
+        chain, first, Pair(choose(folded, 0, bearing.s), choose(folded, 1, bearing.c))
+    )
+    lemma = Lemma(
+        "two-link arm",
+        r"l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y) \;\Rightarrow\; "
+        r"(\cos\varphi, \sin\varphi) = \frac{(BC - SA,\ 2\sigma\sqrt{SABC})}{BC + SA},\ "
+        r"\theta = \operatorname{atan2}(y, x) - \alpha,\quad "
+        r"(\cos\alpha, \sin\alpha) = \frac{(SB - AC,\ 2\sigma\sqrt{SABC})}{SB + AC}",
+        (
+            l1 * sp.cos(first) + l2 * sp.cos(first + second) - x,
+            l1 * sp.sin(first) + l2 * sp.sin(first + second) - y,
+        ),
+        {first: lift.angle, second: bend.angle},
+        2,
+    )
+    cases = []
+    if x.is_Symbol and y.is_Symbol:
+        toward = real("beta")
+        if l2.is_Symbol and l1 != l2:
+            cases.append(
+                Degenerate(
+                    (folded,),
+                    {x: sp.S.Zero, y: sp.S.Zero, l2: l1},
+                    first,
+                    f"equal links folded onto the axis of {first}, which is free; 0 is returned.",
+                )
+            )
+            reached = {x: l1 * sp.cos(toward), y: l1 * sp.sin(toward), l2: sp.S.Zero}
+            cases.append(
+                Degenerate(
+                    (no_link,), reached, second, f"a link without length: {second} is free; 0."
+                )
+            )
+    return Applied(lemma, (lift, bend), means | more, {}, tuple(cases))
+
+
+def polar(
+    chain: Chain,
+    angle: sp.Symbol,
+    length: sp.Symbol,
+    x: sp.Expr,
+    y: sp.Expr,
+    choice: Choice | None,
+    *,
+    name: str = "side",
+) -> Applied:
+    """``length u(angle) = (x, y)``: the length has either sign, or with no ``choice`` is positive.
+
+    ``length`` is a prismatic joint or an auxiliary length.  The angle is free where it vanishes.
+    """
+    p = chain.program
+    sigma = chain.sign(name, choice) if choice else sp.S.One
+    r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
+    flag = p.vanishes(f"on_axis_{name}", r, chain.size, f"the axis of {angle} is met", (angle,))
+    pair, means = named(
+        chain, angle, Pair(choose(flag, 0, sigma * y / r), choose(flag, 1, sigma * x / r))
+    )
+    value = p.let(f"{length.name}_{name}", sigma * r)
+    lemma = Lemma(
+        "polar coordinates",
+        r"\rho\,u(\theta) = (x, y) \;\Rightarrow\; \rho = \sigma\sqrt{x^2 + y^2},\ "
+        r"\theta = \operatorname{atan2}(\sigma y, \sigma x)",
+        (length * sp.cos(angle) - x, length * sp.sin(angle) - y),
+        {angle: pair.angle, length: value},
+        2 if choice else 1,
+        excluded=0 if choice else 1,
+    )
+    free = Degenerate(
+        (flag,),
+        {s: sp.S.Zero for e in (x, y) for s in e.free_symbols},
+        angle,
+        f"the axis of {angle} is met; {angle} is free, 0 is returned.",
+    )
+    return Applied(lemma, (pair, value), means | {value: length}, {}, (free,))
+
+
+def slide(chain: Chain, joint: sp.Symbol, value: sp.Expr) -> Applied:
+    """``joint = value``: a prismatic joint along the direction of a coordinate."""
+    lemma = Lemma("slide", r"d = z", (joint - value,), {joint: value}, 1)
+    return Applied(lemma, value)
+
+
+def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
+    """``joint = total``, an angle: what the earlier joints leave of an angle of the target.
+
+    It is read from the sine and the cosine of the sum, which needs no reduction.
+    """
+    pair = chain.pair_of(total)
+    if pair is None:
+        raise ShapeError(
+            f"{chain.d.name}: {joint} = {total} must be a sum of solved angles and angles of the "
+            f"target, each once"
+        )
+    lemma = Lemma(
+        "remaining angle",
+        r"\theta = \psi - \varphi",
+        (sp.cos(joint) - sp.cos(total), sp.sin(joint) - sp.sin(total)),
+        {joint: pair.angle},
+        1,
+    )
+    return Applied(lemma, total, {}, dict(chain.meaning))
+
+
+def zyz(
+    chain: Chain,
+    R: sp.Matrix,
+    first: sp.Symbol,
+    middle: sp.Symbol,
+    last: sp.Symbol,
+    choice: Choice,
+    *,
+    reaching: Reaching | None = None,
+    name: str = "wrist",
+) -> Applied:
+    """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
+
+    The last angle is read from the rotation that the first leaves, which keeps the product exact
+    near ``middle = 0``.  There only ``first + last`` or ``first - last`` is determined; first is 0,
+    or what keeps the rest of the arm within reach.
+    """
+    p = chain.program
+    sigma = chain.sign(name, choice)
+    h = p.let(f"h_{name}", sp.sqrt(R[0, 2] ** 2 + R[1, 2] ** 2), nonnegative=True)
+    free = next((a for a in (first, last) if a in chain.joints), None)
+    if free is None:
+        free = next(j for j in chain.joints if chain.defined[last].has(j))
+    aligned = p.vanishes(
+        f"aligned_{name}", h, 16, "the first and the last axis are parallel", free=(free,)
+    )
+    raw = Pair(sigma * R[1, 2] / h, sigma * R[0, 2] / h)
+    start, unit, near = Pair(sp.S.Zero, sp.S.One), {}, None
+    if reaching is not None:
+        raw = Pair(
+            p.let(f"s_{first}", choose(aligned, 0, raw.s)),
+            p.let(f"c_{first}", choose(aligned, 1, raw.c)),
+        )
+        start = reaching.middle() + Pair(-reaching.ahead.s, reaching.ahead.c)
+        near, moved = reaching.moved(raw + reaching.ahead, h)
+        off = moved + Pair(-reaching.ahead.s, reaching.ahead.c)
+        start = Pair(p.let("s_start", start.s), p.let("c_start", start.c))
+        off = Pair(p.let("s_off", off.s), p.let("c_off", off.c))
+        raw = Pair(choose(near, off.s, raw.s), choose(near, off.c, raw.c))
+        t = real("t")
+        unit = {start.s: sp.sin(t), start.c: sp.cos(t), off.s: sp.sin(t), off.c: sp.cos(t)}
+    pair, means = named(
+        chain, first, Pair(choose(aligned, start.s, raw.s), choose(aligned, start.c, raw.c))
+    )
+    s, c = pair.s, pair.c
+    lemma = Lemma(
+        "ZYZ angles",
+        r"(c_1, s_1) = \sigma (R_{13}, R_{23})/h,\ h = \sqrt{R_{13}^2 + R_{23}^2};\quad "
+        r"\theta_2 = \operatorname{atan2}(c_1 R_{13} + s_1 R_{23}, R_{33});\quad "
+        r"\theta_3 = \operatorname{atan2}(c_1 R_{21} - s_1 R_{11}, c_1 R_{22} - s_1 R_{12})",
+        tuple(
+            sp.Matrix(
+                [[sp.cos(first), sp.sin(first), 0], [-sp.sin(first), sp.cos(first), 0], [0, 0, 1]]
+            )
+            * R
+            - sp.Matrix(
+                [
+                    [sp.cos(middle) * sp.cos(last), -sp.cos(middle) * sp.sin(last), sp.sin(middle)],
+                    [sp.sin(last), sp.cos(last), 0],
+                    [-sp.sin(middle) * sp.cos(last), sp.sin(middle) * sp.sin(last), sp.cos(middle)],
+                ]
+            )
+        ),
+        {
+            first: pair.angle,
+            middle: sp.atan2(c * R[0, 2] + s * R[1, 2], R[2, 2]),
+            last: sp.atan2(c * R[1, 0] - s * R[0, 0], c * R[1, 1] - s * R[0, 1]),
+        },
+        2,
+    )
+    given = dict(zip(R, rotation_parametrisation(), strict=True))
+    cases = [
+        Degenerate(
+            (flag,),
+            dict(zip(R, turned, strict=True)) | unit,
+            free if flag == aligned else None,
+            f"the first and the last axis of the wrist are parallel; {free} is free.",
+        )
+        for flag in (aligned, near)
+        if flag is not None
+        for turned in _aligned(real("psi"))
+    ]
+    return Applied(lemma, pair, means, given, tuple(cases))
+
+
+def _aligned(psi: sp.Symbol) -> tuple[sp.Matrix, sp.Matrix]:
+    s, c = sp.sin(psi), sp.cos(psi)
+    return (
+        sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]]),
+        sp.Matrix([[-c, s, 0], [s, c, 0], [0, 0, -1]]),
+    )
+
+
+@dataclass(frozen=True)
+class Reaching:
+    """Directions u for which ``(x, y) - offset u`` is within reach of two links.
+
+    Where the target does not determine u, or only as far as rounding goes, the reach decides:
+    else a pose at a singular wrist could come back without a solution although it has one.
+    """
+
+    chain: Chain
+    x: sp.Expr
+    y: sp.Expr
+    offset: sp.Expr
+    l1: sp.Expr
+    l2: sp.Expr
+    ahead: Pair
+    """How far u is turned ahead of the angle that is solved for."""
+
+    def _at(self, reach: sp.Expr, side: sp.Expr, name: str) -> Pair:
+        """The direction for a reach, by the cosine rule in half angles, to one side of (x, y)."""
+        p, r, e = self.chain.program, self._r, self.offset
+        cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)
+        ss = p.let(f"d_{name}", sp.Max(0, (reach - r + e) * (reach + r - e)), nonnegative=True)
+        total = p.let(f"n_{name}", cc + ss, nonnegative=True)
+        any_turn = p.vanishes(f"any_{name}", total, self.chain.size**2, "the turn has no effect")
+        cosine = p.let(f"uc_{name}", choose(any_turn, 1, (cc - ss) / total))
+        sine = p.let(
+            f"us_{name}", choose(any_turn, 0, 2 * side * sp.sqrt(cc) * sp.sqrt(ss) / total)
+        )
+        at_hub = p.vanishes(f"hub_{name}", r, self.chain.size, "the turn has no effect")
+        s = p.let(f"s_{name}", choose(at_hub, 0, (self.y * cosine + self.x * sine) / r))
+        c = p.let(f"c_{name}", choose(at_hub, 1, (self.x * cosine - self.y * sine) / r))
+        self.chain.units.append((s, c, (cc, ss, side)))
+        return Pair(s, c)
+
+    @cached_property
+    def _r(self) -> sp.Expr:
+        return self.chain.program.let("r_hub", sp.sqrt(self.x**2 + self.y**2), nonnegative=True)
+
+    def middle(self) -> Pair:
+        """Of the distances that the turning offset allows, the middle of those in reach."""
+        p, r = self.chain.program, self._r
+        nearest = p.let("nearest", sp.Max(sp.Abs(self.l1 - self.l2), sp.Abs(r - self.offset)))
+        farthest = p.let("farthest", sp.Min(self.l1 + self.l2, r + self.offset))
+        return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
+
+    def moved(self, u: Pair, play: sp.Expr) -> tuple[sp.Symbol, Pair]:
+        """The nearest direction in reach, and a flag: it differs by less than rounding makes.
+
+        ``play`` is what multiplies an error of u in the target.
+        """
+        p = self.chain.program
+        ex, ey = self.x - self.offset * u.c, self.y - self.offset * u.s
+        there = p.let("here", sp.sqrt(ex**2 + ey**2))
+        reach = p.let(
+            "in_reach", sp.Min(sp.Max(there, sp.Abs(self.l1 - self.l2)), self.l1 + self.l2)
+        )
+        cross = p.let("cross", self.x * u.s - self.y * u.c)
+        flat = p.vanishes("flat", sp.Abs(cross), self.chain.size, "the offset is in line")
+        side = choose(flat, 1, cross / sp.Abs(cross))
+        v = self._at(reach, p.let("side", side), "near")
+        inside = p.vanishes("inside", sp.Abs(reach - there), self.chain.size, "it is in reach")
+        change = sp.sqrt((v.c - u.c) ** 2 + (v.s - u.s) ** 2)
+        near = p.vanishes("within_rounding", play * change, 4, "the turn is free within rounding")
+        return near, Pair(
+            p.let("s_moved", choose(inside, u.s, v.s)), p.let("c_moved", choose(inside, u.c, v.c))
+        )

@@ -1,0 +1,500 @@
+"""Proposes the chain of lemmas for arms of known structure, as the lines that one would write.
+
+What is recognised is geometry alone: which axes are parallel, meet or are normal to each other.
+The lines apply the lemmas of :mod:`closedform.linklemmas` to a :class:`~closedform.chain.Chain`;
+the engineer accepts or edits them, and the proof decides.  Known are
+
+- planar arms of two or three revolute joints, also with a slide along their axes (SCARA);
+- gantries (three slides) and cylindrical arms (a turn, a slide along it, a slide across);
+- a turret with two parallel joints, or with a joint and a slide (polar arm), and their offsets;
+- these three-joint arms with a spherical wrist;
+- a turret, three parallel joints and two more that are normal to each other (UR).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+from sympy.printing.str import StrPrinter
+
+from closedform.arm import Group, Serial
+from closedform.frames import rotation
+
+Z = sp.Matrix([0, 0, 1])
+NAMES = ("Matrix", "Rational", "atan", "atan2", "cos", "pi", "sin", "sqrt")
+"""What the lines use of SymPy."""
+
+
+class NoChainError(ValueError):
+    """No chain of lemmas is known for an arm, and why."""
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """The structure that was recognised, and the lines that solve the arm with ``ik`` a Chain."""
+
+    structure: str
+    lines: tuple[str, ...]
+    lemmas: tuple[str, ...]
+
+    @property
+    def source(self) -> str:
+        return "\n".join(self.lines) + "\n"
+
+    def apply(self, ik: Any) -> None:
+        """Run the lines, for the chain ``ik``; what is wrong with them the proof finds."""
+        from closedform import linklemmas
+
+        names: dict[str, Any] = {
+            **{s.name: s for s in (*(p.symbol for p in ik.d.parameters), *ik.joints)},
+            **{n: getattr(linklemmas, n) for n in (*self.lemmas, "Pair", "turned", "Reaching")},
+            **{n: getattr(sp, n) for n in NAMES},
+            "ik": ik,
+        }
+        exec(compile(self.source, "proposal", "exec"), names)
+
+
+class _Source(StrPrinter):  # type: ignore[misc]
+    """Expressions as Python; a fraction of integers stays exact."""
+
+    def _print_Rational(self, expr: Any) -> str:
+        return f"Rational({expr.p}, {expr.q})"
+
+    def _print_MatrixBase(self, expr: Any) -> str:
+        rows = [[self._print(e) for e in expr.row(i)] for i in range(expr.rows)]
+        return "Matrix([" + ", ".join(f"[{', '.join(row)}]" for row in rows) + "])"
+
+
+def source(e: Any) -> str:
+    text: str = _Source().doprint(sp.sympify(e))
+    return text
+
+
+def propose(arm: Serial) -> Proposal:
+    """The chain for an arm; raises :class:`NoChainError` where none is known."""
+    maker = _Maker(arm)
+    structure = maker.whole()
+    return Proposal(structure, tuple(maker.lines), tuple(dict.fromkeys(maker.used)))
+
+
+@dataclass
+class _Maker:
+    """Writes lines; a vector is known by its name, and a rotation by the names of its pairs."""
+
+    arm: Serial
+    lines: list[str] = field(default_factory=list)
+    used: list[str] = field(default_factory=list)
+    count: int = 0
+
+    def whole(self) -> str:
+        groups, task = [_plain(group) for group in self.arm.groups], self.arm.coordinates()
+        if task is None and len(self.arm.joints) == 6:
+            return self._pose(groups)
+        if task is None:
+            raise NoChainError(
+                f"no chain is known for {len(self.arm.joints)} joints whose task is the pose"
+            )
+        if "yaw" in task.names:
+            return self._level(groups, task.names)
+        if task.names == ("x", "y"):
+            self._require(len(groups) == 1, "the axes of a planar arm are parallel")
+            return self._planar(groups[0], task.names)
+        if task.names != ("x", "y", "z"):
+            raise NoChainError(f"no chain is known for the task {', '.join(task.names)}")
+        self.add("p = Matrix(ik.x)")
+        self._lead_away("p")
+        tool = groups[-1].end * self.arm.last[:3, 3]
+        last = groups[-1].rows[-1]
+        moved = tuple(sp.Matrix(last.shift) + tool)
+        groups[-1] = Group((*groups[-1].rows[:-1], last._replace(shift=moved)), groups[-1].end)
+        structure, _ = self._position(groups)
+        return structure
+
+    def add(self, line: str) -> None:
+        self.lines.append(line)
+
+    def solve(self, lemma: str, arguments: str, result: str = "") -> None:
+        self.used.append(lemma)
+        self.add(f"{result + ' = ' if result else ''}ik.solve({lemma}, {arguments})")
+
+    def _require(self, condition: bool, what: str) -> None:
+        if not condition:
+            raise NoChainError(f"no chain is known for this arm: {what}")
+
+    def _lead_away(self, vector: str) -> None:
+        R, p = self.arm.lead[:3, :3], self.arm.lead[:3, 3]
+        if not (p.is_zero_matrix and (R - sp.eye(3)).is_zero_matrix):
+            self.add(
+                f"{vector} = ik.vector('{vector}0', {_times(R.T, f'({vector} - {source(p)})')})"
+            )
+
+    # Planar arms
+
+    def _links(self, group: Group, turns: Sequence[int]) -> list[sp.Matrix]:
+        """The plane vectors from each turning axis to the next, and from the last to the end."""
+        vectors = []
+        for k, i in enumerate(turns):
+            stop = turns[k + 1] if k + 1 < len(turns) else len(group.rows)
+            shifts = (sp.Matrix(row.shift[:2]) for row in group.rows[i:stop])
+            vectors.append(sum(shifts, sp.zeros(2, 1)))
+        return vectors
+
+    def _two_links(
+        self, joints: Sequence[Any], vectors: Sequence[Any], x: str, y: str, alone: bool = False
+    ) -> None:
+        """Joints, with their signs, and link vectors; the names of what is to be reached.
+
+        Where this is a target as it is, the links are ``alone`` the scale of its rounding.
+        """
+        (first, second), (u, v) = joints, vectors
+        lengths = [_length(w) for w in (u, v)]
+        self._require(0 not in lengths, "a link of the plane arm has no length")
+        at = [sp.atan2(w[1], w[0]) for w in (u, v)]
+        a = self.angle(first + at[0])
+        b = self.angle(second + at[1] - at[0])
+        more = f", scale={source(sum(lengths))}" if (x, y) == ("x", "y") and alone else ""
+        names = []
+        for i, value in enumerate(lengths, 1):
+            if not value.is_Symbol:
+                self.add(f"link{i} = ik.program.let('link{i}', {source(value)}, nonnegative=True)")
+            names.append(source(value) if value.is_Symbol else f"link{i}")
+        arguments = f"{a}, {b}, {x}, {y}, {', '.join(names)}"
+        self.solve("two_links", f"{arguments}, {{+1: 'up', -1: 'down'}}{more}", f"{a}_, {b}_")
+        self.pairs = (f"{a}_", f"{b}_")
+
+    def angle(self, value: Any) -> str:
+        """A joint, or a name for a joint with an offset or a sign."""
+        value = sp.expand(value)
+        if value.is_Symbol:
+            return str(value)
+        self.count += 1
+        name = f"alpha{self.count}"
+        self.add(f"{name} = ik.angle('{name}', {source(value)})")
+        return name
+
+    def _planar(self, group: Group, names: Sequence[str]) -> str:
+        turns = [i for i, row in enumerate(group.rows) if not row.slides]
+        self._require(len(turns) == 2, "two revolute joints")
+        self._require(turns[0] == 0 and self._plain_lead(), "the first axis is that of z")
+        vectors = self._links(group, turns)
+        self._tool(group, vectors)
+        self.add("x, y = ik.x[0], ik.x[1]")
+        self._two_links([group.rows[i].turn for i in turns], vectors, "x", "y", alone=True)
+        return "planar arm of two links"
+
+    def _plain_lead(self) -> bool:
+        return bool(self.arm.lead[:3, :3] == sp.eye(3) and self.arm.lead[:2, 3] == sp.zeros(2, 1))
+
+    def _tool(self, group: Group, vectors: list[sp.Matrix]) -> None:
+        """The tool is carried by the last link."""
+        vectors[-1] = vectors[-1] + (group.end * self.arm.last[:3, 3])[:2, 0]
+
+    def _level(self, groups: Sequence[Group], names: Sequence[str]) -> str:
+        """Arms that turn about one axis: two links and a yaw, with or without a slide."""
+        self._require(len(groups) == 1, "all axes are parallel")
+        self._require(self._plain_lead(), "the axes are along z, the first through the origin")
+        (group,) = groups
+        rows = group.rows
+        turns = [i for i, row in enumerate(rows) if not row.slides]
+        slides = [i for i, row in enumerate(rows) if row.slides]
+        self._require(len(turns) == 3 and len(slides) < 2, "three turns and at most one slide")
+        vectors = self._links(group, turns)
+        self._tool(group, vectors)
+        self.add(f"{', '.join(names)} = ik.x")
+        yaw = self.arm.coordinates().values[-1]  # type: ignore[union-attr]
+        joints = [rows[i].turn for i in turns]
+        total = sum(joints)
+        away, x, y = vectors[2], "x", "y"
+        if away != sp.zeros(2, 1):
+            # the last link is at the angle of the yaw, up to a constant
+            x_, y_, yaw_ = sp.symbols("x y yaw")
+            carried = rotation("z", yaw_ + sp.simplify(total - yaw)) * sp.Matrix([*away, 0])
+            self.add(f"wx = ik.let('wx', {source(x_ - carried[0])})")
+            self.add(f"wy = ik.let('wy', {source(y_ - carried[1])})")
+            x, y = "wx", "wy"
+        self._two_links(joints[:2], vectors[:2], x, y, alone=x == "x")
+        for i in slides:
+            symbol = _symbol(self.arm, rows, i)
+            (value,) = sp.solve(self.arm.position[2] - sp.Symbol("z", real=True), symbol)
+            self.solve("slide", f"{symbol}, {source(value)}")
+        last = _only(joints[2].free_symbols & set(self.arm.joints))
+        (value,) = sp.solve(yaw - sp.Symbol("yaw", real=True), last)
+        self.solve("remainder", f"{last}, {source(value)}")
+        return "planar arm of two links and a yaw" + (", with a slide (SCARA)" if slides else "")
+
+    # Arms of three joints that carry a point
+
+    def _position(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
+        """Solve for the joints that carry the point ``p``; the pairs by which each group turns."""
+        kinds = ["".join("P" if row.slides else "R" for row in g.rows) for g in groups]
+        if kinds == ["P", "P", "P"]:
+            return self._gantry(groups)
+        if kinds[:1] == ["R"] and kinds[1:] in (["RR"], ["R", "P"]):
+            return self._turret(groups, kinds)
+        if kinds in (["RP", "P"], ["PR", "P"]):
+            return self._cylinder(groups)
+        raise NoChainError(
+            f"no chain is known for the axes {' | '.join(kinds)} (R turns, P slides, | where the "
+            "direction changes) in this geometry"
+        )
+
+    def _gantry(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
+        joints = self.arm.joints[:3]
+        at, R = sp.zeros(3, 1), sp.eye(3)
+        for group in groups:
+            at, R = at + R * sp.Matrix(group.rows[0].shift), R * group.end
+        solved = sp.solve(list(at - _at("p")), joints, dict=True)
+        self._require(
+            len(solved) == 1 and set(solved[0]) == set(joints), "the three slides are independent"
+        )
+        for joint in joints:
+            self.solve("slide", f"{joint}, {source(solved[0][joint])}")
+        return "gantry", ["", "", ""]
+
+    def _cylinder(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
+        base, arm = groups
+        turn = next(row for row in base.rows if not row.slides)
+        slide = next(i for i, row in enumerate(base.rows) if row.slides)
+        direction = base.end * Z
+        offset = sum((sp.Matrix(row.shift) for row in base.rows), sp.zeros(3, 1))
+        offset += base.end * sp.Matrix(arm.rows[0].shift)
+        self._require(direction[2] == 0, "the second slide is normal to the axis")
+        along, across, up = direction.dot(offset), Z.cross(direction).dot(offset), offset[2]
+        self._require(sp.simplify(across) == 0, "the second slide meets the axis")
+        lift, reach = (
+            _symbol(self.arm, base.rows, slide),
+            _only(along.free_symbols & set(self.arm.joints)),
+        )
+        a = self.angle(turn.turn + sp.atan2(direction[1], direction[0]))
+        length = self.length(along, reach)
+        self.solve("polar", f"{a}, {length}, p[0], p[1], {{+1: 'front', -1: 'back'}}", f"{a}_, _")
+        self._length_back(length, along, reach)
+        (value,) = sp.solve(up - _at("p")[2], lift)
+        self.solve("slide", f"{lift}, {source(value)}")
+        return "cylindrical arm", [self._less(f"{a}_", direction), ""]
+
+    def length(self, value: Any, joint: Any) -> str:
+        value = sp.simplify(value)
+        if value == joint:
+            return str(joint)
+        self.add(f"rho = ik.length('rho', {source(value)})")
+        return "rho"
+
+    def _length_back(self, length: str, value: Any, joint: Any) -> None:
+        if length != str(joint):
+            (solved,) = sp.solve(value - sp.Symbol("rho", real=True), joint)
+            self.solve("slide", f"{joint}, {source(solved)}")
+
+    def _less(self, pair: str, v: Any) -> str:
+        """The pair without the direction of ``v``, which the auxiliary angle had as an offset."""
+        length = _length(sp.Matrix(v[:2]))
+        c, s = v[0] / length, v[1] / length
+        if s == 0 and c == 1:
+            return pair
+        return f"({pair} + Pair({source(-s)}, {source(c)}))"
+
+    def _turret(self, groups: Sequence[Group], kinds: Sequence[str]) -> tuple[str, list[str]]:
+        base, second = groups[0], groups[1]
+        normal = base.end * Z
+        self._require(normal[2] == 0, "the second axis is normal to the first")
+        beside = sum((row.shift[2] for row in second.rows), sp.S.Zero)
+        if kinds[1:] == ["R", "P"]:
+            along = second.end * sp.Matrix(groups[2].rows[0].shift)
+            self._require((second.end * Z)[2] == 0, "the slide is normal to the second axis")
+            beside += along[2]
+        pair1 = self._turn_base(base, beside)
+        if kinds[1:] == ["RR"]:
+            turns = [row.turn for row in second.rows]
+            self._two_links(turns, self._links(second, [0, 1]), "q[0]", "q[1]")
+            v = self._links(second, [0, 1])[1]
+            both = f"({self.pairs[0]} + {self.pairs[1]})"
+            pair2 = self._less(both, v)
+            return "turret and two parallel joints", [pair1, pair2]
+        first = sp.Matrix(second.rows[0].shift[:2])
+        out = first + along[:2, 0]
+        direction = second.end * Z
+        length = sp.Matrix(direction[:2]).dot(out)
+        sideways = sp.simplify(direction[0] * out[1] - direction[1] * out[0])
+        self._require(sideways == 0, "the slide meets the second axis")
+        slide = self.arm.joints[2]
+        offset = sp.atan2(direction[1], direction[0])
+        a = self.angle(second.rows[0].turn + offset)
+        name = self.length(length, slide)
+        self.solve(
+            "polar",
+            f"{a}, {name}, q[0], q[1], {{+1: 'front', -1: 'back'}}, name='slide'",
+            f"{a}_, _",
+        )
+        self._length_back(name, length, slide)
+        return "turret, a joint and a slide (polar arm)", [
+            pair1,
+            self._less(f"{a}_", direction),
+            "",
+        ]
+
+    def _turn_base(self, base: Group, beside: Any) -> str:
+        """The first joint, by the distance ``beside`` of the point from the plane it turns."""
+        row, h = base.rows[0], base.end * Z
+        self._require(row.sign == 1, "the first axis is along z")
+        p = _at("p")
+        a, b = source(h[0] * p[1] - h[1] * p[0]), source(h[0] * p[0] + h[1] * p[1])
+        c = sp.simplify(beside + h[0] * row.shift[0] + h[1] * row.shift[1])
+        joint = self.angle(row.turn)
+        self.solve(
+            "turn",
+            f"{joint}, {a}, {b}, {source(c)}, {{+1: 'left', -1: 'right'}}",
+            "turn1",
+        )
+        inside = f"(turned(turn1).T * p - {source(sp.Matrix(row.shift))})"
+        self.add(f"q = ik.vector('q', {_times(base.end.T, inside)})")
+        return "turn1"
+
+    # Arms of six joints
+
+    def _pose(self, groups: list[Group]) -> str:
+        third = groups[-3]
+        if [row.slides for row in third.rows] == [True, False]:  # a slide along the axis 4
+            slide, turn = third.rows
+            groups[-3:-2] = [_plain(Group((slide,), sp.eye(3))), Group((turn,), third.end)]
+        for group in groups[-2:]:
+            self._require(len(group.rows) == 1 and not group.rows[0].slides, "two last axes turn")
+        wrist = groups[-2:]
+        self._require(wrist[0].rows[0].shift[:2] == (0, 0), "the axis 6 passes by the axis 5")
+        offset = self._tool_behind(wrist[1])
+        self.add(f"p = ik.vector('w', ik.p - ik.R * {source(offset)})")
+        self._lead_away("p")
+        if (
+            len(groups[-3].rows) == 3
+            and len(groups) == 4
+            and not any(row.slides for row in groups[-3].rows)
+        ):
+            return self._three_parallel(groups)
+        self._require(len(groups[-3].rows) == 1, "the axes 4, 5 and 6 change direction")
+        first = groups[-3]
+        self._require(
+            first.rows[0].shift[:2] == (0, 0) and wrist[0].rows[0].shift == (0, 0, 0),
+            "the last three axes meet in a point",
+        )
+        carried = groups[:-3]
+        last = carried[-1].rows[-1]
+        extra = carried[-1].end * sp.Matrix(first.rows[0].shift)
+        moved = tuple(sp.Matrix(last.shift) + extra)
+        arm = [
+            *carried[:-1],
+            Group((*carried[-1].rows[:-1], last._replace(shift=moved)), carried[-1].end),
+        ]
+        structure, pairs = self._position(arm)
+        self.add(f"M = {_times(self.arm.lead[:3, :3].T, 'ik.R')}")
+        for group, pair in zip(arm, pairs, strict=True):
+            inside = f"turned({pair}).T * M" if pair else "M"
+            self.add(f"M = ik.matrix('M{len(self.lines)}', {_times(group.end.T, f'({inside})')})")
+        self._wrist(first.rows[0].turn, first, wrist, "M", "")
+        return f"{structure}, with a spherical wrist"
+
+    def _tool_behind(self, last: Group) -> sp.Matrix:
+        """From the origin of the last axis to the tool, seen from the tool."""
+        R = last.end * self.arm.last[:3, :3]
+        return R.T * (sp.Matrix(last.rows[0].shift) + last.end * self.arm.last[:3, 3])
+
+    def _wrist(
+        self, lift: Any, first: Group, wrist: Sequence[Group], M: str, more: str
+    ) -> tuple[str, Any]:
+        """ZYZ angles of ``lift``, of the fifth and the sixth joint, with their offsets."""
+        e, sense = first.end * Z, 1
+        self._require(e[2] == 0, "the axis 5 is normal to the axis 4")
+        if e[1].is_negative:  # a turn about -y is one about y, backwards
+            e, sense = -e, -1
+        epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
+        W = rotation("z", -epsilon) * first.end * wrist[0].end
+        self._require(sp.simplify(W[1, 2]) == 0, "the axis 6 is normal to the axis 5")
+        tau = sp.atan2(W[0, 2], W[2, 2])
+        rest = sp.simplify(rotation("y", -tau) * W)
+        omega = sp.atan2(rest[1, 0], rest[0, 0])
+        after = wrist[1].end * self.arm.last[:3, :3]
+        if after != sp.eye(3):
+            self.add(f"{M} = ik.matrix('{M}_tool', {M} * {source(after.T)})")
+        turns = [g.rows[0].turn for g in wrist]
+        names = (
+            self.angle(lift + epsilon),
+            self.angle(sense * turns[0] + tau),
+            self.angle(turns[1] + omega),
+        )
+        self.solve(
+            "zyz", f"{M}, {', '.join(names)}, {{+1: 'noflip', -1: 'flip'}}{more}", f"{names[0]}_"
+        )
+        return f"{names[0]}_", epsilon
+
+    def _three_parallel(self, groups: Sequence[Group]) -> str:
+        base, parallel, fifth, _ = groups
+        end = parallel.end * sp.Matrix(fifth.rows[0].shift)
+        normal = base.end * Z
+        self._require(normal[2] == 0, "the parallel axes are normal to the first")
+        self._require(
+            all(row.sign == 1 for row in parallel.rows), "the parallel axes have one direction"
+        )
+        beside = sum((row.shift[2] for row in parallel.rows), end[2])
+        pair1 = self._turn_base(base, beside)
+        u, v, w = self._links(parallel, [0, 1, 2])
+        w = w + end[:2, 0]
+        length = _length(w)
+        lead = _times(self.arm.lead[:3, :3].T, "ik.R")
+        self.add(f"M = ik.matrix('M', {_times(base.end.T, f'turned({pair1}).T * {lead}')})")
+        e = parallel.end * Z
+        epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
+        if e[1].is_negative:
+            epsilon = sp.atan2(-e[1], -e[0]) - sp.pi / 2
+        ahead = sp.atan2(w[1], w[0]) - epsilon
+        lengths = f"{source(_length(u))}, {source(_length(v))}"
+        self.add(
+            f"reaching = Reaching(ik, q[0], q[1], {source(length)}, {lengths}, "
+            f"Pair({source(sp.sin(ahead))}, {source(sp.cos(ahead))}))"
+        )
+        lift = sum((row.turn for row in parallel.rows), sp.S.Zero)
+        pair, _ = self._wrist(lift, parallel, groups[2:], "M", ", reaching=reaching")
+        c, t = sp.Symbol(f"{pair}.c"), sp.Symbol(f"{pair}.s")
+        q = _at("q")
+        offset = length * rotation("z", ahead) * sp.Matrix([c, t, 0])
+        self.add(f"x = ik.let('ex', {source(q[0] - offset[0])})")
+        self.add(f"y = ik.let('ey', {source(q[1] - offset[1])})")
+        turns = [row.turn for row in parallel.rows]
+        self._two_links(turns[:2], [u, v], "x", "y")
+        return "turret, three parallel joints and two more (UR)"
+
+
+def _plain(group: Group) -> Group:
+    """A slide of its own with a constant turn, the turn put into the frame that follows."""
+    (row, *others) = group.rows
+    if others or not row.slides:
+        if any(row.slides and row.turn != 0 for row in group.rows[1:]):
+            raise NoChainError("no chain is known: a slide is turned against its neighbours")
+        return group
+    R = rotation("z", row.turn)
+    shift = tuple(R * sp.Matrix(row.shift))
+    return Group((row._replace(turn=sp.S.Zero, shift=shift),), R * group.end)
+
+
+def _at(name: str) -> Any:
+    """The vector of this name in the lines, entry by entry."""
+    return sp.Matrix([sp.Symbol(f"{name}[{i}]") for i in range(3)])
+
+
+def _times(R: sp.Matrix, value: str) -> str:
+    return value if (R - sp.eye(3)).is_zero_matrix else f"{source(R)} * {value}"
+
+
+def _length(v: sp.Matrix) -> Any:
+    """The length of a plane vector; of one along an axis without a root."""
+    return sp.sqrt(sp.simplify(v.dot(v))) if v != sp.zeros(2, 1) else sp.S.Zero
+
+
+def _only(found: set[Any]) -> Any:
+    (symbol,) = found
+    return symbol
+
+
+def _symbol(arm: Serial, rows: Sequence[Any], i: int) -> Any:
+    """The joint that slides in a row."""
+    return _only(rows[i].shift[2].free_symbols & set(arm.joints))

@@ -1,0 +1,405 @@
+"""The H6AR of Rao and Raju, as published: the wrist moves with the averages of the arms' angles."""
+
+from functools import partial
+
+import sympy as sp
+from closedform.derivations.claims.h6ar import Robot, state
+from closedform.derivations.h6ar_mechanism import (
+    ELBOW,
+    MID_PLANE_ROWS,
+    WAIST,
+    Pair,
+    Posture,
+    alpha,
+    arm,
+    arm_frames,
+    beta,
+    by_half_sums,
+    declare,
+    design,
+    extended,
+    half_gap,
+    half_sums,
+    in_space,
+    midpoint,
+    named,
+    outer_jacobian,
+    pair,
+    phi,
+    pitch,
+    pose_matrix,
+    product,
+    psi,
+    reach,
+    solve_mid_plane,
+    straight,
+    target,
+    theta2A,
+    theta23A,
+    tip,
+    tip_system,
+    turned,
+    wrist_frames,
+    wrist_given,
+    wrist_let,
+    wrist_squared,
+)
+from closedform.derivations.papers import RAO_RAJU
+from sympy import Rational, atan2, cos, sin, sqrt, tan
+
+from closedform.derivation import Derivation, Inverse, Reduction
+from closedform.frames import homogeneous, rotation
+from closedform.functions import Program, branches, real
+from closedform.lemmas import two_sines
+
+d = Derivation(
+    "h6ar",
+    "H6AR, published model",
+    RAO_RAJU,
+    "A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist "
+    "of two links and a gear set, which yaws (psi) and rolls (phi) as the arms move apart, and an "
+    "actuator that pitches (theta).  In this model, eqs. (1) to (9) as printed, the wrist hangs on "
+    "a virtual arm whose angles are the averages of the real ones, and yaw and roll are measured "
+    "against the base.  The average is that of the directions of the links, on the shorter arc.",
+    task=["x", "y", "z", "psi", "phi", "theta"],
+    singularities=(
+        "the tip is above or below the waist axis",
+        "virtual arm with the wrist straight or folded",
+        "virtual arm straight or folded",
+        "upper arms half a turn apart",
+        "fore-arms half a turn apart",
+        "wrist links stretched along the base line",
+    ),
+)
+m, q = declare(d)
+theta1, theta2R, theta3R, theta2L, theta3L, theta = q
+means, halves = half_sums(q), by_half_sums(q)
+shoulder_half, fore_half = means[alpha], means[beta]
+
+# Tips of the fore-arms
+
+right, left = arm(m, theta2R, theta2R + theta3R), arm(m, theta2L, theta2L + theta3L)
+tips = [in_space(m, pair(theta1), planar, side) for planar, side in ((right, m.d), (left, -m.d))]
+end = homogeneous(sp.eye(3), (0, 0, m.L2))
+by_frames = [
+    product([*arm_frames(m, theta1, second, third, side), end])[:3, 3]
+    for second, third, side in ((theta2R, theta3R, m.d), (theta2L, theta3L, -m.d))
+]
+d.step(
+    "Tips of the fore-arms",
+    "The frames of Fig. 2 multiply to the tips; the mid-plane offset d is along the axes of the "
+    "shoulders, to the right of the mid-plane for one arm and to the left for the other.",
+    {"(x, y, z)_R": tips[0], "(x, y, z)_L": tips[1]},
+    published=("(1)", "(2)"),
+    equal=[(tips[0], by_frames[0]), (tips[1], by_frames[1])],
+)
+
+# Yaw, roll and the invariant point
+
+apart = (right - left) / 2
+mean = half_gap(m)
+invariant = arm(m, theta2A, theta23A)
+d.step(
+    "Yaw and roll",
+    "Eqs. (3) to (5) compare the tips: half of what the right one is ahead of the left is "
+    "d tan(psi), and half of what it is above is d tan(phi).  In the averages of the angles and "
+    "half their differences both are linear in the sines of the half differences.",
+    {r"d \tan\psi": mean[0], r"d \tan\phi": mean[1]},
+    published=("(3)", "(4)", "(5)"),
+    equal=[(apart.xreplace(halves), mean)],
+)
+d.step(
+    "Invariant point",
+    "The paper gives it twice: as the middle of the tips in (6), and with the "
+    "averages of the angles "
+    "in (7), which this model takes.  The links of the middle are shortened by the cosines "
+    "of the half differences, so that it is off by at most L1 (1 - cos(alpha)) + f "
+    "(1 - cos(beta)), f "
+    "the length of a fore-arm: of second order.",
+    {"(r, h)_I": invariant, "(r, h)_6": ((right + left) / 2).xreplace(halves)},
+    published=("(6)", "(7)"),
+    equal=[
+        (((right + left) / 2).xreplace(halves), midpoint(m)),
+    ],
+)
+
+# The tip
+
+wrist = real("wrist", positive=True)
+posture = Posture(*map(pair, (theta1, theta2A, theta23A, psi, phi, theta)), wrist, m.d / cos(psi))
+T = tip(m, posture)
+serial = product(
+    [
+        *arm_frames(m, theta1, theta2A, theta23A - theta2A, sp.S.Zero),
+        *wrist_frames(m, wrist + m.loff, psi, phi, theta),
+    ]
+)
+orientation = (
+    product(arm_frames(m, theta1, theta2A, theta23A - theta2A, sp.S.Zero))[:3, :3]
+    * rotation("z", phi)
+    * rotation("x", psi)
+    * rotation("y", theta)
+)
+d.step(
+    "Tip",
+    "The wrist is a serial chain on the virtual fore-arm: roll about it, yaw about the x axis that "
+    "the roll leaves, the wrist, pitch about the y axis, the last link.  So the rotation of the "
+    "tip that belongs to (9) is R03 Rz(phi) Rx(psi) Ry(theta).",
+    {"(x, y, z)_T": T, r"(L_\theta, L_{2W}, a_{3W})": sp.Matrix(extended(m, posture))},
+    published=("(9)",),
+    equal=[(serial[:3, 3], T), (serial[:3, :3], orientation)],
+)
+d.step(
+    "Length of the wrist",
+    "Half the base line less half the gears, the wrist and a wrist link form a right triangle; "
+    "half the base line is d / cos(psi) in (8).",
+    {"l_W^2": wrist_squared(m, m.d / cos(psi))},
+    published=("(8)",),
+    equal=[
+        (
+            wrist_squared(m, m.d / cos(psi)),
+            m.al**2 - (1 - m.gs * cos(psi) / m.d) ** 2 * m.d**2 / cos(psi) ** 2,
+        )
+    ],
+)
+
+
+a = real("ahead")
+half_base = sqrt(m.d**2 + a**2)
+d.step(
+    "Yaw and wrist without the angle",
+    "The forward map takes cosine and sine of yaw (and of roll alike) from the tips, and the "
+    "angles only at the output: psi = atan2(d tan(psi), d).",
+    {r"\cos\psi": m.d / half_base, r"\sin\psi": a / half_base},
+    equal=[
+        (cos(atan2(a, m.d)), m.d / half_base),
+        (sin(atan2(a, m.d)), a / half_base),
+        *(
+            (
+                (m.al + k * m.gs) * m.d / half_base - k * m.d,
+                m.d / half_base * (m.al + k * (m.gs - half_base)),
+            )
+            for k in (1, -1)
+        ),
+    ],
+)
+
+
+def averages(p: Program) -> tuple[Pair, Pair]:
+    """The directions of the virtual arm: averages on the shorter arc."""
+    upper, fore = (
+        Pair(p.let(f"c{n}", side * cos(mean)), p.let(f"s{n}", side * sin(mean)))
+        for n, mean, half in (
+            ("2A", means[theta2A], means[alpha]),
+            ("23A", means[theta23A], means[beta]),
+        )
+        for side in [p.let(f"side{n}", sp.Piecewise((1, cos(half) >= 0), (-1, True)))]
+    )
+    return upper, fore
+
+
+def stand(p: Program) -> tuple[Posture, sp.Matrix]:
+    """The posture of the joints: averages, yaw, roll and the wrist."""
+    upper, fore = averages(p)
+    gap = mean.subs(means, simultaneous=True)
+    ahead, above = (p.let(n, e) for n, e in zip(("ahead", "higher"), gap, strict=True))
+    base = p.let("base", sqrt(m.d**2 + ahead**2), nonnegative=True)
+    rise = p.let("rise", sqrt(m.d**2 + above**2), nonnegative=True)
+    yaw = Pair(p.let("cpsi", m.d / base), p.let("spsi", ahead / base))
+    roll = Pair(p.let("cphi", m.d / rise), p.let("sphi", above / rise))
+    length = wrist_let(p, m, base)
+    return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), length, base), sp.Matrix(
+        [ahead, above]
+    )
+
+
+p = Program()
+here, gap = stand(p)
+fk = [*tip(m, here), *(atan2(a.s, a.c) for a in (here.yaw, here.roll)), turned(theta)]
+too_wide = "NaN where the tips are farther apart than the wrist links can span."
+
+d.function(
+    "fk",
+    "Position of the tip, and yaw, roll and pitch.",
+    {"q": q},
+    {"x": fk},
+    program=p,
+    source="eqs. (1) to (9)",
+    notes=(too_wide,),
+)
+p = Program()
+d.function(
+    "pose",
+    "Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).",
+    {"q": q},
+    {"T": pose_matrix(m, p, stand(p)[0])},
+    program=p,
+    source="eq. (9) and its frames",
+    notes=(too_wide,),
+)
+d.function(
+    "arm_tips",
+    "Tips of the right and of the left fore-arm.",
+    {"q": q},
+    {"tips": sp.Matrix.hstack(*tips).T},
+    source="eqs. (1) and (2)",
+)
+p = Program()
+mid_arm = reach(m, *averages(p), m.L2, m.a3)
+d.function(
+    "invariant_point",
+    "The invariant point, by the averages of the angles.",
+    {"q": q},
+    {"p": in_space(m, pair(theta1), mid_arm, sp.S.Zero)},
+    program=p,
+    source="eq. (7)",
+)
+
+# Velocity
+
+outer = outer_jacobian(m, q, m.d / cos(psi), wrist)
+by_half = sp.Matrix([means[s] for s in (theta2A, theta23A, alpha, beta)]).jacobian(q)
+gap = real("ahead"), real("higher")
+side2A, side23A = real("side2A"), real("side23A")
+inner = sp.zeros(6)
+inner[0, 0] = inner[5, 5] = sp.S.One
+inner[1:3, :] = by_half[:2, :]
+for k in (0, 1):
+    rate = mean[k, :].jacobian([theta2A, theta23A, alpha, beta]) * by_half
+    inner[3 + k, :] = atan2(gap[k], m.d).diff(gap[k]) * rate
+aside, along, across = extended(m, posture)
+outward = reach(m, posture.upper, posture.fore, along, across)[0]
+
+
+with_wrist = straight(along, across, posture.upper, posture.fore)
+without = straight(m.L2, m.a3, posture.upper, posture.fore)
+spread = sp.Matrix([mean[0], mean[1]]).jacobian([alpha, beta]).det()
+d.step(
+    "Jacobian by the chain rule",
+    "The task depends on the joints through theta1, the averages, yaw, roll and pitch.  The outer "
+    "factor holds the position by these, the inner one these by the joints.",
+    {"J": outer[:3, :3]},
+    equal=[
+        (outer[:3, :3].det(), m.L1 * outward * with_wrist),
+        (spread, -m.L1 * without * cos(alpha) * cos(beta)),
+        (by_half[:, 1:5].det(), Rational(1, 4)),
+    ],
+)
+
+
+def turn_rates(here: Posture) -> sp.Expr:
+    """d(psi, phi) / d(ahead, above), as a determinant."""
+    return here.yaw.c**2 * here.roll.c**2 / m.d**2
+
+
+def factors(here: Posture) -> list[sp.Expr]:
+    aside, along, across = extended(m, here)
+    del aside
+    return [
+        reach(m, here.upper, here.fore, along, across)[0],
+        straight(along, across, here.upper, here.fore),
+        straight(m.L2, m.a3, here.upper, here.fore),
+        side2A * cos(shoulder_half),
+        side23A * cos(fore_half),
+        here.wrist,
+    ]
+
+
+p = Program()
+here, _ = stand(p)
+J = p.matrix("outer", named(outer, here, q).xreplace({wrist: here.wrist})) * p.matrix(
+    "inner", inner.subs(means, simultaneous=True)
+)
+d.function(
+    "jacobian",
+    "Derivative of the task by the joints.",
+    {"q": q},
+    {"J": J},
+    program=p,
+    source="derivative of eqs. (1) to (9)",
+    notes=(too_wide, "Unbounded where the wrist links are stretched: there l_W turns over."),
+)
+p = Program()
+here, _ = stand(p)
+f = factors(here)
+d.function(
+    "determinant",
+    "Determinant of the Jacobian.",
+    {"q": q},
+    {"det": -(m.L1**2) * f[0] * f[1] * f[2] * f[3] * f[4] * turn_rates(here) / 4},
+    program=p,
+    notes=(too_wide,),
+)
+p = Program()
+here, _ = stand(p)
+d.function(
+    "singularities",
+    "The factors of the determinant, and the length of the wrist.",
+    {"q": q},
+    {"factors": factors(here)},
+    program=p,
+    notes=(too_wide,),
+)
+
+# Inverse
+
+p = Program()
+length, base = wrist_given(p, m, cos(psi))
+middle = solve_mid_plane(p, m, q, length, base)
+(cA, sA), (cB, sB) = middle.posture.upper, middle.posture.fore
+ahead = p.let("ahead", m.d * sin(psi) / cos(psi))
+above = p.let("higher", m.d * sin(phi) / cos(phi))
+u = (p.let("u1", -m.L1 * sA), p.let("u2", m.L1 * cA))
+v = (p.let("v1", m.L2 * cB - m.a3 * sB), p.let("v2", m.L2 * sB + m.a3 * cB))
+half = two_sines(p, (alpha, beta), u, v, (ahead, above), m.d, free=(theta3R, theta3L))
+lemmas = (*middle.lemmas, half)
+solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
+joints = {theta1: theta1, theta2R: halves[theta2R], theta3R: halves[theta3R]}
+joints |= {theta2L: halves[theta2L], theta3L: halves[theta3L], theta: theta}
+sides = branches(WAIST, ELBOW)
+d.branches = sides.labels
+d.function(
+    "ik",
+    "All postures of the published model that reach a tip.",
+    {"x": target},
+    {"q": [joints[s].xreplace(solution) for s in q]},
+    program=p,
+    branches=sides,
+    result="Solutions",
+    source="eqs. (11), (13) and (14), with the exact half differences",
+)
+targets, forward = tip_system(m, q, cos(psi))
+d.inverses.append(
+    Inverse(
+        "ik",
+        tuple(q),
+        (*targets, tan(psi), tan(phi)),
+        (*forward, *(apart / m.d)),
+        angles=(psi, phi, pitch),
+        images="fk",
+        reduction=Reduction(lemmas, joints, sp.diag(MID_PLANE_ROWS, 1 / m.d, 1 / m.d)),
+    )
+)
+design(d, m, cos(psi))
+
+# Claims of the paper
+
+as_printed = {theta2A: real("theta_2^A"), theta23A: real("theta_23^A")}
+state(
+    d,
+    Robot(
+        m,
+        theta1,
+        *as_printed.values(),
+        alpha,
+        beta,
+        psi,
+        phi,
+        tips,
+        by_frames,
+        serial.xreplace(as_printed),
+        T.xreplace(as_printed),
+        extended(m, posture),
+        partial(arm, m),
+    ),
+)

@@ -1,0 +1,466 @@
+"""The H6AR as a mechanism whose loop closes: the wrist spans the tips of the arms."""
+
+import sympy as sp
+from closedform.derivations.h6ar_mechanism import (
+    ELBOW,
+    MID_PLANE_ROWS,
+    WAIST,
+    Pair,
+    Posture,
+    arm,
+    by_half_sums,
+    declare,
+    design,
+    extended,
+    half_gap,
+    half_sums,
+    in_space,
+    midpoint,
+    named,
+    outer_jacobian,
+    pair,
+    phi,
+    pitch,
+    pose_matrix,
+    psi,
+    reach,
+    solve_mid_plane,
+    straight,
+    target,
+    theta2A,
+    theta23A,
+    tip,
+    tip_system,
+    turned,
+    wrist_given,
+    wrist_let,
+)
+from closedform.derivations.papers import RAO_RAJU
+from sympy import Rational, atan2, cos, sin, sqrt, tan
+
+from closedform.derivation import Derivation, Inverse, Reduction
+from closedform.frames import rotation
+from closedform.functions import Program, branches, real
+from closedform.lemmas import elbow_squares, two_link_arm_beside
+
+d = Derivation(
+    "h6ar_loop_closed",
+    "H6AR, loop-closed model",
+    RAO_RAJU,
+    "A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist "
+    "of two links and a gear set, which yaws (psi) and rolls (phi) as the arms move apart, and an "
+    "actuator that pitches (theta).  In this model the loop closes: the base line of "
+    "the wrist joins "
+    "the tips, and the invariant point is its middle.  A virtual arm in the mid-plane, bent to the "
+    "side of the right arm, reaches that point; yaw and roll are measured against "
+    "its fore-arm, roll "
+    "with the sign of (9): the right tip goes down.",
+    task=["x", "y", "z", "psi", "phi", "theta"],
+    singularities=(
+        "the tip is above or below the waist axis",
+        "virtual arm with the wrist straight or folded",
+        "right arm straight or folded",
+        "left arm straight or folded",
+        "virtual arm straight or folded (a pole of the determinant)",
+        "wrist links stretched along the base line",
+    ),
+)
+m, q = declare(d)
+theta1, theta2R, theta3R, theta2L, theta3L, theta = q
+theta23R, theta23L = real("theta23R"), real("theta23L")
+lengths = (m.L1, m.L2, m.a3)
+forearm_length = sqrt(m.L2**2 + m.a3**2)
+
+# Where the tips are, seen from the fore-arm of the virtual arm
+
+right, left = arm(m, theta2R, theta2R + theta3R), arm(m, theta2L, theta2L + theta3L)
+middle, apart = (right + left) / 2, (right - left) / 2
+means, halves = half_sums(q), by_half_sums(q)
+midway, gap_half = (e(m).subs(means, simultaneous=True) for e in (midpoint, half_gap))
+d.step(
+    "Middle and distance of the tips",
+    "In half sums A and half differences of the angles of both arms (alpha of the upper arms, beta "
+    "of the fore-arms) the distance of the tips keeps its digits where they are close.",
+    {"(r, h)_I": midpoint(m), "(r, h)_R - (r, h)_I": half_gap(m)},
+    published=("(6)",),
+    equal=[(middle.xreplace(halves), midpoint(m)), (apart.xreplace(halves), half_gap(m))],
+)
+ahead, higher = real("ahead"), real("higher")
+c23, s23 = pair(theta23A)
+across_fore, along_fore = c23 * ahead + s23 * higher, s23 * ahead - c23 * higher
+line = sp.Matrix([across_fore, m.d, along_fore])  # half of it, right minus middle, in fore-arm axes
+forearm = sp.Matrix([[c23, 0, s23], [0, -1, 0], [s23, 0, -c23]])  # R03 for theta1 = 0
+base = m.d / (cos(psi) * cos(phi))
+wrist_line = base * rotation("z", phi) * rotation("x", psi) * sp.Matrix([0, 1, 0])
+d.step(
+    "Base line in fore-arm axes",
+    "The line from the middle of the tips to the right tip, half of what the tips are apart, seen "
+    "in the axes x (up at home), y (right) and z (along) of the fore-arm of the virtual arm.",
+    {r"R_{03}^T (p_R - p_I)": line},
+    published=("(3)", "(4)", "(5)", "(6)"),
+    equal=[(forearm.T * sp.Matrix([ahead, -m.d, higher]), line)],
+)
+d.step(
+    "Yaw and roll from the tips",
+    "The base line of the wrist is the y axis after roll and yaw.  Its component across the "
+    "mid-plane is d, so that half of it is d / (cos(psi) cos(phi)), which replaces d / cos(psi) in "
+    "(8); the other components give tan(phi) = -x / d and tan(psi) = cos(phi) z / d.",
+    {r"b\,R_z R_x e_y": wrist_line},
+    published=("(3)", "(4)", "(8)"),
+    equal=[(wrist_line, sp.Matrix([-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)]))],
+)
+axis = rotation("z", phi) * rotation("x", psi)
+length = real("wrist", positive=True)
+link = axis * sp.Matrix([0, m.gs, length]) - wrist_line
+d.step(
+    "The four-bar of the wrist closes",
+    "The gears are g_s beside the axis of the wrist and l_W along it; a wrist link "
+    "joins each to its "
+    "tip.  Its length is al if l_W^2 = al^2 - (b - g_s)^2, on the right as on the left.",
+    {"b": base, "l_W^2": m.al**2 - (base - m.gs) ** 2},
+    published=("(8)",),
+    equal=[
+        (link.dot(link), length**2 + (base - m.gs) ** 2),
+        (
+            (axis * sp.Matrix([0, -m.gs, length]) + wrist_line).dot(
+                axis * sp.Matrix([0, -m.gs, length]) + wrist_line
+            ),
+            link.dot(link),
+        ),
+    ],
+)
+given_ahead = m.d * (s23 * tan(psi) / cos(phi) - c23 * tan(phi))
+given_higher = -m.d * (c23 * tan(psi) / cos(phi) + s23 * tan(phi))
+d.step(
+    "Tips from yaw and roll",
+    "The other way round, yaw, roll and the fore-arm of the virtual arm give how far the tips are "
+    "apart.",
+    {"(r_R - r_L) / 2": given_ahead, "(h_R - h_L) / 2": given_higher},
+    equal=[
+        (line.subs({ahead: given_ahead, higher: given_higher}), wrist_line),
+    ],
+)
+reaches = [e.dot(e) for e in (right, left, middle)]
+d.step(
+    "How far the virtual arm is bent",
+    "The square of the reach of the virtual arm is the mean of those of both arms less half the "
+    "distance of the tips squared.  So N = (L1 + f)^2 - R^2 of the virtual arm, whose f is the "
+    "length of a fore-arm, is a sum of terms that are not negative and keeps its digits where the "
+    "arms are straight.",
+    {"R_I^2": (reaches[0] + reaches[1]) / 2 - apart.dot(apart)},
+    equal=[
+        (reaches[2], (reaches[0] + reaches[1]) / 2 - apart.dot(apart)),
+        *(
+            (
+                (m.L1 + forearm_length) ** 2 - R,
+                2 * m.L1 * (forearm_length - m.L2 * sin(elbow) - m.a3 * cos(elbow)),
+            )
+            for R, elbow in zip(reaches[:2], (theta3R, theta3L), strict=True)
+        ),
+    ],
+)
+beyond, width = real("beyond"), real("width")
+half_line = sqrt(m.d**2 + width**2 + beyond**2)
+cosine_roll = m.d / sqrt(m.d**2 + width**2)
+d.step(
+    "Yaw and wrist without the angle",
+    "The forward map takes cosines and sines of yaw and roll from the tips, and the angles only at "
+    "the output; half the base line is half the distance of the tips.",
+    {
+        r"\cos\phi": cosine_roll,
+        r"\cos\psi": sqrt(m.d**2 + width**2) / half_line,
+        "b": half_line,
+    },
+    equal=[
+        (cos(atan2(-width, m.d)), cosine_roll),
+        (cos(atan2(cosine_roll * beyond, m.d)), sqrt(m.d**2 + width**2) / half_line),
+        (
+            m.d / (cos(atan2(-width, m.d)) * cos(atan2(cosine_roll * beyond, m.d))),
+            half_line,
+        ),
+    ],
+)
+
+
+def stand(p: Program) -> Posture:
+    """The posture of the joints: the middle of the tips, the virtual arm, yaw, roll, wrist."""
+    second = p.let("fore", forearm_length, nonnegative=True)
+    squares, bent = {}, {}
+    for name, angle in (("right", theta3R), ("left", theta3L)):
+        squares[name], bent[name] = elbow_squares(
+            p, lengths, second, pair(angle), suffix=f"_{name}"
+        )
+    side = p.let("sigma_side", sp.Piecewise((1, bent["right"] >= 0), (-1, True)))
+    point = tuple(p.let(n, e) for n, e in zip(("r_I", "h_I"), midway, strict=True))
+    p.let("ahead", gap_half[0])
+    p.let("higher", gap_half[1])
+    gap = p.let("gap", ahead**2 + higher**2)
+    mean = [(a + b) / 2 for a, b in zip(squares["right"], squares["left"], strict=True)]
+    virtual = two_link_arm_beside(
+        p,
+        lengths,
+        second,
+        point,
+        (theta2A, theta23A),
+        side,
+        (mean[0] + gap, mean[1] - gap),
+        m.d,
+        suffix="_virtual",
+        rest=pair(theta2R),
+    )
+    upper, fore = (Pair(*virtual.pairs[angle]) for angle in (theta2A, theta23A))
+    seen = {cos(theta23A): fore.c, sin(theta23A): fore.s}
+    p.let("width", across_fore.xreplace(seen))
+    p.let("beyond", along_fore.xreplace(seen))
+    tilted = p.let("tilted", sqrt(m.d**2 + width**2), nonnegative=True)
+    half = p.let("base", sqrt(m.d**2 + ahead**2 + higher**2), nonnegative=True)
+    yaw = Pair(p.let("cpsi", tilted / half), p.let("spsi", beyond / half))
+    roll = Pair(p.let("cphi", m.d / tilted), p.let("sphi", -width / tilted))
+    return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), wrist_let(p, m, half), half)
+
+
+p = Program()
+here = stand(p)
+fk = [*tip(m, here), *(atan2(a.s, a.c) for a in (here.yaw, here.roll)), turned(theta)]
+notes = (
+    "NaN where the tips are farther apart than the wrist links can span, or where the virtual arm "
+    "cannot reach their middle.",
+    "Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of "
+    "yaw and roll.",
+)
+d.function(
+    "fk",
+    "Position of the tip, and yaw, roll and pitch.",
+    {"q": q},
+    {"x": fk},
+    program=p,
+    source="eqs. (1), (2), (6) and (9), with the closed loop",
+    notes=notes,
+)
+p = Program()
+d.function(
+    "pose",
+    "Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).",
+    {"q": q},
+    {"T": pose_matrix(m, p, stand(p))},
+    program=p,
+    source="eq. (9) and its frames",
+    notes=notes,
+)
+tips = [in_space(m, pair(theta1), planar, side) for planar, side in ((right, m.d), (left, -m.d))]
+d.function(
+    "arm_tips",
+    "Tips of the right and of the left fore-arm.",
+    {"q": q},
+    {"tips": sp.Matrix.hstack(*tips).T},
+    source="eqs. (1) and (2)",
+)
+d.function(
+    "invariant_point",
+    "The invariant point, the middle of the tips.",
+    {"q": q},
+    {"p": in_space(m, pair(theta1), midway, sp.S.Zero)},
+    source="eq. (6)",
+)
+
+# Velocity
+
+reclined = sqrt(m.d**2 + width**2)
+by_line = sp.Matrix([atan2(beyond, reclined), atan2(-width, m.d)]).jacobian([width, beyond])
+line_by = sp.Matrix([across_fore, along_fore]).jacobian([ahead, higher, theta23A])
+point_by = arm(m, theta2A, theta23A).jacobian([theta2A, theta23A])
+outer = outer_jacobian(m, q, base, length)
+without = straight(m.L2, m.a3, pair(theta2A), pair(theta23A))
+posture = Posture(*map(pair, (theta1, theta2A, theta23A, psi, phi, theta)), length, base)
+_, along, across = extended(m, posture)
+with_wrist = straight(along, across, posture.upper, posture.fore)
+outward = reach(m, pair(theta2A), pair(theta23A), along, across)[0]
+arm_by = arm(m, theta2R, theta2R + theta3R).jacobian([theta2R, theta3R])
+d.step(
+    "Jacobian by the chain rule",
+    "The task depends on the joints through theta1, the virtual arm, yaw, roll and pitch.  The "
+    "virtual arm follows the middle of the tips by the inverse of its own Jacobian; yaw and roll "
+    "follow the base line in the axes of its fore-arm.  The determinant is the product of those of "
+    "the parts: both real arms stand in the numerator, the virtual one in the denominator.",
+    {"J": outer[:3, :3]},
+    equal=[
+        (outer[:3, :3].det(), m.L1 * outward * with_wrist),
+        (point_by.det(), -m.L1 * without),
+        (
+            arm_by.det(),
+            -m.L1 * straight(m.L2, m.a3, pair(theta2R), pair(theta2R + theta3R)),
+        ),
+        (line_by[:, :2].det(), -sp.S.One),
+        (
+            by_line.det(),
+            m.d / (sqrt(m.d**2 + width**2) * half_line**2),
+        ),
+    ],
+)
+
+
+def bend_of(p: Posture) -> tuple[sp.Expr, sp.Expr]:
+    """The distance of the tip from the waist axis, and the bend of the virtual arm with wrist."""
+    _, along, across = extended(m, p)
+    return reach(m, p.upper, p.fore, along, across)[0], straight(along, across, p.upper, p.fore)
+
+
+def factors(here: Posture) -> list[sp.Expr]:
+    return [
+        *bend_of(here),
+        straight(m.L2, m.a3, pair(theta2R), pair(theta2R + theta3R)),
+        straight(m.L2, m.a3, pair(theta2L), pair(theta2L + theta3L)),
+        straight(m.L2, m.a3, here.upper, here.fore),
+        here.wrist,
+    ]
+
+
+p = Program()
+here = stand(p)
+tilted = real("tilted", nonnegative=True)
+by_virtual = p.matrix("virtual", named(point_by.adjugate(), here, q))
+mid_rates = p.matrix("mid", midway.jacobian(q))
+bend = p.let("slack", -m.L1 * straight(m.L2, m.a3, here.upper, here.fore))
+virtual_rates = p.matrix("rate", (by_virtual * mid_rates) / bend)
+gap_rates = p.matrix("gap", gap_half.jacobian(q))
+line_rates = p.matrix(
+    "line", named(line_by, here, q) * sp.Matrix.vstack(gap_rates, virtual_rates[1, :])
+)
+by_names = by_line.subs(reclined, tilted).subs(m.d**2 + width**2, tilted**2)
+turn_rates = p.matrix("turn", by_names) * line_rates
+inner = sp.zeros(6)
+inner[0, 0] = inner[5, 5] = sp.S.One
+inner[1:3, :], inner[3:5, :] = virtual_rates, turn_rates
+J = p.matrix("outer", named(outer, here, q).xreplace({length: here.wrist})) * p.matrix(
+    "inner", inner
+)
+d.function(
+    "jacobian",
+    "Derivative of the task by the joints.",
+    {"q": q},
+    {"J": J},
+    program=p,
+    source="derivative of the forward map",
+    notes=(*notes, "Unbounded where the wrist links are stretched: there l_W turns over."),
+)
+p = Program()
+here = stand(p)
+f = factors(here)
+turning = m.d / (tilted * here.base**2)
+d.function(
+    "determinant",
+    "Determinant of the Jacobian; it has a pole where the virtual arm is straight.",
+    {"q": q},
+    {"det": m.L1**2 * Rational(1, 4) * f[0] * f[1] * f[2] * f[3] * turning / f[4]},
+    program=p,
+    notes=notes,
+)
+p = Program()
+here = stand(p)
+d.function(
+    "singularities",
+    "The factors of the determinant, its pole, and the length of the wrist.",
+    {"q": q},
+    {"factors": factors(here)},
+    program=p,
+    notes=notes,
+)
+
+# Inverse
+
+sigma_left = real("sigma_left")
+LEFT = (sigma_left, {+1: "alike", -1: "mixed"})
+p = Program()
+wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
+mid = solve_mid_plane(p, m, q, wrist, half_base)
+upper, fore = mid.posture.upper, mid.posture.fore
+second = p.let("fore_arm", forearm_length, nonnegative=True)
+bend = (upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
+bend = tuple(p.let(f"{f}_elbow", e) for f, e in zip("cs", bend, strict=True))
+(N, M), bent = elbow_squares(p, lengths, second, bend)
+side = p.let("sigma_right", sp.Piecewise((1, bent >= 0), (-1, True)))
+opposite = p.let("sigma_other", side * sigma_left)
+by_pairs = {cos(theta23A): fore.c, sin(theta23A): fore.s}
+by_pairs |= {tan(e): sin(e) / cos(e) for e in (psi, phi)}
+point = p.matrix("point", reach(m, upper, fore, m.L2, m.a3))
+shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pairs))
+gap = p.let("gap", shift.dot(shift))
+cross = p.let("twice", 2 * point.dot(shift))
+arms = []
+for name, sigma, sign, unknowns in (
+    ("right", side, 1, (theta2R, theta23R)),
+    ("left", opposite, -1, (theta2L, theta23L)),
+):
+    end = tuple(p.let(f"{c}_{name}", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
+    arms.append(
+        two_link_arm_beside(
+            p,
+            lengths,
+            second,
+            end,
+            unknowns,
+            sigma,
+            (N - sign * cross - gap, M + sign * cross + gap),
+            m.d,
+            suffix=f"_{name}",
+            sided=name == "right",
+            free=unknowns[:1],
+            rest=upper,
+        )
+    )
+lemmas = (*mid.lemmas, *arms)
+joints = {s: s for s in q} | {theta3R: theta23R - theta2R, theta3L: theta23L - theta2L}
+solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
+sides = branches(WAIST, ELBOW, LEFT)
+d.branches = sides.labels
+d.function(
+    "ik",
+    "All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other "
+    "side.",
+    {"x": target},
+    {"q": [joints[s].xreplace(solution) for s in q]},
+    program=p,
+    branches=sides,
+    result="Solutions",
+    source="eqs. (11), (13) and (14), then each arm by itself",
+    notes=(
+        "UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer "
+        "to the waist "
+        "axis than L_theta, or an arm is out of reach.",
+        "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder "
+        "(its upper arm is returned beside that of the virtual arm), or a link without length.",
+        "A straight right arm is returned bent by a few units in the last place, so that "
+        "fk can read "
+        "the side.",
+    ),
+)
+half_row = Rational(1, 2)
+closure = sp.Matrix([[half_row, 0, half_row, 0], [0, half_row, 0, half_row]])
+difference = sp.Matrix([[half_row, 0, -half_row, 0], [0, half_row, 0, -half_row]])
+turned_line = sp.Matrix([[s23, -c23], [-c23, -s23]]) / m.d
+targets, forward = tip_system(m, q, cos(psi) * cos(phi))
+d.inverses.append(
+    Inverse(
+        "ik",
+        tuple(q),
+        (*targets, 0, 0, tan(psi) / cos(phi), tan(phi)),
+        (
+            *forward,
+            *(middle - arm(m, theta2A, theta23A)),
+            *(
+                sp.Matrix([along_fore, -across_fore]).subs({ahead: apart[0], higher: apart[1]})
+                / m.d
+            ),
+        ),
+        angles=(psi, phi, pitch),
+        images="fk",
+        reduction=Reduction(
+            lemmas,
+            joints,
+            sp.diag(MID_PLANE_ROWS, sp.Matrix.vstack(closure, turned_line * difference)),
+            kept_of=2,
+            because="the virtual arm is bent to the side of the right arm",
+        ),
+    )
+)
+design(d, m, cos(psi) * cos(phi))

@@ -1,0 +1,400 @@
+"""What both models of the H6AR share: dimensions, frames, the tip, the wrist and the chain rule.
+
+Angles of the mid-plane: ``theta2A`` is the upper arm of the virtual arm and ``theta23A`` its
+fore-arm, both against the horizontal; ``alpha`` and ``beta`` are half the differences of the real
+arms' angles, right minus left.
+"""
+
+from collections.abc import Iterable
+from functools import reduce
+from typing import NamedTuple
+
+import sympy as sp
+from sympy import Rational, atan2, cos, pi, sin, sqrt
+
+from closedform.derivation import Derivation
+from closedform.frames import denavit_hartenberg, homogeneous, rotation
+from closedform.functions import Program, real
+from closedform.lemmas import Lemma, linear_pair, sine_cosine, two_link_arm
+
+theta2A, theta23A = real("theta2A"), real("theta23A")
+alpha, beta = real("alpha"), real("beta")
+x, y, z, psi, phi, pitch = (real(n) for n in ("x", "y", "z", "psi", "phi", "pitch"))
+target = (x, y, z, psi, phi, pitch)
+sigma_waist, sigma_elbow = real("sigma_waist"), real("sigma_elbow")
+WAIST = (sigma_waist, {+1: "front", -1: "rear"})
+ELBOW = (sigma_elbow, {+1: "elbow_up", -1: "elbow_down"})
+
+EXAMPLE = "example; the paper gives no dimensions"
+
+
+class Dimensions(NamedTuple):
+    """The parameters, in the contract's order."""
+
+    L1: sp.Symbol
+    L2: sp.Symbol
+    a3: sp.Symbol
+    d1: sp.Symbol
+    d: sp.Symbol
+    gs: sp.Symbol
+    al: sp.Symbol
+    loff: sp.Symbol
+    lp: sp.Symbol
+
+
+class Joints(NamedTuple):
+    """The joint variables, in the contract's order."""
+
+    theta1: sp.Symbol
+    theta2R: sp.Symbol
+    theta3R: sp.Symbol
+    theta2L: sp.Symbol
+    theta3L: sp.Symbol
+    theta: sp.Symbol
+
+
+class Pair(NamedTuple):
+    """Cosine and sine of an angle."""
+
+    c: sp.Expr
+    s: sp.Expr
+
+
+class Posture(NamedTuple):
+    """Everything the tip depends on, as names of a program or as expressions."""
+
+    waist: Pair
+    upper: Pair
+    fore: Pair
+    yaw: Pair
+    roll: Pair
+    pitch: Pair
+    wrist: sp.Expr
+    """The variable length l_W of eq. (8)."""
+    base: sp.Expr
+    """Half the base line of the wrist."""
+
+
+def pair(angle: sp.Expr) -> Pair:
+    return Pair(cos(angle), sin(angle))
+
+
+def declare(d: Derivation) -> tuple[Dimensions, Joints]:
+    """The parameters and the joints."""
+    millimetres = {
+        "L1": (400, "length of the upper arms"),
+        "L2": (400, "length of the fore-arms"),
+        "a3": (50, "offset of the fore-arms at the elbow"),
+        "d1": (500, "height of the shoulders"),
+        "d": (100, "distance of each arm from the mid-plane"),
+        "gs": (20, "half the distance of the gears of the wrist, g_s"),
+        "al": (120, "length of the links of the wrist, which the paper writes as alpha l"),
+        "loff": (50, "distance from the gears to the pitch joint"),
+        "lp": (100, "distance from the pitch joint to the tip"),
+    }
+    dimensions = Dimensions(
+        *(
+            d.parameter(n, value=Rational(v, 1000), unit="m", meaning=text, source=EXAMPLE)
+            for n, (v, text) in millimetres.items()
+        )
+    )
+    theta1, theta2R, theta3R = d.joint("theta1"), d.joint("theta2R"), d.joint("theta3R")
+    theta2L, theta3L = d.joint("theta2L", beside=theta2R), d.joint("theta3L", beside=theta3R)
+    return dimensions, Joints(theta1, theta2R, theta3R, theta2L, theta3L, d.joint("theta"))
+
+
+def product(transforms: Iterable[sp.Matrix]) -> sp.Matrix:
+    """The product as it comes, for comparison with a form that is written by hand."""
+    return reduce(sp.Matrix.__mul__, transforms)
+
+
+def reach(m: Dimensions, upper: Pair, fore: Pair, along: sp.Expr, across: sp.Expr) -> sp.Matrix:
+    """Distance from the waist axis and height above the shoulder, of an arm in its plane."""
+    return sp.Matrix(
+        [
+            m.L1 * upper.c + along * fore.s + across * fore.c,
+            m.L1 * upper.s - along * fore.c + across * fore.s,
+        ]
+    )
+
+
+def arm(m: Dimensions, upper: sp.Expr, fore: sp.Expr) -> sp.Matrix:
+    """The tip of a fore-arm in the plane of its arm, for absolute angles."""
+    return reach(m, pair(upper), pair(fore), m.L2, m.a3)
+
+
+def in_space(m: Dimensions, waist: Pair, planar: sp.Matrix, side: sp.Expr) -> sp.Matrix:
+    """A point of an arm's plane, ``side`` to the right of the mid-plane, in the base frame."""
+    r, h = planar
+    return sp.Matrix([waist.s * side + waist.c * r, -waist.c * side + waist.s * r, m.d1 + h])
+
+
+def half_sums(q: Joints) -> dict[sp.Symbol, sp.Expr]:
+    """Averages and half differences of the arms' angles, in the joints."""
+    upper, bend = (q.theta2R + q.theta2L) / 2, (q.theta3R + q.theta3L) / 2
+    apart, bent = (q.theta2R - q.theta2L) / 2, (q.theta3R - q.theta3L) / 2
+    return {theta2A: upper, theta23A: upper + bend, alpha: apart, beta: apart + bent}
+
+
+def by_half_sums(q: Joints) -> dict[sp.Symbol, sp.Expr]:
+    """The joints of the arms in averages and half differences."""
+    return {
+        q.theta2R: theta2A + alpha,
+        q.theta2L: theta2A - alpha,
+        q.theta3R: theta23A + beta - theta2A - alpha,
+        q.theta3L: theta23A - beta - theta2A + alpha,
+    }
+
+
+def half_gap(m: Dimensions) -> sp.Matrix:
+    """Half of what the right tip is ahead of the left one and above it."""
+    upper, fore = pair(theta2A), pair(theta23A)
+    return sp.Matrix(
+        [
+            -m.L1 * upper.s * sin(alpha) + (m.L2 * fore.c - m.a3 * fore.s) * sin(beta),
+            m.L1 * upper.c * sin(alpha) + (m.L2 * fore.s + m.a3 * fore.c) * sin(beta),
+        ]
+    )
+
+
+def midpoint(m: Dimensions) -> sp.Matrix:
+    """The middle of the tips in the mid-plane."""
+    shoulder = m.L1 * sp.Matrix(pair(theta2A))
+    return cos(alpha) * shoulder + cos(beta) * (arm(m, theta2A, theta23A) - shoulder)
+
+
+def arm_frames(m: Dimensions, theta1: sp.Expr, theta2: sp.Expr, theta3: sp.Expr, d: sp.Expr):
+    """The frames (X, Y, Z)_3 of an arm by Denavit-Hartenberg, as in the paper's Fig. 2."""
+    return [
+        denavit_hartenberg(0, pi / 2, m.d1, theta1),
+        denavit_hartenberg(m.L1, 0, d, theta2),
+        denavit_hartenberg(m.a3, pi / 2, 0, theta3),
+    ]
+
+
+def wrist_frames(m: Dimensions, length: sp.Expr, psi: sp.Expr, phi: sp.Expr, theta: sp.Expr):
+    """From the tip of the virtual fore-arm: roll, yaw, the wrist, pitch and the last link."""
+    along_z = [homogeneous(sp.eye(3), (0, 0, e)) for e in (m.L2, length, m.lp)]
+    return [
+        along_z[0],
+        homogeneous(rotation("z", phi)),
+        homogeneous(rotation("x", psi)),
+        along_z[1],
+        homogeneous(rotation("y", theta)),
+        along_z[2],
+    ]
+
+
+def extended(m: Dimensions, p: Posture) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """L_theta, L_2W and a_3W of eq. (9): the virtual arm together with the wrist."""
+    hand = p.wrist + m.loff + m.lp * p.pitch.c
+    return (
+        hand * p.roll.c * p.yaw.s - m.lp * p.pitch.s * p.roll.s,
+        m.L2 + hand * p.yaw.c,
+        m.a3 + hand * p.roll.s * p.yaw.s + m.lp * p.pitch.s * p.roll.c,
+    )
+
+
+def tip(m: Dimensions, p: Posture) -> sp.Matrix:
+    """The tip, eq. (9)."""
+    aside, along, across = extended(m, p)
+    return in_space(m, p.waist, reach(m, p.upper, p.fore, along, across), -aside)
+
+
+def straight(along: sp.Expr, across: sp.Expr, upper: Pair, fore: Pair) -> sp.Expr:
+    """Vanishes where an arm is straight or folded: its fore-arm across its upper arm."""
+    bend = Pair(upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
+    return along * bend.c - across * bend.s
+
+
+def turned(angle: sp.Expr) -> sp.Expr:
+    """An angle as it stands in (-pi, pi]."""
+    return atan2(sin(angle), cos(angle))
+
+
+def pose_matrix(m: Dimensions, program: Program, p: Posture) -> sp.Matrix:
+    """The frame of the tip, R03 Rz(phi) Rx(psi) Ry(theta), from the pairs of a posture."""
+    (c1, s1), (c23, s23) = p.waist, p.fore
+    forearm = sp.Matrix([[c1 * c23, s1, c1 * s23], [s1 * c23, -c1, s1 * s23], [s23, 0, -c23]])
+    symbols = [real("u"), real("v"), real("w")]
+    rolled, yawed, pitched = (
+        rotation(axis, s).xreplace({cos(s): q.c, sin(s): q.s})
+        for axis, s, q in zip("zxy", symbols, (p.roll, p.yaw, p.pitch), strict=True)
+    )
+    hand = program.matrix("hand", rolled * yawed * pitched)
+    return homogeneous(forearm * hand, tuple(tip(m, p)))
+
+
+def wrist_let(program: Program, m: Dimensions, base: sp.Symbol) -> sp.Symbol:
+    """The length l_W of eq. (8) for half a base line; the triangle must close."""
+    near = program.bound("near", m.al + m.gs - base, m.al + m.gs, "the wrist links are long enough")
+    far = program.bound("far", m.al - m.gs + base, m.al + m.gs, "the wrist links meet the gears")
+    return program.let("wrist", sqrt(near) * sqrt(far), nonnegative=True)
+
+
+def wrist_length(m: Dimensions, level: sp.Expr) -> sp.Expr:
+    """l_W of eq. (8) where half the base line is d / level."""
+    return sqrt((m.al + m.gs) * level - m.d) * sqrt((m.al - m.gs) * level + m.d) / level
+
+
+def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
+    """l_W and half the base line d / level, where ``level`` is the cosine it is tilted by.
+
+    The scale of the bounds is at most half of that in ``wrist_let``, times ``level``: what counts
+    as within reach here does so there.
+    """
+    size = m.d / 2
+    program.bound("upright", cos(phi), sp.S.One, "the roll is less than a right angle")
+    near = (m.al + m.gs) * level - m.d
+    near = program.bound("near", near, size, "the wrist links are long enough")
+    far = (m.al - m.gs) * level + m.d
+    far = program.bound("far", far, size, "the wrist links meet the gears")
+    wrist = program.let("wrist", sqrt(near) * sqrt(far) / level)
+    return wrist, program.let("base", m.d / level)
+
+
+class MidPlane(NamedTuple):
+    """The first part of either inverse: waist and virtual arm from the tip."""
+
+    lemmas: tuple[Lemma, ...]
+    posture: Posture
+    sigma_bend: sp.Symbol
+
+
+def solve_mid_plane(
+    program: Program, m: Dimensions, q: Joints, wrist: sp.Symbol, base: sp.Symbol
+) -> MidPlane:
+    """Pitch, waist and virtual arm of a target, whose wrist has a known length."""
+    given = (pair(psi), pair(phi), pair(pitch))
+    nothing = Pair(sp.S.Zero, sp.S.Zero)
+    known = Posture(nothing, nothing, nothing, *given, wrist, base)
+    names = ("L_theta", "L_2W", "a_3W")
+    aside, along, across = (
+        program.let(n, e) for n, e in zip(names, extended(m, known), strict=True)
+    )
+    turn = sine_cosine(
+        program, q.theta1, -x, y, aside, sigma_waist, free=(q.theta1,), scale=m.L1 + m.L2
+    )
+    c1, s1 = turn.pairs[q.theta1]
+    outward = program.let("outward", c1 * x + s1 * y)
+    sigma_bend = program.let("sigma_bend", -sigma_waist * sigma_elbow)
+    bend = two_link_arm(
+        program,
+        (m.L1, along, across),
+        (outward, z - m.d1),
+        (theta2A, theta23A),
+        sigma_bend,
+        free=(q.theta2R, q.theta2L),
+    )
+    posture = Posture(
+        Pair(c1, s1),
+        Pair(*bend.pairs[theta2A]),
+        Pair(*bend.pairs[theta23A]),
+        *given,
+        wrist,
+        base,
+    )
+    pitched = linear_pair(q.theta, sin(pitch), cos(pitch))
+    return MidPlane((pitched, turn, bend), posture, sigma_bend)
+
+
+def tip_system(m: Dimensions, q: Joints, level: sp.Expr) -> tuple[tuple, tuple]:
+    """Targets and forward expressions of pitch and tip, with yaw, roll and pitch as given."""
+    angles = (q.theta1, theta2A, theta23A, psi, phi, pitch)
+    there = Posture(*map(pair, angles), wrist_length(m, level), m.d / level)
+    return (sp.S.Zero, x, y, z), (sin(q.theta - pitch), *tip(m, there))
+
+
+MID_PLANE_ROWS = sp.Matrix(
+    [
+        # of sin(theta - pitch), x, y, z; columns: pitch, waist, virtual arm r and h
+        [1, 0, 0, 0],
+        [0, sin(real("theta1")), cos(real("theta1")), 0],
+        [0, -cos(real("theta1")), sin(real("theta1")), 0],
+        [0, 0, 0, 1],
+    ]
+)
+
+
+def wrist_squared(m: Dimensions, base: sp.Expr) -> sp.Expr:
+    """l_W^2 of eq. (8)."""
+    return m.al**2 - (base - m.gs) ** 2
+
+
+def outer_jacobian(m: Dimensions, q: Joints, base: sp.Expr, wrist: sp.Symbol) -> sp.Matrix:
+    """Derivative of the task by (theta1, theta2A, theta23A, psi, phi, theta).
+
+    ``base`` is half the base line as a function of psi and phi; ``wrist`` stands for l_W, whose
+    derivative is that of its square divided by 2 l_W.
+    """
+    state = (q.theta1, theta2A, theta23A, psi, phi, q.theta)
+    p = Posture(*map(pair, state), wrist, base)
+    T = tip(m, p)
+    length = sp.Matrix([wrist_squared(m, base)]).jacobian(state) / (2 * wrist)
+    J = T.jacobian(state) + T.diff(wrist) * length
+    return sp.Matrix.vstack(J, sp.eye(6)[3:, :])
+
+
+def named(expr, p: Posture, q: Joints):
+    """An expression in the angles of the mid-plane, over the named pairs of a program."""
+    state = (q.theta1, theta2A, theta23A, psi, phi, q.theta)
+    names = {
+        f: n for s, t in zip(state, p[:6], strict=True) for f, n in zip(pair(s), t, strict=True)
+    }
+    return expr.xreplace(names)
+
+
+def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
+    """The wrist's dimensions and angles, where half the base line is d / ``level``."""
+    p = Program()
+    length = wrist_given(p, m, level)[0]
+    d.function(
+        "wrist_length",
+        "The variable length l_W of the wrist; NaN where the links are too short.",
+        {"psi": psi, "phi": phi},
+        {"l_W": length},
+        program=p,
+        source="eq. (8)",
+    )
+    psi_max, phi_max, beta_min = real("psi_max"), real("phi_max"), real("beta_min")
+    needed = (m.d / level - m.gs).xreplace({psi: psi_max, phi: phi_max}) / cos(beta_min)
+    span = m.al * cos(beta_min) + m.gs
+    rolls = level.has(cos(phi))
+    room, w = real("room", positive=True), real("w", positive=True)
+    d.step(
+        "Wrist design",
+        "The separation angle beta stands between a wrist link and the base line, so that "
+        "al cos(beta) spans half the base line but for half the gears.  It is smallest at the "
+        "largest angles, which gives the length of the links, or for given links the largest yaw.",
+        {r"al \ge": needed, r"\cos\psi_{max}": m.d / (span * (cos(phi) if rolls else 1))},
+        published=("(10)",),
+        equal=[(cos(2 * atan2(sqrt(room), sqrt(room + 2 * w))), w / (w + room))],
+    )
+    d.function(
+        "minimum_link_length",
+        "The shortest wrist links that keep the separation angle up to the given yaw and roll.",
+        {"psi_max": psi_max, "phi_max": phi_max, "beta_min": beta_min},
+        {"al": needed},
+        source="eq. (10)" + (", with yaw and roll combined" if rolls else ""),
+    )
+    p = Program()
+    w = p.let("span", span * (cos(phi) if rolls else 1))
+    room = p.bound("room", w - m.d, m.al + m.gs, "the links are long enough for that roll")
+    d.function(
+        "largest_yaw",
+        "The largest yaw at a roll that keeps the separation angle; NaN where there is none.",
+        {"phi": phi, "beta_min": beta_min},
+        {"psi": 2 * atan2(sqrt(room), sqrt(w + m.d))},
+        program=p,
+    )
+    p = Program()
+    w = p.let("span", span)
+    room = p.bound("room", w - m.d, m.al + m.gs, "the links are long enough")
+    adjacent = sqrt(w) + sqrt(m.d) if rolls else sqrt(w + m.d)
+    d.function(
+        "largest_angle",
+        "The largest angle that yaw and roll may both have; NaN where there is none.",
+        {"beta_min": beta_min},
+        {"angle": 2 * atan2(sqrt(room), adjacent)},
+        program=p,
+    )

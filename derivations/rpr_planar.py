@@ -1,0 +1,118 @@
+"""A planar parallel mechanism of two RPR legs: a point carried by two sliding legs."""
+
+import sympy as sp
+from closedform.derivations.papers import TEXTBOOK
+from sympy import atan2, cos, sin, sqrt
+
+from closedform.derivation import Continuum, Derivation, Inverse
+from closedform.functions import SINGLE, Program, branches, real
+from closedform.lemmas import circle_intersection
+from closedform.loops import velocity_matrices
+
+d = Derivation(
+    "rpr_planar",
+    "Planar parallel mechanism (two RPR legs)",
+    TEXTBOOK,
+    "Two legs turn freely about A, at the origin, and B, at b on the x axis; each slides out by "
+    "rho1 and rho2 and both carry the point P.  The slides are driven, the turns theta1 and theta2 "
+    "of the legs follow.",
+    task=["x", "y"],
+    singularities=("leg 1", "leg 2", "flat"),
+)
+b = d.parameter(
+    "b", value=1, unit="m", meaning="distance of the pivots", source="the unit of length"
+)
+rho1, rho2 = q = d.joint("rho1", "prismatic"), d.joint("rho2", "prismatic")
+theta1, theta2 = d.joint("theta1", passive=True), d.joint("theta2", passive=True)
+x, y = p = real("x"), real("y")
+
+loop = [x**2 + y**2 - rho1**2, (x - b) ** 2 + y**2 - rho2**2]
+legs = [
+    {x: rho1 * cos(theta1), y: rho1 * sin(theta1)},
+    {x: b + rho2 * cos(theta2), y: rho2 * sin(theta2)},
+]
+d.step(
+    "The loop",
+    "P is rho1 away from A and rho2 away from B, whatever the legs turn.",
+    {r"\rho_1^2": x**2 + y**2, r"\rho_2^2": (x - b) ** 2 + y**2},
+    equal=[(loop[0].subs(legs[0]), sp.S.Zero), (loop[1].subs(legs[1]), sp.S.Zero)],
+)
+
+sigma = real("sigma_assembly")
+modes = branches((sigma, {+1: "above", -1: "below"}))
+d.assembly_modes = modes.labels
+f = Program()
+size = b + rho1 + rho2
+point, chord = circle_intersection(
+    f, (b, sp.S.Zero), rho1, rho2, p, sigma, size, free=(theta1, theta2)
+)
+px, py = f.let("P_x", point[x]), f.let("P_y", point[y])
+d.step(
+    "Forward: two circles",
+    "P is where the circles about A and B meet: above or below the line of the pivots, the two "
+    "assembly modes.  They meet each other where the mechanism is flat.",
+    {"x": (b**2 + rho1**2 - rho2**2) / (2 * b), "y": sigma * sqrt(rho1**2 - x**2)},
+)
+d.function(
+    "fk",
+    "Position of P in both assembly modes.",
+    {"q": q},
+    {"p": [px, py]},
+    program=f,
+    branches=modes,
+    result="Positions",
+    notes=(
+        "UNREACHABLE: the legs do not meet, or a length is negative.",
+        "SINGULAR: the pivots coincide (b = 0); P is free on a circle, the point on the x axis is "
+        "returned.",
+    ),
+)
+d.inverses.append(
+    Inverse(
+        "fk",
+        p,
+        (sp.S.Zero,) * 2,
+        tuple(loop),
+        (Continuum(chord.flag, {b: sp.S.Zero, rho2: rho1}, x, r"x^2 + y^2 = \rho_1^2"),),
+    )
+)
+d.function(
+    "passive_angles",
+    "Angles of the legs in both assembly modes.",
+    {"q": q},
+    {"theta": [atan2(py, px), atan2(py, px - b)]},
+    program=f,
+    branches=modes,
+)
+
+A, B = velocity_matrices(loop, p, q)
+J = (A.inv() * B).applyfunc(sp.cancel)
+det = sp.factor(J.det())
+d.step(
+    "Velocity and singular sets",
+    "A dp = B dq.  B is singular where a leg has no length (serial: the leg may turn at will), A "
+    "where P is on the line of the pivots (parallel: the legs cannot hold P across the line).",
+    {"A": A / 2, "B": B / 2, "J": J, r"\det A": sp.factor(A.det() / 4), r"\det J": det},
+    equal=[(A * J, B), (A.det(), 4 * b * y), (B.det(), 4 * rho1 * rho2)],
+)
+at = {x: px, y: py}
+for name, summary, outputs in (
+    ("jacobian", "Derivative of p with respect to q, A^-1 B.", {"J": J.subs(at)}),
+    ("determinant", "Determinant of the Jacobian.", {"det": det.subs(at)}),
+    ("singularities", "rho1 and rho2 (serial) and y (parallel).", {"factors": [rho1, rho2, py]}),
+):
+    d.function(name, summary, {"q": q}, outputs, program=f, branches=modes)
+
+g = Program()
+d.branches = SINGLE.labels
+d.function(
+    "ik",
+    "The lengths of the legs.",
+    {"x": p},
+    {"q": [g.let("leg1", sqrt(x**2 + y**2)), g.let("leg2", sqrt((x - b) ** 2 + y**2))]},
+    program=g,
+    branches=SINGLE,
+    result="Solutions",
+    notes=("Every position can be reached, in one way: lengths are not negative.",),
+)
+d.inverses.append(Inverse("ik", q, (sp.S.Zero,) * 2, tuple(loop), images="fk", nonnegative=q))

@@ -1,0 +1,40 @@
+"""Planar parallel mechanism (two RPR legs): the generated C, with the names and the meaning of the NumPy module."""
+
+from closedform.generated.numpy.rpr_planar import (
+    ASSEMBLY_MODES,
+    BRANCHES,
+    JOINTS,
+    SINGULARITIES,
+    TASK,
+    Parameters,
+    Positions,
+    Solutions,
+    Status,
+)
+
+from . import _native
+
+__all__ = [
+    "ASSEMBLY_MODES",
+    "BRANCHES",
+    "JOINTS",
+    "SINGULARITIES",
+    "TASK",
+    "Parameters",
+    "Positions",
+    "Solutions",
+    "Status",
+    "fk",
+    "passive_angles",
+    "jacobian",
+    "determinant",
+    "singularities",
+    "ik",
+]
+
+fk = _native.function("rpr_planar.fk", Positions)
+passive_angles = _native.function("rpr_planar.passive_angles")
+jacobian = _native.function("rpr_planar.jacobian")
+determinant = _native.function("rpr_planar.determinant")
+singularities = _native.function("rpr_planar.singularities")
+ik = _native.function("rpr_planar.ik", Solutions)

@@ -1,0 +1,44 @@
+"""UR-type arm (three parallel axes): the generated C, with the names and the meaning of the NumPy module."""
+
+from closedform.generated.numpy.ur_arm import (
+    ASSEMBLY_MODES,
+    BRANCHES,
+    JOINTS,
+    SINGULARITIES,
+    TASK,
+    Parameters,
+    Positions,
+    Solutions,
+    Status,
+)
+
+from . import _native
+
+__all__ = [
+    "ASSEMBLY_MODES",
+    "BRANCHES",
+    "JOINTS",
+    "SINGULARITIES",
+    "TASK",
+    "Parameters",
+    "Positions",
+    "Solutions",
+    "Status",
+    "pose",
+    "fk",
+    "jacobian",
+    "determinant",
+    "singularities",
+    "jacobian_space",
+    "jacobian_body",
+    "ik",
+]
+
+pose = _native.function("ur_arm.pose")
+fk = _native.function("ur_arm.fk")
+jacobian = _native.function("ur_arm.jacobian")
+determinant = _native.function("ur_arm.determinant")
+singularities = _native.function("ur_arm.singularities")
+jacobian_space = _native.function("ur_arm.jacobian_space")
+jacobian_body = _native.function("ur_arm.jacobian_body")
+ik = _native.function("ur_arm.ik", Solutions)

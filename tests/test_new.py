@@ -1,0 +1,157 @@
+"""From a table of joints to an import: the skeleton, as it is written, is proved and runs."""
+
+import importlib
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from closedform.cli import main
+
+ELBOW = """\
+# h = 0.4 m: height of the shoulder
+# L1 = 0.5 m: upper arm
+a, alpha, d, theta
+0, pi/2, h, theta1
+L1, 0, 0, theta2
+0.45, 0, 0, theta3 - pi/2
+"""
+SKEW = """\
+a, alpha, d, theta
+a1, pi/3, 0, theta1
+a1, pi/3, 0, theta2
+a1, 0, 0, theta3
+"""
+SLIDES = """\
+joint, a, alpha, d, theta
+theta1, 0, 0, d0, theta1
+d2, 0, -pi/2, d2 + d0, 0
+d3, 0, 0, d3, 0
+"""
+SCREWS = """\
+[parameters]
+L = { value = 0.3, unit = "m", meaning = "link" }
+k = { value = -0.1, unit = "m", meaning = "below" }
+[[axes]]
+joint = "theta1"
+direction = [0, 0, 1]
+[[axes]]
+joint = "theta2"
+direction = [0, 0, 1]
+point = ["L", 0, 0]
+[home]
+position = ["L + 1/5", 0, "k"]
+"""
+
+
+def derived(folder: Path, name: str, kind: str, text: str, monkeypatch: pytest.MonkeyPatch):
+    """The NumPy module that follows from a table."""
+    table = folder / f"table.{'csv' if kind == 'dh' else 'toml'}"
+    table.write_text(text, "utf-8")
+    assert main(["new", name, "--from", kind, str(table), "-o", str(folder)]) == 0
+    assert main(["derive", str(folder / f"{name}.py"), "-o", str(folder / f"out_{name}")]) == 0
+    monkeypatch.syspath_prepend(str(folder))
+    importlib.invalidate_caches()
+    return importlib.import_module(f"out_{name}.numpy.{name}")
+
+
+def dh(a: float, alpha: float, d: float, theta: float) -> np.ndarray:
+    c, s, k, t = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+    return np.array(
+        [[c, -s * k, s * t, a * c], [s, c * k, -c * t, a * s], [0, t, k, d], [0, 0, 0, 1]]
+    )
+
+
+def test_an_elbow_arm_with_its_inverse(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    arm = derived(tmp_path, "elbow", "dh", ELBOW, monkeypatch)
+    assert arm.Parameters._fields == ("h", "L1") and arm.Parameters() == (0.4, 0.5)
+    q = np.random.default_rng(0).uniform(-3, 3, (30, 3))
+    for row in q:
+        T = dh(0, np.pi / 2, 0.4, row[0]) @ dh(0.5, 0, 0, row[1])
+        T = T @ dh(0.45, 0, 0, row[2] - np.pi / 2)
+        np.testing.assert_allclose(arm.pose(row), T, atol=1e-14)
+        np.testing.assert_allclose(arm.fk(row), T[:3, 3], atol=1e-14)
+    solutions = arm.ik(arm.fk(q))
+    assert (solutions.status == 0).all()
+    np.testing.assert_allclose(arm.fk(solutions.q), np.repeat(arm.fk(q)[:, None], 4, 1), atol=1e-13)
+    gaps = np.abs(np.angle(np.exp(1j * (solutions.q - q[:, None])))).max(-1).min(-1)
+    assert gaps.max() < 1e-10
+    np.testing.assert_allclose(arm.determinant(q), np.linalg.det(arm.jacobian(q)), atol=1e-14)
+    assert arm.singularities(q).shape == (30, 2)
+    assert "Nothing exceeds" in (tmp_path / "out_elbow" / "elbow-crosscheck.md").read_text("utf-8")
+
+
+def test_an_arm_of_unknown_structure_has_a_place_for_the_inverse(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arm = derived(tmp_path, "skew", "dh", SKEW, monkeypatch)
+    q = np.array([0.3, -0.4, 0.9])
+    T = dh(1, np.pi / 3, 0, 0.3) @ dh(1, np.pi / 3, 0, -0.4) @ dh(1, 0, 0, 0.9)
+    np.testing.assert_allclose(arm.pose(q), T, atol=1e-14)
+    assert not hasattr(arm, "ik")
+    np.testing.assert_allclose(arm.determinant(q), np.linalg.det(arm.jacobian(q)), atol=1e-14)
+    text = (tmp_path / "skew.py").read_text("utf-8")
+    assert "# Inverse: no chain is known for the axes R | R | R" in text
+    assert "# Put it here, lemma by lemma" in text
+
+
+def test_the_joint_of_a_row_may_be_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    arm = derived(tmp_path, "lift", "dh", SLIDES, monkeypatch)
+    assert arm.JOINTS == ("theta1", "d2", "d3") and arm.Parameters._fields == ("d0",)
+    np.testing.assert_allclose(arm.fk([0.0, 2.0, 5.0]), [0, 5, 4], atol=1e-15)
+    assert len(arm.BRANCHES) == 2
+
+
+def test_screws(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    arm = derived(tmp_path, "screwed", "screws", SCREWS, monkeypatch)
+    assert arm.Parameters() == (0.3, -0.1)
+    q = np.array([0.4, 0.7])
+    x = 0.3 * np.exp(0.4j) + 0.2 * np.exp(1.1j)
+    np.testing.assert_allclose(arm.fk(q), [x.real, x.imag], atol=1e-15)
+    np.testing.assert_allclose(arm.pose(q)[2, 3], -0.1)
+    np.testing.assert_allclose(arm.ik(arm.fk(q)).q[0], q, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "message"),
+    [
+        ("dh", "a, alpha, d\n0, 0, 1\n", "table, line 1: the column theta is missing"),
+        ("dh", "a, alpha, d, theta\n0, 0, q1\n", "table, line 2: 3 entries in 4 columns"),
+        ("dh", "a, alpha, d, theta\n0, 0, 0, 0\n", "line 2: no joint"),
+        ("dh", "a, alpha, d, theta\n0, 0, 0, t1 + t2\n", "line 2: t1, t2 stand in theta"),
+        (
+            "dh",
+            "a, alpha, d, theta\n0, 0, 0, t\n0, 0, 0, t\n",
+            "line 3: two joints have the name t",
+        ),
+        ("dh", "a, alpha, d, theta\n(, 0, 0, t\n", "line 2, column a: cannot read '('"),
+        ("dh", "# L = 1 m: x\na, alpha, d, theta\n0, 0, 0, t\n", "the parameter L stands nowhere"),
+        ("dh", "", "the table is empty"),
+        ("screws", "axes = 3 4", "table: "),
+        ("screws", "[parameters]\n", "there are no [[axes]]"),
+        ("screws", '[[axes]]\njoint = "t"\n', "axis 1: direction is missing"),
+        ("screws", '[[axes]]\njoint = "t"\ndirection = [0, 1, 1]\n', "no unit length"),
+    ],
+)
+def test_a_table_that_cannot_be_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str, text: str, message: str
+) -> None:
+    table = tmp_path / "table"
+    table.write_text(text, "utf-8")
+    assert main(["new", "arm", "--from", kind, str(table), "-o", str(tmp_path)]) == 1
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "arm.py").exists()
+
+
+def test_new_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = tmp_path / "t.csv"
+    table.write_text(ELBOW, "utf-8")
+    (tmp_path / "arm.py").write_text("mine", "utf-8")
+    assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
+    assert "exists already" in capsys.readouterr().err
+    assert main(["new", "my arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
+    assert main(["new", "arm2", "--from", "urdf", str(table)]) == 2
+    assert main(["new", "arm2", "--from", "dh", "nowhere.csv"]) == 2
+    assert (tmp_path / "arm.py").read_text("utf-8") == "mine"
+    assert "arm" not in sys.modules

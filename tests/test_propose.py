@@ -1,0 +1,184 @@
+"""Proposed inverses: the structure is recognised from the axes, and the proof accepts each."""
+
+from collections.abc import Callable
+
+import pytest
+import sympy as sp
+from sympy import pi
+
+from closedform.arm import Serial, from_dh, from_screws
+from closedform.chain import Chain
+from closedform.derivation import Derivation, Paper
+from closedform.propose import NoChainError, propose
+from closedform.prove import ProofError, prove
+
+LENGTHS = ("a", "b", "c", "e", "f", "g")
+
+
+def arm(joints: str, rows: Callable, *, modified: bool = False) -> tuple[Derivation, Serial]:
+    d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
+    lengths = [d.parameter(n, value=1, unit="m", meaning=n) for n in LENGTHS]
+    q = [d.joint(n, "prismatic" if n.startswith("d") else "revolute") for n in joints.split()]
+    return d, from_dh(d, rows(*lengths, *q), modified=modified)
+
+
+SIX = "t1 t2 t3 t4 t5 t6"
+KNOWN = {
+    "planar arm of two links": (
+        "t1 t2", 2,
+        lambda a, b, c, e, f, g, t1, t2: [(a, 0, c, t1), (b, 0, 0, t2)],
+    ),
+    "planar arm of two links and a yaw": (
+        "t1 t2 t3", 2,
+        lambda a, b, c, e, f, g, t1, t2, t3: [(a, 0, 0, t1), (b, 0, e, t2), (c, 0, 0, t3)],
+    ),
+    "planar arm of two links and a yaw, with a slide (SCARA)": (
+        "t1 t2 d3 t4", 2,
+        lambda a, b, c, e, f, g, t1, t2, d3, t4: [
+            (a, 0, c, t1), (b, pi, 0, t2), (0, 0, d3, 0), (0, 0, e, t4 + pi / 2),
+        ],
+    ),
+    "gantry": (
+        "d1 d2 d3", 1,
+        lambda a, b, c, e, f, g, d1, d2, d3: [
+            (0, pi / 2, d1, pi / 2), (a, pi / 2, d2, pi / 2), (0, 0, d3 + b, 0),
+        ],
+    ),
+    "cylindrical arm": (
+        "t1 d2 d3", 2,
+        lambda a, b, c, e, f, g, t1, d2, d3: [
+            (0, 0, a, t1), (0, -pi / 2, d2, 0), (0, 0, d3 + b, 0),
+        ],
+    ),
+    "turret and two parallel joints": (
+        "t1 t2 t3", 4,
+        lambda a, b, c, e, f, g, t1, t2, t3: [(a, pi / 2, b, t1), (c, 0, e, t2), (f, 0, 0, t3)],
+    ),
+    "turret, a joint and a slide (polar arm)": (
+        "t1 t2 d3", 4,
+        lambda a, b, c, e, f, g, t1, t2, d3: [
+            (0, -pi / 2, a, t1), (0, pi / 2, b, t2), (0, 0, d3, 0),
+        ],
+    ),
+    "turret and two parallel joints, with a spherical wrist": (
+        SIX, 8,
+        lambda a, b, c, e, f, g, t1, t2, t3, t4, t5, t6: [
+            (0, pi / 2, 0, t1), (a, 0, 0, t2), (b, -pi / 2, c, t3),
+            (0, pi / 2, e, t4), (0, -pi / 2, 0, t5), (0, 0, g, t6),
+        ],
+    ),
+    "turret, a joint and a slide (polar arm), with a spherical wrist": (
+        "t1 t2 d3 t4 t5 t6", 8,
+        lambda a, b, c, e, f, g, t1, t2, d3, t4, t5, t6: [
+            (0, -pi / 2, a, t1), (0, pi / 2, b, t2), (0, 0, d3, -pi / 2),
+            (0, -pi / 2, 0, t4), (0, pi / 2, 0, t5), (0, 0, g, t6),
+        ],
+    ),
+    "turret, three parallel joints and two more (UR)": (
+        SIX, 8,
+        lambda a, b, c, e, f, g, t1, t2, t3, t4, t5, t6: [
+            (0, pi / 2, a, t1), (-b, 0, 0, t2), (-c, 0, 0, t3),
+            (0, pi / 2, e, t4), (0, -pi / 2, f, t5), (0, 0, g, t6),
+        ],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("structure", KNOWN)
+def test_the_proof_accepts_the_proposal(structure: str) -> None:
+    joints, branches, rows = KNOWN[structure]
+    d, serial = arm(joints, rows)
+    found = propose(serial)
+    assert found.structure == structure
+    forward = serial.export(d)
+    ik = Chain(d, forward, angles=["yaw"] if "yaw" in d.task else [])
+    found.apply(ik)
+    ik.finish("Inverse.")
+    (inverse,) = prove(d).inverses
+    assert inverse.branches == branches == inverse.solutions
+
+
+@pytest.mark.parametrize("robot", ["scara", "ur_arm"])
+def test_the_inverses_of_the_examples_are_proposed(robot: str) -> None:
+    """From the axes of the example alone the same lemmas follow, for the same joints."""
+    import importlib
+
+    module = importlib.import_module(f"closedform.derivations.{robot}")
+    found = propose(module.arm)
+    (inverse,) = module.d.inverses
+    names = {
+        "a sin x + b cos x = c": "turn",
+        "two-link arm": "two_links",
+        "slide": "slide",
+        "remaining angle": "remainder",
+        "ZYZ angles": "zyz",
+    }
+    assert found.lemmas == tuple(names[link.lemma.name] for link in inverse.chain)
+
+
+def test_a_modified_table_and_screws_are_recognised_alike() -> None:
+    d, serial = arm(
+        "t1 t2 t3",
+        lambda a, b, c, e, f, g, t1, t2, t3: [(0, 0, a, t1), (0, pi / 2, e, t2), (b, 0, 0, t3)],
+        modified=True,
+    )
+    with pytest.raises(NoChainError, match="a link of the plane arm has no length"):
+        propose(serial)  # the tool is on the last axis
+    a, b, c, e, *_ = (p.symbol for p in d.parameters)
+    q = d.actuated
+    axes = [
+        (q[0], (0, 0, 1), (0, 0, 0)),
+        (q[1], (0, 1, 0), (0, e, a)),
+        (q[2], (0, 1, 0), (0, e, a + b)),
+    ]
+    home = sp.Matrix([[1, 0, 0, c], [0, 1, 0, e], [0, 0, 1, a + b], [0, 0, 0, 1]])
+    serial = from_screws(d, axes, home)
+    found = propose(serial)
+    assert found.structure == "turret and two parallel joints"
+    ik = Chain(d, serial.export(d))
+    found.apply(ik)
+    ik.finish("Inverse.")
+    assert prove(d).inverses[0].branches == 4
+
+
+@pytest.mark.parametrize(
+    ("joints", "rows", "why"),
+    [
+        (SIX, lambda a, b, c, e, f, g, *t: [(a, pi / 2, 0, x) for x in t], "passes by the axis 5"),
+        (
+            "t1 t2 t3",
+            lambda a, b, c, e, f, g, t1, t2, t3: [
+                (a, pi / 3, 0, t1),
+                (b, pi / 3, 0, t2),
+                (c, 0, 0, t3),
+            ],
+            r"for the axes R \| R \| R",
+        ),
+        (
+            "t1 t2 t3 t4 t5",
+            lambda a, b, c, e, f, g, *t: [(a, pi / 2, b, x) for x in t],
+            "5 joints whose task is the pose",
+        ),
+    ],
+)
+def test_it_says_plainly_when_it_knows_no_chain(joints: str, rows: Callable, why: str) -> None:
+    with pytest.raises(NoChainError, match=f"no chain is known.*{why}"):
+        propose(arm(joints, rows)[1])
+
+
+def test_the_proof_decides_and_not_the_proposal() -> None:
+    """An edited proposal that is wrong is refused."""
+    joints, _, rows = KNOWN["turret and two parallel joints"]
+    d, serial = arm(joints, rows)
+    found = propose(serial)
+    wrong = type(found)(
+        found.structure,
+        tuple(line.replace("-p[1]", "p[1]") for line in found.lines),
+        found.lemmas,
+    )
+    assert wrong != found
+    ik = Chain(d, serial.export(d))
+    wrong.apply(ik)
+    ik.finish("Inverse.")
+    with pytest.raises(ProofError, match="must follow from the forward map"):
+        prove(d)

@@ -71,7 +71,7 @@ def ulps(got: float, value: arb, real: str) -> float:
     """An upper bound of the error, in the spacing of the type at the ball's end nearer to 0."""
     _, _, mantissa, lowest = TYPES[real]
     size = value.abs_lower()
-    exponent = math.frexp(float(size))[1] - 1
+    exponent = math.frexp(float(size))[1] - 1 if float(size) else lowest
     if arb(2) ** exponent > size:  # the conversion rounded it up to a power of two
         exponent -= 1
     unit = arb(2) ** (max(exponent, lowest) - mantissa)

@@ -23,6 +23,7 @@ import numpy as np
 from closedform.generated.c import puma560 as compiled
 
 from . import native
+from .cases import check
 from .solvers import (
     CASE,
     MOST,
@@ -190,7 +191,8 @@ def from_c(report: Any, rounds: int, peer: bool) -> None:
     inputs = np.ascontiguousarray(random_poses(512)[1].reshape(512, 16))
     for label, target in native.TARGETS.items():
         with tempfile.TemporaryDirectory() as folder:
-            ours, _ = native.timer("closedform", CASE, target, Path(folder), inputs)
+            ours, values = native.timer("closedform", CASE, target, Path(folder), inputs)
+        check(CASE, values, CASE.values(inputs))
         competitors = {"closedform C": lambda ours=ours: ours() / 1000}
         if peer:
             run, out = toolbox_run(target), np.empty(MOST * 6 + 1)

@@ -27,7 +27,6 @@ from .cases import Case
 A = np.array([0, 0.4318, 0.0203, 0, 0, 0])
 D = np.array([0, 0, 0.15005, 0.4318, 0, 0])
 ALPHA = np.array([1, 0, -1, 1, -1, 0]) * np.pi / 2
-ARM = compiled.Parameters()
 CASE = Case("6R inverse", "puma560", "ik")
 
 Answers = tuple[np.ndarray, np.ndarray]  # joints (k, 6), and which are said to be exact (k,)
@@ -123,7 +122,7 @@ def statuses(result: Any) -> Answers:
 
 def ours_single() -> Solver:
     out = compiled.ik(np.eye(4))
-    return looped(partial(compiled.ik, params=ARM, out=out), statuses, poses=100_000)
+    return looped(partial(compiled.ik, out=out), statuses, poses=100_000)
 
 
 def ours_batch(module: Any, backend: str, layout: str) -> Solver:
@@ -163,16 +162,18 @@ __attribute__((noinline)) void evaluate(const double *in, double *out)
 
 def toolbox_run(target: str) -> Callable[..., float]:
     """The timing loop of ``native`` over the C that the toolbox writes, with its own tolerance."""
-    folder = Path(tempfile.mkdtemp())
-    (folder / "toolbox.c").write_text(toolbox().generate("c") + TOOLBOX_CALL)
-    (folder / "loop.c").write_text(native.LOOP)
-    library = str(folder / "toolbox.so")
-    command = ["gcc", "-std=gnu99", *native.FLAGS, f"-march={target}", "-o", library]
-    command += [str(folder / "toolbox.c"), str(folder / "loop.c"), "-lm"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(done.stderr.strip().splitlines()[0])
-    run = ctypes.CDLL(library).run
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        sources = {"toolbox.c": toolbox().generate("c") + TOOLBOX_CALL, "loop.c": native.LOOP}
+        for file, text in sources.items():
+            (folder / file).write_text(text)
+        command = ["gcc", "-std=gnu99", *native.FLAGS, f"-march={target}", "-o", "toolbox.so"]
+        done = subprocess.run(
+            [*command, *sources, "-lm"], cwd=folder, capture_output=True, text=True, check=False
+        )
+        if done.returncode:
+            raise RuntimeError(done.stderr.strip().splitlines()[0])
+        run = ctypes.CDLL(str(folder / "toolbox.so")).run
     run.restype = ctypes.c_double
     pointer = np.ctypeslib.ndpointer(np.float64, flags="C")
     run.argtypes = [pointer, pointer, *[ctypes.c_int] * 4]

@@ -122,7 +122,7 @@ def statuses(result: Any) -> Answers:
 
 def ours_single() -> Solver:
     out = compiled.ik(np.eye(4))
-    return looped(partial(compiled.ik, out=out), statuses, poses=100_000)
+    return looped(lambda T: compiled.ik(T, out=out), statuses, poses=100_000)
 
 
 def ours_batch(module: Any, backend: str, layout: str) -> Solver:

@@ -1,0 +1,82 @@
+"""The measuring itself: the comparison of inverses sees what is wrong, the accuracy is bounded."""
+
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from closedform.generated.numpy import puma560
+from flint import arb
+
+from benchmarks import accuracy, inverses, solvers
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def test_table_is_the_arm():
+    q = np.random.default_rng(0).uniform(-3, 3, (20, 6))
+    np.testing.assert_allclose(solvers.pose(q), puma560.fk(q), atol=1e-14)
+
+
+@pytest.mark.parametrize("near", [False, True])
+@pytest.mark.parametrize("kind", inverses.SINGULARITIES)
+def test_poses_are_singular(kind, near):
+    T = inverses.singular_poses(kind, near)
+    q, _ = puma560.ik(T)
+    factors = np.array(puma560.singularities(q))[..., puma560.SINGULARITIES.index(kind)]
+    # At the shoulder and the elbow the factor is the root of how far the pose is out of reach.
+    least = np.nanmin(abs(factors), axis=-1)
+    assert least.max() < 2e-6
+    assert (least > 1e-13).any() or not near
+
+
+def test_our_inverse_passes():
+    solver = replace(solvers.ours_single(), poses=500)
+    figures = inverses.on_random_poses(solver) | inverses.on_singularities(solver)
+    assert figures["missing"] == figures["wrong"] == 0
+    assert all(
+        figures[kind + near] == "0" for kind in inverses.SINGULARITIES for near in ("", " near")
+    )
+    assert max(figures["m"], figures["m, singular"]) < 1e-12
+    assert max(figures["rad"], figures["rad, singular"]) < 1e-10
+
+
+def test_a_flawed_inverse_is_seen():
+    whole = solvers.ours_batch(puma560, "numpy", "rows")
+
+    def many(T):
+        q, exact = whole.many(T)
+        q = q.copy()
+        q[:, 1] = np.nan  # a branch is not there
+        q[:, 2, 5] += 1e-4  # one is not exact, and so not that branch either
+        return q, exact & np.isfinite(q).all(axis=-1)
+
+    figures = inverses.on_random_poses(replace(whole, many=many, poses=50))
+    assert (figures["missing"], figures["wrong"]) == (100, 50)
+    assert figures["rad"] == pytest.approx(1e-4, rel=1e-3)
+
+
+def test_what_is_no_pose():
+    mirrored = np.diag([1.0, 1, -1, 1])[None]
+    assert inverses.verdicts(solvers.ours_single(), mirrored) == "INVALID"
+
+
+def test_ulps_at_a_power_of_two():
+    below = arb(1) / 2 - arb(2) ** -200  # its binade has half the spacing of that of 1/2
+    assert accuracy.ulps(0.5 + 2**-53, below, "double") == pytest.approx(2)
+    assert accuracy.ulps(0.5 + 2**-53, arb(1) / 2, "double") == pytest.approx(1)
+    assert accuracy.ulps(5e-324, arb(0), "double") == pytest.approx(1)
+    assert accuracy.ulps(1e-45, arb(0), "float") < 1
+
+
+@pytest.mark.skipif(
+    not shutil.which("gcc") or np.finfo(np.longdouble).nmant < 63, reason="no gcc or no wider type"
+)
+def test_accuracy_of_a_small_sample():
+    command = [sys.executable, "-m", "benchmarks.accuracy", "--samples", "100000", "--keep", "20"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("| 100,000 |") == 12

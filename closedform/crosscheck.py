@@ -236,7 +236,7 @@ def check_inverse(
     back; else (the assembly modes of a loop) inputs are sampled as they are.
     """
     finding = Finding(derivation.name, function.name, backend.name, unit="residual / eps")
-    if inverse.chain:
+    if inverse.reduction:
         inverse = inverse.posed(function.symbols, derivation[inverse.images].values({}))
     truth = _Truth(derivation, function, inverse)
     if not truth.has_images:

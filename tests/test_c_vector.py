@@ -14,7 +14,9 @@ import pytest
 
 C = Path(__file__).resolve().parent.parent / "generated" / "c"
 ROBOTS = sorted(path.stem for path in C.glob("*.c") if path.stem != "extension")
+# Without folding of identical functions: pose and fk may be one, and gcc would tell of it once.
 FLAGS = "-std=c99 -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast -march=x86-64-v3"
+FLAGS += " -fno-ipa-icf"
 TYPES = {np.float64: [], np.float32: ["-DCLOSEDFORM_FLOAT"]}
 POSTURES = 300  # more than a block, and a remainder that is no whole vector
 CPU = Path("/proc/cpuinfo")
@@ -115,7 +117,7 @@ def test_batch_and_single_call_agree(robot, real, build):
     header = " ".join((C / f"{robot}.h").read_text().split())
     fields = len(re.findall(r"real_t \w+; /\*", header))
     params = np.linspace(3, 2, fields).astype(real)
-    few_ulps = 16 * np.finfo(real).eps
+    few_ulps = 64 * np.finfo(real).eps
 
     functions = re.findall(rf"void ({robot}_\w+)\(([^()]*)\);", header)
     known: dict[str, np.ndarray] = {}

@@ -141,4 +141,4 @@ def test_batch_and_single_call_agree(robot, real, build):
             assert np.nanmax(apart) < np.sqrt(few_ulps), name
             assert np.nanquantile(apart, 0.98) < few_ulps, name
         if inverse:
-            assert np.mean((batch[-1] == 0).any(axis=0)) > 0.5, name
+            assert np.mean((batch[-1] == 0).any(axis=0)) > 0.1, name

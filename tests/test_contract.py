@@ -251,7 +251,9 @@ def test_back_ends_agree(robot: str, data: st.DataObject) -> None:
                 np.testing.assert_allclose(u, v, rtol=0, atol=1e-13 * size)
     x = image(numpy, q)
     a, b = numpy.ik(x), c.ik(x)
-    np.testing.assert_array_equal(a.status, b.status)
+    # On a singular posture rounding decides whether a joint counts as free; both answers hold.
+    solved = [np.where(r.status == numpy.Status.SINGULAR, 0, r.status) for r in (a, b)]
+    np.testing.assert_array_equal(*solved)
     if not numpy.ASSEMBLY_MODES:
         np.testing.assert_allclose(numpy.fk(a.q), numpy.fk(b.q), rtol=0, atol=1e-12)
 

@@ -104,5 +104,4 @@ CASES = [
     Case("IRB 260 forward", "irb260", "fk"),
     Case("2R inverse, both branches", "planar_2r", "ik"),
     Case("five-bar inverse, all eight", "hybrid_five_bar", "ik"),
-    Case("H6AR inverse", "h6ar", "ik"),
 ]

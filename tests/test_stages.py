@@ -58,7 +58,7 @@ def test_a_missing_branch_is_counted(arm: Derivation) -> None:
     half = dataclasses.replace(every, labels=every.labels[:4], signs=every.signs[:4])
     arm.functions[k] = dataclasses.replace(arm.functions[k], branches=half)
     inverse = dataclasses.replace(arm.inverses[0], continua=())
-    with pytest.raises(ProofError, match="8 solutions .*, but 4 branches"):
+    with pytest.raises(ProofError, match=r"8 solutions .*, but 4 branches"):
         prove_inverse(arm, inverse)
 
 

@@ -22,7 +22,8 @@ import sympy as sp
 from closedform.derivation import Derivation, Inverse, Link, Solved
 from closedform.functions import SINGLE, Let, Program, Statement, branches, real, substitute
 from closedform.lemmas import Lemma
-from closedform.linklemmas import Applied, Pair
+from closedform.linklemmas import Applied
+from closedform.pairs import Pair
 from closedform.shapes import ShapeError
 
 Choice = Mapping[int, str]

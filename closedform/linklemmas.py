@@ -17,30 +17,13 @@ import sympy as sp
 
 from closedform.derivation import Degenerate
 from closedform.functions import choose, real
-from closedform.lemmas import Lemma
+from closedform.lemmas import Lemma, heron_factors, label
+from closedform.pairs import Pair, amplitude_lemma
 from closedform.shapes import ShapeError
 from closedform.solutions import rotation_parametrisation
 
 if TYPE_CHECKING:
     from closedform.chain import Chain, Choice
-
-
-@dataclass(frozen=True)
-class Pair:
-    """The sine and the cosine of an angle."""
-
-    s: sp.Expr
-    c: sp.Expr
-
-    @property
-    def angle(self) -> sp.Expr:
-        return sp.atan2(self.s, self.c)
-
-    def __add__(self, other: Pair) -> Pair:
-        return Pair(self.s * other.c + self.c * other.s, self.c * other.c - self.s * other.s)
-
-    def __neg__(self) -> Pair:
-        return Pair(-self.s, self.c)
 
 
 def turned(pair: Pair) -> sp.Matrix:
@@ -59,15 +42,10 @@ class Applied:
     degenerate: tuple[Degenerate, ...] = ()
 
 
-def label(angle: sp.Symbol) -> str:
-    return str(angle.name).removeprefix("theta")
-
-
 def named(chain: Chain, angle: sp.Symbol, pair: Pair) -> tuple[Pair, dict[sp.Symbol, sp.Expr]]:
     """The pair, named ``s`` and ``c`` with the number of the joint, and what the names mean."""
-    s = chain.program.let(f"s{label(angle)}", pair.s)
-    c = chain.program.let(f"c{label(angle)}", pair.c)
-    return Pair(s, c), {s: sp.sin(angle), c: sp.cos(angle)}
+    names = pair.known_as(chain.program, label(angle))
+    return names, {names.s: sp.sin(angle), names.c: sp.cos(angle)}
 
 
 def turn(
@@ -94,14 +72,7 @@ def turn(
     both = Pair(a / h, b / h) + away
     pair, means = named(chain, x, Pair(choose(flag, 0, both.s), choose(flag, 1, both.c)))
     coefficients = sorted({s for e in (a, b, c) for s in e.free_symbols}, key=str)
-    lemma = Lemma(
-        "a sin x + b cos x = c",
-        r"a\sin x + b\cos x = c \;\Rightarrow\; x = \operatorname{atan2}(a, b) + \sigma\delta,\ "
-        r"(\cos\delta, \sin\delta) = \frac{(c, \sqrt{(h - c)(h + c)})}{h},\ h = \sqrt{a^2+b^2}",
-        (a * sp.sin(x) + b * sp.cos(x) - c,),
-        {x: pair.angle},
-        2,
-    )
+    lemma = amplitude_lemma(x, a, b, c, pair)
     free = Degenerate(
         (flag,),
         dict.fromkeys(coefficients, sp.S.Zero),
@@ -137,10 +108,7 @@ def two_links(
     sigma = chain.sign(name, choice)
     r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
     half = scale / 2  # what is clamped stays well within the round trip that is promised
-    S = p.let(f"S_{name}", l1 + l2 + r, nonnegative=True)
-    A = p.bound(f"A_{name}", l1 + l2 - r, half, "nearer than full stretch")
-    B = p.bound(f"B_{name}", r + l1 - l2, half, "farther than the fold")
-    C = p.bound(f"C_{name}", r - l1 + l2, half, "farther than the fold")
+    S, A, B, C = heron_factors(p, l1, l2, r, half, suffix=f"_{name}")
     no_link = p.vanishes(
         f"no_link_{name}", l1 * l2, (l1 + l2) ** 2, "a link has no length", free=(second,)
     )
@@ -163,8 +131,7 @@ def two_links(
     off = Pair(
         choose(no_link, 0, sigma * root / at_base), choose(no_link, 1, (S * B - A * C) / at_base)
     )
-    off = Pair(p.let(f"s_base_{name}", off.s), p.let(f"c_base_{name}", off.c))
-    bearing = Pair(y / r, x / r) + -off
+    bearing = Pair(y / r, x / r) - off.known_as(p, f"_base_{name}")
     lift, more = named(
         chain, first, Pair(choose(folded, 0, bearing.s), choose(folded, 1, bearing.c))
     )

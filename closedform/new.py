@@ -285,7 +285,6 @@ def _imports(text: str) -> str:
         "closedform.derivation": ["Derivation", "Paper"],
         "closedform.linklemmas": used(
             [
-                "Pair",
                 "Reaching",
                 "polar",
                 "remainder",
@@ -296,6 +295,7 @@ def _imports(text: str) -> str:
                 "zyz",
             ]
         ),
+        "closedform.pairs": used(["Pair"]),
     }
     lines = [
         f"from {module} import {', '.join(names)}" for module, names in wanted.items() if names

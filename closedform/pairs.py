@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.functions import Program, choose
-from closedform.lemmas import Lemma
+from closedform.lemmas import Lemma, heron_factors, label, triangle_equations
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,11 @@ class Pair:
     def __add__(self, other: Pair) -> Pair:
         return Pair(self.s * other.c + self.c * other.s, self.c * other.c - self.s * other.s)
 
+    def __neg__(self) -> Pair:
+        return Pair(-self.s, self.c)
+
     def __sub__(self, other: Pair) -> Pair:
-        return self + Pair(-other.s, other.c)
+        return self + -other
 
     @property
     def angle(self) -> sp.Expr:
@@ -50,6 +53,18 @@ def of_angle(angle: sp.Expr) -> Pair:
 def direction(y: sp.Expr, x: sp.Expr, length: sp.Expr, undefined: sp.Basic = sp.false) -> Pair:
     """The pair of ``atan2(y, x)`` for a vector of the given length; zero where it is undefined."""
     return Pair(choose(undefined, 0, y / length), choose(undefined, 1, x / length))
+
+
+def amplitude_lemma(x: sp.Symbol, a: sp.Expr, b: sp.Expr, c: sp.Expr, pair: Pair) -> Lemma:
+    """``a sin x + b cos x = c``, solved by a pair that was built for either sign."""
+    return Lemma(
+        "a sin x + b cos x = c",
+        r"a\sin x + b\cos x = c \;\Rightarrow\; x = \operatorname{atan2}(a, b) + \sigma\delta,\ "
+        r"(\cos\delta, \sin\delta) = \frac{(c, \sqrt{(h - c)(h + c)})}{h},\ h = \sqrt{a^2+b^2}",
+        (a * sp.sin(x) + b * sp.cos(x) - c,),
+        {x: pair.angle},
+        2,
+    )
 
 
 def sine_cosine_pair(
@@ -77,16 +92,8 @@ def sine_cosine_pair(
     width = program.let(f"width{suffix}", below + above, nonnegative=True)
     turn = Pair(2 * sigma * root / width, (above - below) / width)
     both = Pair(a / h, b / h) + turn
-    pair = Pair(choose(flag, 0, both.s), choose(flag, 1, both.c)).known_as(program, _label(x))
-    lemma = Lemma(
-        "a sin x + b cos x = c",
-        r"a\sin x + b\cos x = c \;\Rightarrow\; x = \operatorname{atan2}(a, b) + \sigma\delta,\ "
-        r"(\cos\delta, \sin\delta) = \frac{(c, \sqrt{(h - c)(h + c)})}{h},\ h = \sqrt{a^2+b^2}",
-        (a * sp.sin(x) + b * sp.cos(x) - c,),
-        {x: pair.angle},
-        2,
-    )
-    return lemma, pair, -sigma * root, flag
+    pair = Pair(choose(flag, 0, both.s), choose(flag, 1, both.c)).known_as(program, label(x))
+    return amplitude_lemma(x, a, b, c, pair), pair, -sigma * root, flag
 
 
 def triangle_pairs(
@@ -113,10 +120,7 @@ def triangle_pairs(
     length: the convention is a stretched triangle.  The second is free where the reach is zero;
     this flag, ``folded``, is returned.
     """
-    S = program.let(f"S{suffix}", first + second + reach, nonnegative=True)
-    A = program.bound(f"A{suffix}", first + second - reach, scale, "nearer than full stretch")
-    B = program.bound(f"B{suffix}", reach + first - second, scale, "farther than the fold")
-    C = program.bound(f"C{suffix}", reach - first + second, scale, "farther than the fold")
+    S, A, B, C = heron_factors(program, first, second, reach, scale, suffix=suffix)
     no_link = program.vanishes(
         f"no_link{suffix}", first * second, (first + second) ** 2, "a link is missing", free[:1]
     )
@@ -137,10 +141,7 @@ def triangle_pairs(
         "two-link triangle",
         r"(\cos\theta, \sin\theta) = \frac{(BC - SA,\ 2\sigma\sqrt{SABC})}{BC + SA},\quad "
         r"(\cos\alpha, \sin\alpha) = \frac{(SB - AC,\ 2\sigma\sqrt{SABC})}{SB + AC}",
-        (
-            first + second * sp.cos(elbow) - reach * sp.cos(base),
-            second * sp.sin(elbow) - reach * sp.sin(base),
-        ),
+        triangle_equations(first, second, reach, elbow, base),
         {elbow: at_elbow.angle, base: at_base.angle},
         2,
     )
@@ -149,7 +150,3 @@ def triangle_pairs(
 
 def _heron(S: sp.Expr, A: sp.Expr, B: sp.Expr, C: sp.Expr) -> dict[str, sp.Expr]:
     return {"SA": S * A, "BC": B * C, "SB": S * B, "AC": A * C}
-
-
-def _label(joint: sp.Symbol) -> str:
-    return str(joint.name).removeprefix("theta")

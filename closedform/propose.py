@@ -20,8 +20,10 @@ from typing import Any
 import sympy as sp
 from sympy.printing.str import StrPrinter
 
+from closedform import linklemmas
 from closedform.arm import Group, Serial
 from closedform.frames import rotation
+from closedform.pairs import Pair
 
 Z = sp.Matrix([0, 0, 1])
 NAMES = ("Matrix", "Rational", "atan", "atan2", "cos", "pi", "sin", "sqrt")
@@ -46,12 +48,11 @@ class Proposal:
 
     def apply(self, ik: Any) -> None:
         """Run the lines, for the chain ``ik``; what is wrong with them the proof finds."""
-        from closedform import linklemmas
-
         names: dict[str, Any] = {
             **{s.name: s for s in (*(p.symbol for p in ik.d.parameters), *ik.joints)},
-            **{n: getattr(linklemmas, n) for n in (*self.lemmas, "Pair", "turned", "Reaching")},
+            **{n: getattr(linklemmas, n) for n in (*self.lemmas, "turned", "Reaching")},
             **{n: getattr(sp, n) for n in NAMES},
+            "Pair": Pair,
             "ik": ik,
         }
         exec(compile(self.source, "proposal", "exec"), names)

@@ -8,29 +8,24 @@ that does not hold gets its verdict.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
-from functools import lru_cache
 from typing import Any
 
 import sympy as sp
 
-from closedform.algebra import Decision, Undecided, decide, normal
+from closedform.algebra import Undecided, normal
 from closedform.claims import VERDICTS
 from closedform.derivation import Continuum, Derivation, Inverse, Stage
-from closedform.functions import Array, Bound, Function, Let, Program, real, substitute
-from closedform.lemmas import Lemma
-from closedform.refute import Counterexample
+from closedform.functions import Function, real, substitute
+from closedform.prove_chain import prove_chain
+from closedform.prove_reduction import prove_reduction
+from closedform.require import ProofError, require
 from closedform.shapes import ShapeError, require_shape
 from closedform.solutions import InfinitelyManyError, count_solutions
-from closedform.tower import shortened
 from closedform.witness import uncovered
 
 Progress = Callable[[str], None]
-
-
-class ProofError(ValueError):
-    """A step or an inverse of a derivation is wrong, and how."""
 
 
 @dataclass(frozen=True)
@@ -155,16 +150,11 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
         _prove_continuum(derivation, function, inverse, continuum)
     lemmas = _prove_steps_follow(derivation, inverse)
     count, method = _count(inverse)
-    branches = len(function.branches) if function.branches else 1
-    if count != branches:
-        raise ProofError(
-            f"{derivation.name}.{function.name}: the system has {count} solutions "
-            f"({_how_counted(method)}), but {branches} branches are given. "
-            f"{uncovered(derivation, function, inverse)}".rstrip()
-        )
+    how = "step by step" if method == "step by step" else "from a Groebner basis"
+    found = f"the system has {count} solutions (counted {how})"
     return InverseResult(
         function.name,
-        branches,
+        _require_all_branches(derivation, function, inverse, count, found),
         len(inverse.continua),
         count,
         method,
@@ -173,20 +163,26 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     )
 
 
-def _prove_by_chain(derivation: Derivation, function: Function, inverse: Inverse) -> InverseResult:
-    from closedform.prove_chain import prove_chain
-
-    count, assumptions, continua = prove_chain(derivation, inverse)
+def _require_all_branches(
+    derivation: Derivation, function: Function, inverse: Inverse, count: int, found: str
+) -> int:
+    """The number of branches; if it is not the ``count``, say so, with a posture that is lost."""
     branches = len(function.branches) if function.branches else 1
     if count != branches:
-        lost = uncovered(derivation, function, inverse)
         raise ProofError(
-            f"{derivation.name}.{function.name}: the lemmas have {count} solutions together, "
-            f"but {branches} branches are given. {lost}".rstrip()
+            f"{derivation.name}.{function.name}: {found}, but {branches} "
+            f"branch{'es are' if branches > 1 else ' is'} given. "
+            f"{uncovered(derivation, function, inverse)}".rstrip()
         )
+    return branches
+
+
+def _prove_by_chain(derivation: Derivation, function: Function, inverse: Inverse) -> InverseResult:
+    count, assumptions, continua = prove_chain(derivation, inverse)
+    found = f"the lemmas have {count} solutions together"
     return InverseResult(
         function.name,
-        branches,
+        _require_all_branches(derivation, function, inverse, count, found),
         continua,
         count,
         "lemma by lemma",
@@ -198,14 +194,8 @@ def _prove_by_chain(derivation: Derivation, function: Function, inverse: Inverse
 def _prove_by_reduction(
     derivation: Derivation, function: Function, inverse: Inverse
 ) -> InverseResult:
-    from closedform.prove_reduction import prove_reduction
-
     branches, method, lemmas = prove_reduction(derivation, function, inverse)
     return InverseResult(function.name, branches, 0, branches, method, (), lemmas)
-
-
-def _how_counted(method: str) -> str:
-    return "counted step by step" if method == "step by step" else "counted from a Groebner basis"
 
 
 def _targets(inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:
@@ -394,66 +384,3 @@ def _count_in_stages(inverse: Inverse) -> int:
         except InfinitelyManyError as error:
             raise ProofError(f"{where}: {error}") from error
     return count
-
-
-def prove_lemma(
-    lemma: Lemma, program: Program, given: Mapping[sp.Symbol, sp.Expr] | None = None
-) -> None:
-    """Prove a lemma for the coefficients it was applied to: symbols, so for all.
-
-    Its solutions satisfy its equations for either sign, its pairs are their cosines and sines, and
-    the equations have no others.  ``given`` writes dependent coefficients in free parameters.
-    """
-    given = dict(given or {})
-    pairs = [value for pair in lemma.pairs.values() for value in pair]
-    outputs = (*lemma.solution.values(), *pairs)
-    premises = [Bound(name, meaning, sp.S.One, "") for name, meaning in lemma.premises.items()]
-    body = [*premises, *program.body]
-    steps = [s.value for s in body if isinstance(s, (Let, Bound))]
-    free = {s for e in (*outputs, *steps) for s in e.free_symbols}
-    sign = next((s for s in free if s.name.startswith("sigma")), None)
-    function = Function("lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(body))
-    for value in (1, -1) if sign else (1,):
-        signs = {sign: value} if sign else {}
-        values = function.values(signs)
-        solution = dict(zip(lemma.solution, values, strict=False))
-        circle = [f(solution[x]) for x in lemma.pairs for f in (sp.cos, sp.sin)]
-        named = [a - b for a, b in zip(circle, values[len(solution) :], strict=True)]
-        vanishing = sp.Matrix([*(substitute(e, solution) for e in lemma.equations), *named])
-        bounds = tuple(substitute(b, given) for b in function.bounds(signs))
-        require(substitute(vanishing, given), bounds, f"the lemma {lemma.name!r}")
-    count = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given).count
-    if count != lemma.branches + lemma.excluded:
-        raise ProofError(f"the lemma {lemma.name!r} has {count} solutions")
-
-
-@lru_cache(maxsize=32)
-def _decide(difference: sp.ImmutableMatrix, nonnegative: tuple[sp.Expr, ...]) -> Decision:
-    """Branches that share a stage leave the same to prove."""
-    return decide(difference, nonnegative)
-
-
-def require(
-    difference: Any, nonnegative: tuple[sp.Expr, ...], where: str, names: Sequence[str] = ()
-) -> Decision:
-    """Prove that a difference vanishes, or say what is left of it and at which simple point.
-
-    ``names`` say what the entries are about.
-    """
-    try:
-        decision = _decide(sp.ImmutableMatrix([difference]), nonnegative)
-    except Undecided as error:
-        raise ProofError(f"{where}: {error}") from error
-    if not decision.holds:
-        assert isinstance(decision.counterexample, Counterexample)
-        entry = decision.counterexample.entry
-        about = f" in {names[entry]}" if entry < len(names) else ""
-        residual = sp.Matrix([difference])[entry]
-        if decision.proof is not None and entry < len(decision.proof.remainders):
-            short = decision.proof.remainders[entry]
-            residual = min((residual, short), key=sp.count_ops) if short != 0 else residual
-        raise ProofError(
-            f"{where}: does not vanish. {decision.counterexample.describe()}; "
-            f"the residual{about} is {shortened(residual)}"
-        )
-    return decision

@@ -26,8 +26,8 @@ import sympy as sp
 
 from closedform.derivation import Derivation, Inverse, Link
 from closedform.functions import Bound, Function, Let, Vanishes, substitute
-from closedform.prove import ProofError, require
 from closedform.reference import Evaluator
+from closedform.require import ProofError, require
 from closedform.solutions import InfinitelyManyError, count_solutions
 
 Expr = Any

@@ -13,7 +13,8 @@ import sympy as sp
 from closedform.algebra import normal
 from closedform.derivation import Derivation, Inverse, Reduction
 from closedform.functions import Bound, Function, Let, Program, substitute
-from closedform.prove import ProofError, prove_lemma, require
+from closedform.prove_lemma import prove_lemma
+from closedform.require import ProofError, require
 
 
 def prove_reduction(

@@ -41,7 +41,7 @@ from sympy import Rational, atan2, cos, sin, sqrt, tan
 from closedform.derivation import Derivation, Inverse, Reduction
 from closedform.frames import rotation
 from closedform.functions import Program, branches, real
-from closedform.lemmas import elbow_squares, two_link_arm_beside
+from closedform.two_link import elbow_squares, two_link_arm_beside
 
 d = Derivation(
     "h6ar_loop_closed",

@@ -15,7 +15,8 @@ from sympy import Rational, atan2, cos, pi, sin, sqrt
 from closedform.derivation import Derivation
 from closedform.frames import denavit_hartenberg, homogeneous, rotation
 from closedform.functions import Program, real
-from closedform.lemmas import Lemma, linear_pair, sine_cosine, two_link_arm
+from closedform.lemmas import Lemma, linear_pair, sine_cosine
+from closedform.two_link import two_link_arm
 
 theta2A, theta23A = real("theta2A"), real("theta23A")
 alpha, beta = real("alpha"), real("beta")

@@ -7,7 +7,8 @@ from sympy import pi
 from closedform.arm import from_dh
 from closedform.chain import Chain
 from closedform.derivation import Derivation
-from closedform.linklemmas import Pair, Reaching, turn, two_links, zyz
+from closedform.linklemmas import Reaching, turn, two_links, zyz
+from closedform.pairs import Pair
 
 d = Derivation(
     "ur_arm",

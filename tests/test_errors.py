@@ -11,7 +11,8 @@ from closedform.derivation import Derivation, Inverse, Paper, Solved
 from closedform.functions import Program, branches, real
 from closedform.lemmas import linear_pair, sine_cosine, two_link_triangle
 from closedform.linklemmas import remainder, slide, turn, two_links, zyz
-from closedform.prove import ProofError, prove
+from closedform.prove import prove
+from closedform.require import ProofError
 from closedform.shapes import ShapeError, coefficients
 
 THETA1, THETA2 = real("theta1"), real("theta2")

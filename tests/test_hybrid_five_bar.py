@@ -12,7 +12,8 @@ from closedform.derivations import hybrid_five_bar
 from closedform.derivations import hybrid_five_bar_design as design
 
 from closedform.derivation import Stage
-from closedform.prove import ProofError, prove_inverse
+from closedform.prove import prove_inverse
+from closedform.require import ProofError
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 DESIGNS = [(7, 8, 5), (0, 1, 1), (3, 1, 3), (1, 1, 2), (1, 1, 3), (0.2, 3, 1), (2.5, 1, 3)]

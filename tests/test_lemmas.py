@@ -13,16 +13,16 @@ from closedform.lemmas import (
     linear_pair,
     parallelogram,
     sine_cosine,
-    two_link_arm,
-    two_link_arm_beside,
     two_link_triangle,
     two_sines,
     zyz_angles,
 )
 from closedform.loops import eliminate, velocity_matrices
 from closedform.pairs import sine_cosine_pair, triangle_pairs
-from closedform.prove import ProofError, prove_lemma
+from closedform.prove_lemma import prove_lemma
+from closedform.require import ProofError
 from closedform.solutions import rotation_parametrisation
+from closedform.two_link import two_link_arm, two_link_arm_beside
 from closedform.volumes import lens
 
 x, y, z = (real(n) for n in ("x", "y", "z"))

@@ -10,7 +10,8 @@ from closedform.arm import Serial, from_dh, from_screws
 from closedform.chain import Chain
 from closedform.derivation import Derivation, Paper
 from closedform.propose import NoChainError, propose
-from closedform.prove import ProofError, prove
+from closedform.prove import prove
+from closedform.require import ProofError
 
 LENGTHS = ("a", "b", "c", "e", "f", "g")
 

@@ -8,7 +8,8 @@ import sympy as sp
 
 from closedform.derivation import Derivation
 from closedform.functions import Let
-from closedform.prove import ProofError, prove_inverse
+from closedform.prove import prove_inverse
+from closedform.require import ProofError
 
 
 @pytest.fixture

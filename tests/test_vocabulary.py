@@ -31,7 +31,8 @@ from closedform.frames import (
 )
 from closedform.functions import Program, branches, choose, real
 from closedform.lemmas import linear_pair, two_link_triangle
-from closedform.prove import ProofError, prove
+from closedform.prove import prove
+from closedform.require import ProofError
 from closedform.tolerances import DOUBLE
 
 PAPER = Paper("toy", "Mechanisms of the tests", ("The closedform authors",))
@@ -242,7 +243,7 @@ def test_a_missing_branch_is_counted() -> None:
         branches=branches((sigma, {+1: "front"})),
         result="Solutions",
     )
-    with pytest.raises(ProofError, match="2 solutions, but 1 branches"):
+    with pytest.raises(ProofError, match=r"2 solutions \(.*\), but 1 branch is given"):
         prove(d)
 
 

@@ -1,0 +1,43 @@
+"""Proves a lemma, for the coefficients it was applied to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+from closedform.functions import Array, Bound, Function, Let, Program, substitute
+from closedform.lemmas import Lemma
+from closedform.require import ProofError, require
+from closedform.solutions import count_solutions
+
+
+def prove_lemma(
+    lemma: Lemma, program: Program, given: Mapping[sp.Symbol, sp.Expr] | None = None
+) -> None:
+    """Prove a lemma for the coefficients it was applied to: symbols, so for all.
+
+    Its solutions satisfy its equations for either sign, its pairs are their cosines and sines, and
+    the equations have no others.  ``given`` writes dependent coefficients in free parameters.
+    """
+    given = dict(given or {})
+    pairs = [value for pair in lemma.pairs.values() for value in pair]
+    outputs = (*lemma.solution.values(), *pairs)
+    premises = [Bound(name, meaning, sp.S.One, "") for name, meaning in lemma.premises.items()]
+    body = [*premises, *program.body]
+    steps = [s.value for s in body if isinstance(s, (Let, Bound))]
+    free = {s for e in (*outputs, *steps) for s in e.free_symbols}
+    sign = next((s for s in free if s.name.startswith("sigma")), None)
+    function = Function("lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(body))
+    for value in (1, -1) if sign else (1,):
+        signs = {sign: value} if sign else {}
+        values = function.values(signs)
+        solution = dict(zip(lemma.solution, values, strict=False))
+        circle = [f(solution[x]) for x in lemma.pairs for f in (sp.cos, sp.sin)]
+        named = [a - b for a, b in zip(circle, values[len(solution) :], strict=True)]
+        vanishing = sp.Matrix([*(substitute(e, solution) for e in lemma.equations), *named])
+        bounds = tuple(substitute(b, given) for b in function.bounds(signs))
+        require(substitute(vanishing, given), bounds, f"the lemma {lemma.name!r}")
+    count = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given).count
+    if count != lemma.branches + lemma.excluded:
+        raise ProofError(f"the lemma {lemma.name!r} has {count} solutions")

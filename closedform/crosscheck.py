@@ -20,7 +20,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 from closedform.derivation import Derivation, Inverse
-from closedform.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.functions import Bound, Function, Let, Vanishes
 from closedform.reference import Evaluator, to_float
 from closedform.samples import Magnitudes, Sample, inverse_postures, joint_samples, perturbed
 from closedform.tolerances import DOUBLE, FLOAT, Tolerances
@@ -135,9 +135,9 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     symbols = _symbols(derivation, function)
     reference = Evaluator(symbols, exprs)
     magnitudes = Magnitudes(symbols, exprs)
-    margins = [Evaluator(symbols, _margins(function, signs)) for _, signs in function.cases()]
+    margins = [_margins(function, symbols, signs) for _, signs in function.cases()]
     entries = len(exprs) // len(cases)
-    flags = Evaluator(symbols, _flagged(function))
+    flags = [_margins(function, symbols, signs, Vanishes) for _, signs in function.cases()]
     for sample in joint_samples(derivation, function):
         sample = _round(_thinned(sample, len(exprs)), backend)
         if not len(sample.values):
@@ -147,8 +147,9 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
         computed = np.concatenate([o.reshape(rows, -1) for o in outputs], axis=1)
         for row in range(rows):
             values = [*map(float, sample.values[row]), *sample.parameters]
-            if any(to_float(f) < 2 * backend.tolerances.vanishing for f in flags(values)):
-                continue
+            sizes = [to_float(size) for sizes in flags for size in sizes(values)]
+            if any(size < 2 * backend.tolerances.vanishing for size in sizes):
+                continue  # where a flag is raised the value is a convention
             slack = 2 * backend.tolerances.feasibility
             exists = [_feasible(margin, values, slack) for margin in margins]
             scales = magnitudes(values, backend.dtype)
@@ -171,13 +172,6 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     return finding
 
 
-def _flagged(function: Function) -> list[sp.Expr]:
-    """What the flags of a function look at, over its scale: near zero the value is a convention."""
-    return [
-        margin for _, signs in function.cases() for margin in _margins(function, signs, Vanishes)
-    ]
-
-
 def check_boolean(derivation: Derivation, function: Function, backend: Backend) -> Finding:
     """Compare truth values with the exact bounds, where those are not within a tolerance of zero.
 
@@ -185,7 +179,7 @@ def check_boolean(derivation: Derivation, function: Function, backend: Backend) 
     """
     finding = Finding(derivation.name, function.name, backend.name, unit="wrong answers")
     symbols = _symbols(derivation, function)
-    bounds = Evaluator(symbols, _margins(function, {}))
+    bounds = _margins(function, symbols, {})
     (output,) = (sp.Piecewise((1, e), (0, True)) for a in function.outputs for e in a.entries)
     condition = Evaluator(symbols, [output])
     slack = 2 * backend.tolerances.feasibility
@@ -209,11 +203,10 @@ def _variation(
 ) -> float:
     """How far the exact value moves when every input moves by an ulp: near a singularity, far."""
     moved = []
-    for pattern in range(8):  # neighbours, and joints of the same place in twin arms, move apart
-        signs = [1 if (pattern >> (i % 3)) & 1 else -1 for i in range(len(values))]
-        nearby = [v * (1 + s * backend.eps) for v, s in zip(values, signs, strict=True)]
+    for i, value in enumerate(values):
+        nearby = [*values[:i], value * (1 + backend.eps), *values[i + 1 :]]
         moved.append(abs(to_float(reference(nearby)[k] - exact)))
-    return max((m for m in moved if math.isfinite(m)), default=0.0)
+    return sum(m for m in moved if math.isfinite(m))
 
 
 def _ulps(computed: float, exact: arb, scale: float, backend: Backend) -> float:
@@ -278,10 +271,8 @@ class _Truth:
             forward = derivation[inverse.images]
             maps = [forward.values(mode) for _, mode in forward.cases()]
         self._maps = [Evaluator((*inverse.unknowns, *parameters), m) for m in maps]
-        self._bounds = []
-        for _, signs in function.cases():
-            margins = _margins(function, signs)
-            self._bounds.append(Evaluator((*function.symbols, *parameters), margins))
+        given = (*function.symbols, *parameters)
+        self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
         factors = next((f for f in derivation.functions if f.name == "singularities"), None)
         entries: list[sp.Expr] = []
         if factors and self.has_images:
@@ -338,20 +329,22 @@ def _feasible(margins: Evaluator, values: Sequence[float], slack: float) -> bool
 
 
 def _margins(
-    function: Function, signs: Mapping[sp.Symbol, int], kind: type = Bound
-) -> list[sp.Expr]:
-    """The bounds (or the flags) of a branch over their natural scales."""
-    known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
+    function: Function,
+    symbols: Sequence[sp.Symbol],
+    signs: Mapping[sp.Symbol, int],
+    kind: type = Bound,
+) -> Evaluator:
+    """The bounds (or what the flags look at) of a branch, over their natural scales."""
+    named: dict[sp.Symbol, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
     margins = []
     for statement in function.body:
         if isinstance(statement, (Let, Bound)):
-            known[statement.symbol] = substitute(statement.value, known)
+            named[statement.symbol] = statement.value
         elif isinstance(statement, Vanishes):
-            known[statement.symbol] = sp.false
+            named[statement.symbol] = sp.false
         if isinstance(statement, kind) and isinstance(statement, (Bound, Vanishes)):
-            value = substitute(statement.value, known)
-            margins.append(value / substitute(statement.scale, known))
-    return margins
+            margins.append(statement.value / statement.scale)
+    return Evaluator(symbols, margins, named=named)
 
 
 def _check_batch(

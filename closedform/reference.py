@@ -65,6 +65,9 @@ class Evaluator:
     that is provably undefined at a point (a square root of a negative number, a division by zero,
     `atan2(0, 0)`) is the ball `nan`; `Undetermined` is raised if `max_bits` do not settle the
     point. A radicand that cannot be told from zero is taken to be nonnegative.
+
+    The expressions may hold the names of `named`, which stand for what was computed before; the
+    name of a condition stands for its truth.
     """
 
     def __init__(
@@ -73,14 +76,17 @@ class Evaluator:
         exprs: Iterable[Expr],
         rel_bits: int = 80,
         max_bits: int = 4000,
+        *,
+        named: Mapping[Symbol, Expr] | None = None,
     ) -> None:
         self.symbols = tuple(symbols)
         self.exprs = tuple(sp.sympify(e) for e in exprs)
         self.rel_bits, self.max_bits = rel_bits, max_bits
-        missing = _free_symbols(self.exprs) - set(self.symbols)
+        named = {name: sp.sympify(value) for name, value in (named or {}).items()}
+        missing = _free_symbols((*self.exprs, *named.values())) - {*self.symbols, *named}
         if missing:
             raise KeyError(f"no value for {', '.join(sorted(map(str, missing)))}")
-        self._program = _Program(self.symbols, self.exprs)
+        self._program = _Program(self.symbols, self.exprs, named)
 
     def __call__(self, values: Mapping[Symbol, Value] | Sequence[Value]) -> list[arb]:
         """Enclosures at a point, given by symbol or in the order of `symbols`."""
@@ -95,7 +101,7 @@ class Evaluator:
                 try:
                     registers = self._program.run(point)
                     balls = [registers[i] for i in self._program.outputs]
-                    if all(map(self._is_tight, self.exprs, balls, [registers] * len(balls))):
+                    if self._are_tight(balls, registers):
                         return balls
                     obstacle = "a value stays wide"
                 except _Open as reason:
@@ -106,13 +112,18 @@ class Evaluator:
         at = ", ".join(f"{s} = {v}" for s, v in zip(self.symbols, values, strict=True))
         raise Undetermined(f"{obstacle} at {self.max_bits} bits; the point is {at}")
 
-    def _is_tight(self, e: Expr, ball: arb, registers: Registers) -> bool:
-        if ball is _UNDEFINED or ball.rel_accuracy_bits() >= self.rel_bits:
+    def _are_tight(self, balls: Sequence[arb], registers: Registers) -> bool:
+        wide = [
+            k
+            for k, ball in enumerate(balls)
+            if ball is not _UNDEFINED and ball.rel_accuracy_bits() < self.rel_bits
+        ]
+        if not wide:
             return True
-        if not ball.is_finite():
+        if not all(balls[k].is_finite() for k in wide):
             return False
-        tolerance = self._program.scale(e, registers, {}) * arb(2) ** -self.rel_bits
-        return bool(ball.rad() <= tolerance)
+        scales, part = self._program.scales(registers), arb(2) ** -self.rel_bits
+        return all(balls[k].rad() <= scales[k] * part for k in wide)
 
 
 def _free_symbols(exprs: Iterable[Expr]) -> set[Expr]:
@@ -145,7 +156,7 @@ class _Point:
         self.turns: fmpq | None = None
         self._program: _Program | None = None
         if isinstance(value, sp.Expr) and not value.is_Float and not value.is_Rational:
-            self._program = _Program((), (value,))
+            self._program = _Program((), (value,), {})
             multiple = value / sp.pi
             if multiple.is_Rational:
                 self.turns = fmpq(int(multiple.p), int(multiple.q))
@@ -169,7 +180,9 @@ def _fraction(value: Value) -> Fraction:
 class _Program:
     """Straight-line code; a branch of a `Piecewise` is a block that runs only if it is chosen."""
 
-    def __init__(self, symbols: Sequence[Symbol], exprs: Sequence[Expr]) -> None:
+    def __init__(
+        self, symbols: Sequence[Symbol], exprs: Sequence[Expr], named: Mapping[Symbol, Expr]
+    ) -> None:
         self._symbols = {s: i for i, s in enumerate(symbols)}
         self._size = len(symbols)
         self._turns: list[fmpq | None] | None = None
@@ -177,7 +190,17 @@ class _Program:
         self._register: dict[Expr, int] = dict(self._symbols)
         self._constants: list[Step] = []
         self._initial: dict[int, Registers] = {}
+        self._truths: dict[Symbol, Test] = {}
+        self._scale_steps: list[Callable[[Registers, Registers], arb]] = []
+        self._scaled: dict[Expr, int] = {}
+        for name, value in named.items():
+            if isinstance(value, sp.logic.boolalg.Boolean) and not value.is_Symbol:
+                self._truths[name] = self._test(value)
+            else:
+                self._register[name] = self._compile(value)
+                self._scaled[name] = self._scale(value)
         self.outputs = tuple(map(self._compile, exprs))
+        self._scales = tuple(map(self._scale, exprs))
 
     def run(self, point: Sequence[_Point]) -> Registers:
         """All registers at a point, at the precision that is set."""
@@ -192,21 +215,29 @@ class _Program:
         _execute(self._block, registers)
         return registers
 
-    def scale(self, e: Expr, registers: Registers, known: dict[Expr, arb]) -> arb:
-        """Size of what was added up to `e`: the measure for the width of its enclosure."""
-        if e not in known:
-            known[e] = self._scale(e, registers, known)
-        return known[e]
+    def scales(self, registers: Registers) -> list[arb]:
+        """Sizes of what was added up to the outputs: the measure for the width of a ball."""
+        sizes: Registers = []
+        for step in self._scale_steps:
+            sizes.append(step(registers, sizes))
+        return [sizes[k] for k in self._scales]
 
-    def _scale(self, e: Expr, registers: Registers, known: dict[Expr, arb]) -> arb:
-        if e.is_Add:
-            return reduce(operator.add, (self.scale(a, registers, known) for a in e.args))
-        if e.is_Mul:
-            return reduce(operator.mul, (self.scale(a, registers, known) for a in e.args))
-        value = registers[self._register[e]].abs_upper()
+    def _scale(self, e: Expr) -> int:
+        if e not in self._scaled:
+            step = self._scale_step(e)
+            self._scale_steps.append(step)
+            self._scaled[e] = len(self._scale_steps) - 1
+        return self._scaled[e]
+
+    def _scale_step(self, e: Expr) -> Callable[[Registers, Registers], arb]:
+        if e.is_Add or e.is_Mul:
+            join, parts = operator.add if e.is_Add else operator.mul, [*map(self._scale, e.args)]
+            return lambda registers, sizes: reduce(join, (sizes[k] for k in parts))
         if e.is_Pow and e.exp.is_positive:
-            return self.scale(e.base, registers, known) ** fmpq(int(e.exp.p), int(e.exp.q))
-        return value if e.is_Atom or e.is_Pow else value.max(arb(1))
+            base, power = self._scale(e.base), fmpq(int(e.exp.p), int(e.exp.q))
+            return lambda registers, sizes: sizes[base] ** power
+        place, least = self._register[e], 0 if e.is_Atom or e.is_Pow else 1
+        return lambda registers, sizes: registers[place].abs_upper().max(arb(least))
 
     # Compilation
 
@@ -294,6 +325,8 @@ class _Program:
             left, right = self._compile(condition.lhs), self._compile(condition.rhs)
             compare = _COMPARISONS[condition.rel_op]
             return lambda registers: compare(registers[left], registers[right])
+        if condition in self._truths:
+            return self._truths[condition]
         if condition in (sp.true, sp.false):
             truth = bool(condition)
             return lambda registers: truth

@@ -90,28 +90,34 @@ def compared(
         report.write(failure)
 
 
-def from_c(name: str, case: Case, target: str, folder: Path, inputs: np.ndarray) -> Run:
+def from_c(
+    name: str, case: Case, target: str, folder: Path, inputs: np.ndarray, expected: np.ndarray
+) -> Run:
     run, values = native.timer(name, case, target, folder, inputs)
-    check(case, values, case.values(inputs))
+    check(case, values, expected)
     return run
 
 
 def calls_from_c(report: Report, cases: list[Case], rounds: int, folder: Path) -> None:
     report.write("\n## One call from C\n")
-    flags = " ".join(native.FLAGS[:4])
+    flags = " ".join(native.FLAGS)
     report.write(f"Every competitor compiled with `{flags}`, 512 postures in turn.")
     for case in cases:
         inputs = case.inputs(512)
+        expected = case.values(inputs)
         for label, target in native.TARGETS.items():
             makers = {
-                name: partial(from_c, name, case, target, folder, inputs) for name in native.SOURCES
+                name: partial(from_c, name, case, target, folder, inputs, expected)
+                for name in native.SOURCES
             }
             compared(report, f"{case.title}, {label}", "ns", makers, rounds)
 
 
-def from_python(peer: batches.Peer, case: Case, layout: str, rows: np.ndarray) -> Run:
+def from_python(
+    peer: batches.Peer, case: Case, layout: str, rows: np.ndarray, expected: np.ndarray
+) -> Run:
     run, values = peer(case, layout, rows)
-    check(case, values()[:1000], case.values(rows[:1000]))
+    check(case, values()[: len(expected)], expected)
     return clock(run, len(rows), 1 if len(rows) > 1 else 2000)
 
 
@@ -121,9 +127,10 @@ def calls_from_python(report: Report, cases: list[Case], rounds: int, n: int) ->
     layouts = {"planes": ", structure of arrays, `out=`", "rows": ", `(N, n)` arrays"}
     for case in cases:
         inputs = case.inputs(n)
+        expected = case.values(inputs[:1000])
         for layout, words in layouts.items() if n > 1 else [("rows", "")]:
             makers = {
-                name: partial(from_python, peer, case, layout, inputs)
+                name: partial(from_python, peer, case, layout, inputs, expected)
                 for name, peer in batches.PEERS.items()
             }
             compared(report, case.title + words, "ns a posture", makers, rounds)

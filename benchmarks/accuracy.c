@@ -1,4 +1,4 @@
-/* Samples cf_sincos_block and cf_atan2_block against a wider libm and prints the worst arguments.
+/* Samples cf_sincos_block and cf_atan2 against a wider libm and prints the worst arguments.
  *
  *   accuracy FUNCTION SAMPLES SEED KEEP
  *
@@ -25,7 +25,7 @@ void JOIN(sincos_, EVALUATE)(const real_t *x, real_t *s, real_t *c)
 
 void JOIN(atan2_, EVALUATE)(const real_t *y, const real_t *x, real_t *angle)
 {
-    cf_atan2_block(BLOCK, y, x, angle);
+    for (size_t i = 0; i < BLOCK; ++i) angle[i] = cf_atan2(y[i], x[i]);
 }
 
 #else

@@ -19,6 +19,7 @@ NAMES = ("sin", "cos", "arctan2", "sqrt", "abs")
 def numpy_like(module: Any) -> dict[str, Any]:
     """The names that SymPy prints, as functions of a module that is laid out as NumPy."""
     found = {name: getattr(module, name) for name in NAMES}
+    found["nonnegative"] = lambda x: module.where(x >= 0, 1.0, 0.0)
     return {**found, "atan2": found["arctan2"]}
 
 
@@ -39,7 +40,8 @@ def ours(backend: str, case: Case, layout: str, rows: np.ndarray) -> tuple[Run, 
         return partial(function, x, out=out), lambda: first(function(x)).reshape(1, -1)
     if layout == "rows":
         x = rows.reshape(-1, *core)
-        return lambda: function(x), lambda: first(function(x)).reshape(len(x), -1)
+        out = function(x)
+        return lambda: function(x, out=out), lambda: first(function(x, out=out)).reshape(len(x), -1)
     x = planes_of(rows).reshape((*core, len(rows)), copy=False)
     x = np.moveaxis(x, -1, 0)
     out = like_planes(function(x))
@@ -79,10 +81,24 @@ def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     import symengine as se
 
     backend = "llvm" if se.have_llvm else "lambda"
-    function = se.Lambdify(case.symbols, case.expressions, backend=backend, cse=True)
+    names = {n: getattr(se, n) for n in ("sin", "cos", "sqrt", "atan2")}
+    names |= {"abs": se.Abs, "nonnegative": lambda x: se.Piecewise((1, x >= 0), (0, True))}
+    symbols = se.symbols([str(s) for s in case.symbols])
+    expressions = case.translate(names)(*symbols)
+    function = se.Lambdify(symbols, expressions, backend=backend, cse=True)
     x = np.hstack([rows, np.tile(list(case.parameters.values()), (len(rows), 1))])
-    out = np.empty((len(rows), len(case.expressions)))
+    out = np.empty((len(rows), case.width))
     return lambda: function(x, out=out), lambda: function(x)
+
+
+def casadi_names() -> dict[str, Any]:
+    import casadi as ca
+
+    return {
+        **{n: getattr(ca, n) for n in ("sin", "cos", "atan2", "sqrt")},
+        "abs": ca.fabs,
+        "nonnegative": lambda x: ca.if_else(x >= 0, 1, 0),
+    }
 
 
 def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
@@ -90,7 +106,7 @@ def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
         raise NotApplicableError("takes rows")
     import casadi as ca
 
-    names = {"sin": ca.sin, "cos": ca.cos, "atan2": ca.atan2, "sqrt": ca.sqrt, "abs": ca.fabs}
+    names = casadi_names()
     x = ca.SX.sym("x", len(case.source.symbols))
     p = ca.SX.sym("p", len(case.parameters))
     values = ca.vertcat(*case.translate(names)(*ca.vertsplit(x), *ca.vertsplit(p)))
@@ -99,7 +115,7 @@ def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     buffer, trigger = many.buffer()
     x_rows = np.ascontiguousarray(rows)
     constants = np.array(list(case.parameters.values()))
-    out = np.empty((len(rows), len(case.expressions)))
+    out = np.empty((len(rows), case.width))
     buffer.set_arg(0, memoryview(x_rows))
     buffer.set_arg(1, memoryview(constants))
     buffer.set_res(0, memoryview(out))
@@ -120,7 +136,7 @@ def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     import numba as nb
     import sympy as sp
 
-    temporaries, results = sp.cse(case.expressions, symbols=sp.numbered_symbols("tmp"))
+    temporaries, results = case.program
     at = "x_in[{k}, i]" if layout == "planes" else "x_in[i, {k}]"
     to = "out[{k}, i]" if layout == "planes" else "out[i, {k}]"
     lines = ["def kernel(x_in, p_in, out):", " for i in range(x_in.shape[AXIS]):"]
@@ -135,11 +151,7 @@ def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     exec("\n".join(lines).replace("AXIS", "1" if layout == "planes" else "0"), scope)
     kernel = nb.njit(fastmath=False, error_model="numpy")(scope["kernel"])
     x = planes_of(rows) if layout == "planes" else rows
-    out = np.empty(
-        (len(case.expressions), len(rows))
-        if layout == "planes"
-        else (len(rows), len(case.expressions))
-    )
+    out = np.empty((case.width, len(rows)) if layout == "planes" else (len(rows), case.width))
     p = np.array(list(case.parameters.values()))
 
     def values() -> np.ndarray:
@@ -156,6 +168,7 @@ def pytensor(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     names = {
         **{n: getattr(tensor, n) for n in ("sin", "cos", "sqrt", "abs")},
         "atan2": tensor.arctan2,
+        "nonnegative": lambda x: tensor.switch(tensor.ge(x, 0), 1.0, 0.0),
     }
     arguments = [tensor.vector(s.name) for s in case.source.symbols]
     values = case.translate(names)(*arguments, *case.parameters.values())

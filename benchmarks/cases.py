@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import sympy as sp
 
-from closedform.functions import Function
+from closedform.functions import Bound, Function, Let, Vanishes, substitute
+
+Assignments: TypeAlias = "list[tuple[sp.Symbol, sp.Expr]]"
 
 
 class NotApplicableError(Exception):
@@ -59,14 +61,43 @@ class Case:
         return [*self.source.symbols, *(p.symbol for p in self.derivation.parameters)]
 
     @cached_property
-    def expressions(self) -> list[sp.Expr]:
-        """Every output of every branch in the generic case: no statuses, no tests of the input."""
-        return [e for _, signs in self.source.cases() for e in self.source.values(signs)]
+    def width(self) -> int:
+        """How many numbers the outputs of all branches are."""
+        return sum(a.size for a in self.source.outputs) * len(list(self.source.cases()))
+
+    @cached_property
+    def program(self) -> tuple[Assignments, list[sp.Expr]]:
+        """Temporaries and outputs of every branch in the generic case: no statuses, no tests.
+
+        The temporaries are the steps of the derivation, and what ``sympy.cse`` finds in common.
+        """
+        steps: dict[sp.Expr, sp.Symbol] = {}
+        outputs: list[sp.Expr] = []
+        for _, signs in self.source.cases():
+            known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
+            for statement in self.source.body:
+                if isinstance(statement, Vanishes):
+                    known[statement.symbol] = sp.false
+                elif isinstance(statement, (Let, Bound)):
+                    value = substitute(statement.value, known)
+                    if not value.is_Atom and value not in steps:
+                        assumed = {"real": True, "nonnegative": statement.symbol.is_nonnegative}
+                        steps[value] = sp.Symbol(f"step{len(steps)}", **assumed)
+                    known[statement.symbol] = steps.get(value, value)
+            outputs += [substitute(e, known) for a in self.source.outputs for e in a.entries]
+        common, reduced = sp.cse([*steps, *outputs], symbols=sp.numbered_symbols("tmp"))
+        outputs = reduced[len(steps) :]
+        assigned = dict(common) | dict(zip(steps.values(), reduced, strict=False))
+        return in_order(assigned, outputs), outputs
 
     def inputs(self, n: int) -> np.ndarray:
         """``n`` inputs as rows; an inverse gets the images of random joints."""
         module = self.module("numpy")
         q = np.random.default_rng(7).uniform(-3, 3, (n, len(module.JOINTS)))
+        joints = [j for j in self.derivation.joints if j.name in module.JOINTS]
+        for k, joint in enumerate(joints):
+            if joint.beside is not None:  # of two arms that work together, close to the other's
+                q[:, k] = q[:, module.JOINTS.index(joint.beside.name)] + q[:, k] / 32
         if not self.inverse:
             return q
         x = module.fk(q)
@@ -81,11 +112,41 @@ class Case:
         return np.asarray(result).reshape(len(inputs), -1)
 
     def translate(self, names: Mapping[str, Any]) -> Callable[..., Any]:
-        """The source as a Python function over another library's ``sin``, ``cos``, ..."""
+        """The source as a Python function over another library's ``sin``, ``cos``, ...
+
+        ``nonnegative(x)`` among them is 1 or 0.
+        """
+        temporaries, outputs = self.program
+        plain = [(s, without_cases(e)) for s, e in temporaries], [*map(without_cases, outputs)]
         function: Callable[..., Any] = sp.lambdify(
-            self.symbols, self.expressions, modules=[dict(names)], cse=True
+            self.symbols, plain[1], modules=[dict(names)], cse=lambda _: plain
         )
         return function
+
+
+def in_order(assigned: Mapping[sp.Symbol, sp.Expr], outputs: Sequence[sp.Expr]) -> Assignments:
+    """What the outputs need of the assignments, each after those it needs itself."""
+    ordered: dict[sp.Symbol, sp.Expr] = {}
+
+    def visit(expr: sp.Expr) -> None:
+        for symbol in sorted(expr.free_symbols, key=str):
+            if symbol in assigned and symbol not in ordered:
+                visit(assigned[symbol])
+                ordered[symbol] = assigned[symbol]
+
+    for output in outputs:
+        visit(output)
+    return list(ordered.items())
+
+
+def without_cases(expr: sp.Expr) -> sp.Expr:
+    """A choice by a sign as an expression of ``nonnegative``, which all libraries have."""
+
+    def arithmetic(first: tuple[sp.Expr, sp.Ge], second: tuple[sp.Expr, Any]) -> sp.Expr:
+        (a, condition), (b, _) = first, second
+        return b + (a - b) * sp.Function("nonnegative")(condition.lhs - condition.rhs)
+
+    return expr.replace(sp.Piecewise, arithmetic)
 
 
 def check(case: Case, got: np.ndarray, expected: np.ndarray) -> None:
@@ -104,4 +165,5 @@ CASES = [
     Case("IRB 260 forward", "irb260", "fk"),
     Case("2R inverse, both branches", "planar_2r", "ik"),
     Case("five-bar inverse, all eight", "hybrid_five_bar", "ik"),
+    Case("H6AR inverse, all four", "h6ar", "ik"),
 ]

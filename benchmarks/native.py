@@ -14,11 +14,13 @@ from pathlib import Path
 import numpy as np
 import sympy as sp
 
+from .batches import casadi_names
 from .cases import Case, NotApplicableError
 
 HERE = Path(__file__).parent
 GENERATED = HERE.parent / "generated" / "c"
-FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast", "-fPIC", "-shared"]
+FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast"]
+LIBRARY = ["-fPIC", "-shared", "-fno-semantic-interposition"]
 TARGETS = {"AVX-512": "x86-64-v4", "AVX2": "x86-64-v3"}
 
 LOOP = """
@@ -45,7 +47,7 @@ double run(const double *in, double *out, int n_in, int n_out, int rows, int rou
 
 def ours(case: Case) -> str:
     n = len(case.source.symbols)
-    values = len(case.expressions)
+    values = case.width
     status = f", (unsigned char *)(out + {values})" if case.source.has_status else ""
     return f"""
 #include "{case.robot}.c"
@@ -65,7 +67,7 @@ def limit(case: Case) -> str:
 
 
 def sympy_c(case: Case) -> str:
-    temporaries, results = sp.cse(case.expressions, symbols=sp.numbered_symbols("tmp"))
+    temporaries, results = case.program
     lines = [f"const double {s} = in[{k}];" for k, s in enumerate(case.symbols)]
     lines += [f"const double {s} = {sp.ccode(e)};" for s, e in temporaries]
     lines += [f"out[{k}] = {sp.ccode(e)};" for k, e in enumerate(results)]
@@ -79,9 +81,8 @@ def sympy_c(case: Case) -> str:
 def casadi(case: Case) -> str:
     import casadi as ca
 
-    names = {"sin": ca.sin, "cos": ca.cos, "atan2": ca.atan2, "sqrt": ca.sqrt, "abs": ca.fabs}
     x = ca.SX.sym("x", len(case.symbols))
-    values = case.translate(names)(*ca.vertsplit(x))
+    values = case.translate(casadi_names())(*ca.vertsplit(x))
     function = ca.Function("peer", [x], [ca.vertcat(*values)], {"cse": True})
     with tempfile.TemporaryDirectory() as folder:
         generator = ca.CodeGenerator("peer.c")
@@ -106,6 +107,7 @@ def symforce(case: Case) -> str:
         "sqrt": sf.sqrt,
         "abs": sf.Abs,
         "atan2": lambda y, x: sf.atan2(y, x, epsilon=0),
+        "nonnegative": lambda x: (1 + sf.sign_no_zero(x)) / 2,
     }
     x = sf.Matrix([sf.Symbol(f"x{k}") for k in range(len(case.symbols))])
     out = sf.Matrix(case.translate(names)(*x))
@@ -118,7 +120,7 @@ def symforce(case: Case) -> str:
     with tempfile.TemporaryDirectory() as folder:
         paths = generator.generate_function(output_dir=folder, skip_directory_nesting=True)
         code = Path(paths.function_dir, "peer.h").read_text()
-    n, m = len(case.symbols), len(case.expressions)
+    n, m = len(case.symbols), case.width
     return code.replace("#pragma once", "#include <cmath>") + (
         '\nextern "C" __attribute__((noinline)) void evaluate(const double *in, double *out)\n{\n'
         f"    const Eigen::Matrix<double, {n}, 1> x(in);\n"
@@ -131,6 +133,7 @@ def wrenfold(case: Case) -> str:
     from wrenfold import code_generation, sym, type_annotations
 
     names = {n: getattr(sym, n) for n in ("sin", "cos", "atan2", "sqrt", "abs")}
+    names["nonnegative"] = lambda x: sym.where(x >= 0, 1, 0)
     translated = case.translate(names)
 
     def peer(**arguments):
@@ -146,9 +149,9 @@ def wrenfold(case: Case) -> str:
     )
     code = code_generation.generate_function(peer, code_generation.CppGenerator())
     arguments = [f"in[{k}]" for k in range(len(symbols))]
-    arguments += [f"out[{k}]" for k in range(len(case.expressions))]
+    arguments += [f"out[{k}]" for k in range(case.width)]
     return (
-        f"#include <cmath>\n{code}\n"
+        f"#include <cmath>\n#include <cstdint>\n{code}\n"
         'extern "C" __attribute__((noinline)) void evaluate(const double *in, double *out)\n'
         f"{{ peer<double>({', '.join(arguments)}); }}\n"
     )
@@ -173,11 +176,19 @@ def build(name: str, case: Case, target: str, folder: Path) -> ctypes.CDLL:
     source.write_text(printer(case))
     loop = folder / f"loop.{suffix}"
     loop.write_text(LOOP)
-    command = [*compiler, *FLAGS, f"-march={target}", f"-I{GENERATED}", "-I/usr/include/eigen3"]
+    command = [
+        *compiler,
+        *FLAGS,
+        *LIBRARY,
+        f"-march={target}",
+        f"-I{GENERATED}",
+        "-I/usr/include/eigen3",
+    ]
     command += ["-o", str(library), str(source), str(loop), "-lm"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise RuntimeError(done.stderr.strip().splitlines()[0])
+        told = done.stderr.strip().splitlines()
+        raise RuntimeError(next((line for line in told if "error:" in line), told[0]))
     return ctypes.CDLL(str(library))
 
 
@@ -191,7 +202,7 @@ def timer(
     pointer = np.ctypeslib.ndpointer(np.float64, flags="C")
     run.argtypes = [pointer, pointer, *[ctypes.c_int] * 4]
     rows = np.hstack([inputs, np.tile(list(case.parameters.values()), (len(inputs), 1))])
-    width = len(case.expressions)
+    width = case.width
     out = np.full((len(inputs), width + 8), np.nan)
     run(rows, out, rows.shape[1], out.shape[1], len(rows), 1)
     values = out[:, :width].copy()

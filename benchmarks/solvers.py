@@ -167,7 +167,15 @@ def toolbox_run(target: str) -> Callable[..., float]:
         sources = {"toolbox.c": toolbox().generate("c") + TOOLBOX_CALL, "loop.c": native.LOOP}
         for file, text in sources.items():
             (folder / file).write_text(text)
-        command = ["gcc", "-std=gnu99", *native.FLAGS, f"-march={target}", "-o", "toolbox.so"]
+        command = [
+            "gcc",
+            "-std=gnu99",
+            *native.FLAGS,
+            *native.LIBRARY,
+            f"-march={target}",
+            "-o",
+            "toolbox.so",
+        ]
         done = subprocess.run(
             [*command, *sources, "-lm"], cwd=folder, capture_output=True, text=True, check=False
         )

@@ -298,6 +298,8 @@ class _Truth:
 
         The sine and the cosine of an angle have a scale of their own, which is 1.
         """
+        if not np.isfinite(solution).all():
+            return math.inf
         point = [*map(float, solution), *map(float, given), *map(float, parameters)]
         scale = max(self._scales(point), default=1.0) or 1.0
         errors = [abs(to_float(e)) for e in self._equations(point)]

@@ -1,6 +1,6 @@
 """Every tolerance of the project, once, with its reason.
 
-The generated code repeats these numbers; ``tests/test_tolerances.py`` asserts that it honours them.
+The generated code repeats these numbers; ``test_tolerances_are_honoured`` sees that it does so.
 """
 
 from __future__ import annotations

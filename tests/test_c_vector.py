@@ -97,7 +97,9 @@ def planes_of(arguments: str, real: type, known: dict[str, np.ndarray]) -> list[
         if const:
             image = known.get(name, known.get("p") if name == "x" else None)
             drawn = random.uniform(-3, 3, planes.shape)
-            planes[:] = drawn if image is None else image[: len(planes)]
+            planes[:] = drawn
+            if image is not None:  # but where a loop does not close there is none
+                planes[:] = np.where(np.isnan(image), drawn, image)[: len(planes)]
             planes[:, ::50] = 0
             planes[0, ::70] = np.nan
         known.setdefault(name, planes)
@@ -117,7 +119,8 @@ def test_batch_and_single_call_agree(robot, real, build):
     header = " ".join((C / f"{robot}.h").read_text().split())
     fields = len(re.findall(r"real_t \w+; /\*", header))
     params = np.linspace(3, 2, fields).astype(real)
-    few_ulps = 64 * np.finfo(real).eps
+    # A long chain of steps enlarges what a fused multiplication rounds differently.
+    few_ulps = (64 if robot.startswith("h6ar") else 16) * np.finfo(real).eps
 
     functions = re.findall(rf"void ({robot}_\w+)\(([^()]*)\);", header)
     known: dict[str, np.ndarray] = {}
@@ -141,4 +144,4 @@ def test_batch_and_single_call_agree(robot, real, build):
             assert np.nanmax(apart) < np.sqrt(few_ulps), name
             assert np.nanquantile(apart, 0.98) < few_ulps, name
         if inverse:
-            assert np.mean((batch[-1] == 0).any(axis=0)) > 0.1, name
+            assert np.mean((batch[-1] == 0).any(axis=0)) > 0.5, name

@@ -251,9 +251,12 @@ def test_back_ends_agree(robot: str, data: st.DataObject) -> None:
                 np.testing.assert_allclose(u, v, rtol=0, atol=1e-13 * size)
     x = image(numpy, q)
     a, b = numpy.ik(x), c.ik(x)
-    # On a singular posture rounding decides whether a joint counts as free; both answers hold.
+    # At a singular posture rounding decides whether a joint counts as free; both answers hold.
+    factors = numpy.singularities(q)
+    near = np.abs(factors).min(axis=tuple(range(len(lead), factors.ndim)), initial=1) < 1e-9
     solved = [np.where(r.status == numpy.Status.SINGULAR, 0, r.status) for r in (a, b)]
     np.testing.assert_array_equal(*solved)
+    np.testing.assert_array_equal(a.status[~near], b.status[~near])
     if not numpy.ASSEMBLY_MODES:
         np.testing.assert_allclose(numpy.fk(a.q), numpy.fk(b.q), rtol=0, atol=1e-12)
 

@@ -4,7 +4,7 @@ __attribute__((noinline)) void evaluate(const double *in, double *out)
 {
     const double angles[4] = { in[0], in[1], in[1] + in[2], 0.0 };
     double s[4], c[4];
-    cf_sincos_block(4, angles, s, c);
+    cf_sincos_lanes(4, angles, s, c);
     const double r = in[4] + in[6] * s[1] + in[7] * c[2] + in[9];
     out[0] = -s[0] * r;
     out[1] = c[0] * r;

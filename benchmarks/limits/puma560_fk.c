@@ -4,7 +4,7 @@ __attribute__((noinline)) void evaluate(const double *in, double *out)
     const double a2 = in[6], a3 = in[7], d3 = in[8], d4 = in[9];
     const double angles[8] = { in[0], in[1], in[1] + in[2], in[3], in[4], in[5] };
     double s[8], c[8];
-    cf_sincos_block(8, angles, s, c);
+    cf_sincos_lanes(8, angles, s, c);
     /* The wrist in axes of the forearm: Rz(q4) Ry(-q5) Rz(q6). */
     const double c45 = c[3] * c[4], s45 = s[3] * c[4];
     const double nx = c45 * c[5] - s[3] * s[5], ox = -c45 * s[5] - s[3] * c[5], ax = -c[3] * s[4];

@@ -4,7 +4,7 @@ __attribute__((noinline)) void evaluate(const double *in, double *out)
     const double a2 = in[6], a3 = in[7], d3 = in[8], d4 = in[9];
     const double angles[8] = { in[0], in[1], in[1] + in[2], in[3], in[4] };
     double s[8], c[8];
-    cf_sincos_block(8, angles, s, c);
+    cf_sincos_lanes(8, angles, s, c);
     const double C1 = c[0], S1 = s[0], C = c[2], S = s[2];
     const double fr = a3 * C - d4 * S, fh = a3 * S + d4 * C; /* the forearm: out and up */
     const double r = a2 * c[1] + fr, h = a2 * s[1] + fh;

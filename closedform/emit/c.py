@@ -17,7 +17,7 @@ from typing import Any
 
 from closedform import __version__
 from closedform.derivation import Derivation
-from closedform.emit.code import Printer, Text
+from closedform.emit.code import WRAPS, Printer, Text
 from closedform.emit.text import WIDTH, banner, describe, interface
 from closedform.functions import Function
 from closedform.lower import Lowered, lower
@@ -32,7 +32,7 @@ CALLS = {
     "max": "cf_max",
     "min": "cf_min",
     "finite": "cf_is_finite",
-    "wrap": "cf_wrap",
+    **{op: f"cf_{op}" for op in WRAPS},
     "poison": "cf_poison",
     "status": "cf_status",
     "select": "cf_select",
@@ -405,7 +405,7 @@ class _Emission:
             f"const real_t adjacent[{n}] = {{ {', '.join(x for _, x in pairs)} }};",
             f"real_t angles[{n}];",
             "if (vector) {",
-            f"    cf_atan2_block({n}, opposite, adjacent, angles);",
+            f"    cf_atan2_lanes({n}, opposite, adjacent, angles);",
             "} else {",
             *one_by_one,
             "}",
@@ -432,7 +432,7 @@ class _Emission:
             angles.append(text if divisor == 1 else f"{text} / CLOSEDFORM_C({divisor}.0)")
         return [
             f"const real_t lanes[{self._n_lanes}] = {{ {', '.join(angles)} }};",
-            f"cf_sincos_block({self._n_lanes}, lanes, sines, cosines);",
+            f"cf_sincos_lanes({self._n_lanes}, lanes, sines, cosines);",
         ]
 
     def _angle_blocks(self) -> list[str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from closedform.derivation import Derivation
-from closedform.emit.code import Printer, Text
+from closedform.emit.code import WRAPS, Printer, Text
 from closedform.emit.text import WIDTH, banner, call_signature, docstring, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
@@ -24,7 +24,7 @@ CALLS = {
     "select": "np.where",
     "not": "np.logical_not",
     "finite": "np.isfinite",
-    "wrap": "_runtime.wrap",
+    **{op: f"_runtime.{op}" for op in WRAPS},
     "poison": "_runtime.poison",
     "status": "_runtime.status",
 }

@@ -12,6 +12,7 @@ from closedform.derivation import Derivation
 from closedform.functions import Array, Bound, Function, Let, Match, Require, Vanishes
 from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.graph import Graph, Node, reachable
+from closedform.lower.ranges import Ranges
 from closedform.lower.share import share
 
 LEAVES = frozenset({"const", "input", "nan", "tolerance", "true", "false", "sin", "cos"})
@@ -198,13 +199,19 @@ class _Branch:
             isinstance(s, (Bound, Match)) for s in self.function.body
         )
 
+    @property
+    def _ranges(self) -> Ranges:
+        """Where an answer with a negative length is marked, lengths count as not negative."""
+        marked = self._guarded
+        return Ranges([p.name for p in self.derivation.parameters if marked and p.nonnegative])
+
     def _output(self, build: Builder, failed: Node, entry: sp.Basic) -> Node:
         """The value of an entry; adding NaN to a failed one is one selection for all entries."""
         node = build(entry)
         if self.function.boolean:
             return self.graph.every([self.graph.negate(failed), node])
         if entry.has(sp.atan2):
-            node = self.graph.node("wrap", node)
+            node = self._ranges.wrapped(self.graph, node)
         if failed.op == "false":
             return node
         return self.graph.node("add", node, self.graph.node("poison", failed))
@@ -220,7 +227,6 @@ class _Branch:
         graph = self.graph
         used = {s for e in _expressions(self.function) for s in e.free_symbols}
         parameters = [p for p in self.derivation.parameters if p.symbol in used]
-        entries = [*self.function.symbols, *(p.symbol for p in parameters)]
         required = {
             s
             for statement in self.function.body
@@ -228,13 +234,15 @@ class _Branch:
             for e in statement.values
             for s in e.free_symbols
         }
-        finite = [graph.node("finite", self.leaves[s]) for s in entries if s not in required]
-        lengths = [
-            graph.node("le", graph.const(0), self.leaves[p.symbol])
+        # The parameters first: what is the same for all postures is tested once a batch.
+        entries = [*(p.symbol for p in parameters), *self.function.symbols]
+        finite = {s: graph.node("finite", self.leaves[s]) for s in entries if s not in required}
+        lengths = {
+            p.symbol: graph.node("le", graph.const(0), self.leaves[p.symbol])
             for p in parameters
             if p.nonnegative
-        ]
-        return [*finite, *lengths]
+        }
+        return [test[s] for s in entries for test in (finite, lengths) if s in test]
 
     def _name(
         self, names: dict[int, str], build: Builder, symbol: sp.Symbol, node: Node, label: str

@@ -82,7 +82,6 @@ typedef uint64_t cf_word;
 /* A decimal literal as real_t, without an implicit conversion. */
 #define CLOSEDFORM_C(x) ((real_t)(x))
 #define CLOSEDFORM_NAN CLOSEDFORM_C(NAN)
-/* The real_t nearest to pi: the largest angle returned. */
 /* Which part of its natural scale counts as zero; the reasons stand in tolerances.py. */
 #ifdef CLOSEDFORM_FLOAT
 #define CLOSEDFORM_FEASIBILITY CLOSEDFORM_C(1e-06)
@@ -94,6 +93,7 @@ typedef uint64_t cf_word;
 #define CLOSEDFORM_ROTATION CLOSEDFORM_C(1e-06)
 #endif
 
+/* The real_t nearest to pi: the largest angle returned. */
 #define CF_PI CLOSEDFORM_C(3.141592653589793)
 
 #define CF_TOP_BIT (8u * sizeof(cf_word) - 1u)
@@ -264,6 +264,33 @@ CF_INLINE cf_word cf_trig_excess(real_t x)
     return cf_to_word(CF_TRIG_LIMIT) - (cf_to_word(x) & ~CF_SIGN);
 }
 
+/* Copies 2, 4 or 8 numbers as one vector. Written to memory one by one and read as one vector, they
+ * would hold up the processor until the last of them has reached the cache. */
+#if defined(__GNUC__)
+typedef real_t cf_lanes2 __attribute__((vector_size(2 * sizeof(real_t))));
+typedef real_t cf_lanes4 __attribute__((vector_size(4 * sizeof(real_t))));
+typedef real_t cf_lanes8 __attribute__((vector_size(8 * sizeof(real_t))));
+
+CF_INLINE void cf_side_by_side(size_t n, const real_t *x, real_t *lanes)
+{
+    if (n == 2) {
+        const cf_lanes2 all = { x[0], x[1] };
+        memcpy(lanes, &all, sizeof all);
+    } else if (n == 4) {
+        const cf_lanes4 all = { x[0], x[1], x[2], x[3] };
+        memcpy(lanes, &all, sizeof all);
+    } else {
+        const cf_lanes8 all = { x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7] };
+        memcpy(lanes, &all, sizeof all);
+    }
+}
+#else
+CF_INLINE void cf_side_by_side(size_t n, const real_t *x, real_t *lanes)
+{
+    memcpy(lanes, x, n * sizeof *x);
+}
+#endif
+
 /* Redoes with libm the lanes that cf_sincos does not cover. */
 CF_RARE void cf_sincos_fixup(size_t n, const real_t *x, real_t *s, real_t *c)
 {
@@ -275,8 +302,7 @@ CF_RARE void cf_sincos_fixup(size_t n, const real_t *x, real_t *s, real_t *c)
     }
 }
 
-/* Sine and cosine of any n angles; the arrays must not overlap. With a constant n the angles of one
- * call become one vector, and cost little more than one angle. */
+/* Sine and cosine of any n angles; the arrays must not overlap. */
 CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
                                real_t *CF_RESTRICT c)
 {
@@ -286,6 +312,19 @@ CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF
         excess |= cf_trig_excess(x[i]);
     }
     if (excess & CF_SIGN) cf_sincos_fixup(n, x, s, c);
+}
+
+/* Sine and cosine of the angles of one call, a constant number: 1, 2, 4 or a multiple of 8. They
+ * become vectors, and eight cost little more than one. */
+CF_INLINE void cf_sincos_lanes(size_t n, const real_t *x, real_t *s, real_t *c)
+{
+    const size_t width = n < 8 ? n : 8;
+    for (size_t k = 0; k < n; k += width) {
+        real_t angles[8];
+        if (n == 1) angles[0] = x[0];
+        else cf_side_by_side(width, x + k, angles);
+        cf_sincos_block(width, angles, s + k, c + k);
+    }
 }
 
 /* C99 atan2, with its signed zeros, infinities and NaN, in [-CF_PI, CF_PI]; one division, no
@@ -309,13 +348,21 @@ CF_INLINE real_t cf_atan2(real_t y, real_t x)
     return cf_copysign(high + (offset + right_angles * CF_PIO2_LO), y);
 }
 
-/* atan2 of n pairs; the arrays must not overlap. With a constant n they become vectors. */
-CF_INLINE void cf_atan2_block(size_t n, const real_t *CF_RESTRICT y, const real_t *CF_RESTRICT x,
-                              real_t *CF_RESTRICT angle)
+/* atan2 of the pairs of one call, a constant number: 2, 4 or a multiple of 8. */
+CF_INLINE void cf_atan2_lanes(size_t n, const real_t *y, const real_t *x, real_t *angle)
 {
-    for (size_t i = 0; i < n; ++i)
-        angle[i] = cf_atan2(y[i], x[i]);
+    const size_t width = n < 8 ? n : 8;
+    for (size_t k = 0; k < n; k += width) {
+        real_t ys[8], xs[8];
+        cf_side_by_side(width, y + k, ys);
+        cf_side_by_side(width, x + k, xs);
+        for (size_t i = 0; i < width; ++i)
+            angle[k + i] = cf_atan2(ys[i], xs[i]);
+    }
 }
+
+/* An angle in [-CF_PI, CF_PI], the range of cf_atan2, brought to (-CF_PI, CF_PI]. */
+CF_INLINE real_t cf_wrap_cut(real_t angle) { return angle <= -CF_PI ? CF_PI : angle; }
 
 /* The sum or difference of two angles, in [-2 pi, 2 pi], brought to (-CF_PI, CF_PI]. */
 CF_INLINE real_t cf_wrap(real_t angle)
@@ -324,6 +371,19 @@ CF_INLINE real_t cf_wrap(real_t angle)
     const real_t a = angle > CF_PI ? down : angle;
     const real_t up = (a + 2 * CF_PI) + CF_TWO_PI_LO;
     return a <= -CF_PI ? cf_min(up, CF_PI) : a;
+}
+
+/* The same for an angle in (-CF_PI, 2 pi], and in [-2 pi, CF_PI]. */
+CF_INLINE real_t cf_wrap_down(real_t angle)
+{
+    const real_t down = (angle - 2 * CF_PI) - CF_TWO_PI_LO;
+    return cf_wrap_cut(angle > CF_PI ? down : angle);
+}
+
+CF_INLINE real_t cf_wrap_up(real_t angle)
+{
+    const real_t up = (angle + 2 * CF_PI) + CF_TWO_PI_LO;
+    return angle <= -CF_PI ? cf_min(up, CF_PI) : angle;
 }
 
 #endif

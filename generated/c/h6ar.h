@@ -11,7 +11,7 @@
  *   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
  *   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
  *   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
- *   ik: 190 add, 223 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
+ *   ik: 190 add, 239 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
  *   wrist_length: 5 add, 26 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt

@@ -54,24 +54,25 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const hybrid_five_bar_params *params, c
     const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t9);
     const real_t t10 = n_1 * height;
     const real_t P_r = C_r - (t6 - t10);
-    const int t11 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t12 = t11 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int invalid = !(t13 & (CLOSEDFORM_C(0.0) <= L2));
+    const int t11 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
+    const int t14 = t13 & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int invalid = !t14;
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
-    const real_t t14 = cf_poison(invalid | unreachable);
-    const real_t t15 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t16 = t5 * height;
+    const real_t t15 = cf_poison(invalid | unreachable);
+    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t17 = t5 * height;
     const real_t P_r_right_of_CD = C_r - (t6 + t10);
-    const real_t t17 = cf_status(invalid, unreachable, coincide);
-    p[0] = -(P_r * c1) + t14;
-    p[1] = C_y + (t15 + t16) + t14;
-    p[2] = P_r * s1 + t14;
-    p[3] = -(c1 * P_r_right_of_CD) + t14;
-    p[4] = C_y + (t15 - t16) + t14;
-    p[5] = s1 * P_r_right_of_CD + t14;
-    status[0] = t17;
-    status[1] = t17;
+    const real_t t18 = cf_status(invalid, unreachable, coincide);
+    p[0] = -(P_r * c1) + t15;
+    p[1] = C_y + (t16 + t17) + t15;
+    p[2] = P_r * s1 + t15;
+    p[3] = -(c1 * P_r_right_of_CD) + t15;
+    p[4] = C_y + (t16 - t17) + t15;
+    p[5] = s1 * P_r_right_of_CD + t15;
+    status[0] = t18;
+    status[1] = t18;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -80,7 +81,7 @@ void hybrid_five_bar_fk(const hybrid_five_bar_params *params, const real_t
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[2], q[0] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     real_t status_real[2];
     hybrid_five_bar_fk_kernel(params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
@@ -160,28 +161,29 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int vector, const hyb
     const real_t t11 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t12 = t5 * height;
     const real_t CP_y = t11 + t12;
-    const int t13 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t14 = t13 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = (!(t15 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t8));
-    const real_t t16 = cf_poison(failed);
+    const int t13 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
+    const int t16 = t15 & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int failed = (!t16) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t8));
+    const real_t t17 = cf_poison(failed);
     const real_t DP_r = t6 + t10;
     const real_t CP_y_right_of_CD = t11 - t12;
     const real_t opposite[4] = { DP_r_right_of_CD, DP_r, DP_r, DP_r_right_of_CD };
     const real_t adjacent[4] = { CP_y, -CP_y_right_of_CD, CP_y_right_of_CD, -CP_y };
     real_t angles[4];
     if (vector) {
-        cf_atan2_block(4, opposite, adjacent, angles);
+        cf_atan2_lanes(4, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
     }
-    theta[0] = cf_wrap(-angles[0]) + t16;
-    theta[1] = cf_wrap(angles[1]) + t16;
-    theta[2] = cf_wrap(-angles[2]) + t16;
-    theta[3] = cf_wrap(angles[3]) + t16;
+    theta[0] = cf_wrap_cut(-angles[0]) + t17;
+    theta[1] = cf_wrap_cut(angles[1]) + t17;
+    theta[2] = cf_wrap_cut(-angles[2]) + t17;
+    theta[3] = cf_wrap_cut(angles[3]) + t17;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -190,7 +192,7 @@ void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params, const 
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_passive_angles_kernel(1, params, q, sines, cosines, theta);
 }
 
@@ -236,58 +238,59 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const hybrid_five_bar_pa
     const real_t c2 = cosines[1];
     const real_t s3 = sines[2];
     const real_t c3 = cosines[2];
-    const int t1 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t2 = t1 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const real_t t4 = L0 + L1 + L2;
-    const real_t t5 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t6 = L1 * s2 - L1 * s3;
-    const real_t t7 = L1 * c2 - (L0 + L1 * c3);
-    const real_t apart = cf_sqrt(t6 * t6 + t7 * t7);
-    const real_t t8 = t5 - apart;
-    const int failed = (!(t3 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t8));
-    const real_t t9 = cf_poison(failed);
-    const real_t t10 = L2 * s1 + t9;
-    const real_t t11 = CLOSEDFORM_C(0.0) + t9;
-    const real_t t12 = L2 * c1 + t9;
-    const real_t t13 = t4 * CLOSEDFORM_VANISHING;
-    const int coincide = apart <= t13;
+    const int t1 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
+    const int t4 = t3 & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const real_t t5 = L0 + L1 + L2;
+    const real_t t6 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t7 = L1 * s2 - L1 * s3;
+    const real_t t8 = L1 * c2 - (L0 + L1 * c3);
+    const real_t apart = cf_sqrt(t7 * t7 + t8 * t8);
+    const real_t t9 = t6 - apart;
+    const int failed = (!t4) | (!(-(CLOSEDFORM_FEASIBILITY * t5) <= t9));
+    const real_t t10 = cf_poison(failed);
+    const real_t t11 = L2 * s1 + t10;
+    const real_t t12 = CLOSEDFORM_C(0.0) + t10;
+    const real_t t13 = L2 * c1 + t10;
+    const real_t t14 = t5 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t14;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t14 = cf_select(coincide, CLOSEDFORM_C(0.0), t6 / apart);
-    const real_t t15 = distance * t14 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t7 / apart));
-    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t16 = cf_sqrt(slack) * cf_sqrt(apart + t5) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), t16);
-    const real_t t17 = n_1 * height;
-    const real_t DP_r_right_of_CD = t15 - t17;
-    const real_t t18 = DP_r_right_of_CD * c1;
-    const real_t t19 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t20 = t14 * height;
-    const real_t CP_y = t19 + t20;
-    const real_t t21 = DP_r_right_of_CD * s1;
-    const real_t DP_r = t15 + t17;
-    const real_t t22 = DP_r * c1;
-    const real_t CP_y_right_of_CD = t19 - t20;
-    const real_t t23 = DP_r * s1;
-    A[0] = t10;
-    A[1] = t11;
-    A[2] = t12;
-    A[3] = t18 + t9;
-    A[4] = CP_y + t9;
-    A[5] = -t21 + t9;
-    A[6] = -t22 + t9;
-    A[7] = -CP_y_right_of_CD + t9;
-    A[8] = t23 + t9;
-    A[9] = t10;
-    A[10] = t11;
-    A[11] = t12;
-    A[12] = t22 + t9;
-    A[13] = CP_y_right_of_CD + t9;
-    A[14] = -t23 + t9;
-    A[15] = -t18 + t9;
-    A[16] = -CP_y + t9;
-    A[17] = t21 + t9;
+    const real_t t15 = cf_select(coincide, CLOSEDFORM_C(0.0), t7 / apart);
+    const real_t t16 = distance * t15 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t8 / apart));
+    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t17 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_select(slack <= t14, CLOSEDFORM_C(0.0), t17);
+    const real_t t18 = n_1 * height;
+    const real_t DP_r_right_of_CD = t16 - t18;
+    const real_t t19 = DP_r_right_of_CD * c1;
+    const real_t t20 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t21 = t15 * height;
+    const real_t CP_y = t20 + t21;
+    const real_t t22 = DP_r_right_of_CD * s1;
+    const real_t DP_r = t16 + t18;
+    const real_t t23 = DP_r * c1;
+    const real_t CP_y_right_of_CD = t20 - t21;
+    const real_t t24 = DP_r * s1;
+    A[0] = t11;
+    A[1] = t12;
+    A[2] = t13;
+    A[3] = t19 + t10;
+    A[4] = CP_y + t10;
+    A[5] = -t22 + t10;
+    A[6] = -t23 + t10;
+    A[7] = -CP_y_right_of_CD + t10;
+    A[8] = t24 + t10;
+    A[9] = t11;
+    A[10] = t12;
+    A[11] = t13;
+    A[12] = t23 + t10;
+    A[13] = CP_y_right_of_CD + t10;
+    A[14] = -t24 + t10;
+    A[15] = -t19 + t10;
+    A[16] = -CP_y + t10;
+    A[17] = t22 + t10;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -296,7 +299,7 @@ void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params, con
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_parallel_kernel(params, q, sines, cosines, A);
 }
 
@@ -376,22 +379,23 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_para
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
-    const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = (!(t14 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
-    const real_t t15 = cf_poison(failed);
-    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t17 = t6 * height;
-    const real_t CP_y = t16 + t17;
+    const int t12 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
+    const int t15 = t14 & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int failed = (!t15) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
+    const real_t t16 = cf_poison(failed);
+    const real_t t17 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t18 = t6 * height;
+    const real_t CP_y = t17 + t18;
     const real_t DP_r = t7 + t11;
-    const real_t CP_y_right_of_CD = t16 - t17;
-    B[0] = L2 * (C_r - DP_r_right_of_CD) + t15;
-    B[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t15;
-    B[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t15;
-    B[3] = L2 * (C_r - DP_r) + t15;
-    B[4] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t15;
-    B[5] = t2 * DP_r_right_of_CD + D_r * CP_y + t15;
+    const real_t CP_y_right_of_CD = t17 - t18;
+    B[0] = L2 * (C_r - DP_r_right_of_CD) + t16;
+    B[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t16;
+    B[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t16;
+    B[3] = L2 * (C_r - DP_r) + t16;
+    B[4] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t16;
+    B[5] = t2 * DP_r_right_of_CD + D_r * CP_y + t16;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -400,7 +404,7 @@ void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params, const
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_jacobian_serial_kernel(params, q, sines, cosines, B);
 }
 
@@ -470,45 +474,46 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *par
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
     const real_t P_r = C_r - DP_r_right_of_CD;
-    const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = (!(t14 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
-    const real_t t15 = cf_poison(failed);
-    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t17 = t6 * height;
-    const real_t CP_y_right_of_CD = t16 - t17;
-    const real_t CP_y = t16 + t17;
-    const real_t t18 = C_y * DP_r_right_of_CD + C_r * CP_y;
-    const real_t t19 = CP_y_right_of_CD * t18;
+    const int t12 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
+    const int t15 = t14 & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int failed = (!t15) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
+    const real_t t16 = cf_poison(failed);
+    const real_t t17 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t18 = t6 * height;
+    const real_t CP_y_right_of_CD = t17 - t18;
+    const real_t CP_y = t17 + t18;
+    const real_t t19 = C_y * DP_r_right_of_CD + C_r * CP_y;
+    const real_t t20 = CP_y_right_of_CD * t19;
     const real_t side = distance * height;
     const real_t DP_r = t7 + t11;
     const real_t along_d = t2 * DP_r + D_r * CP_y_right_of_CD;
-    const real_t t20 = CP_y * along_d;
-    const real_t t21 = CLOSEDFORM_C(0.0) + t15;
+    const real_t t21 = CP_y * along_d;
+    const real_t t22 = CLOSEDFORM_C(0.0) + t16;
     const real_t P_r_right_of_CD = C_r - DP_r;
-    const real_t t22 = C_y * DP_r + C_r * CP_y_right_of_CD;
-    const real_t t23 = CP_y * t22;
+    const real_t t23 = C_y * DP_r + C_r * CP_y_right_of_CD;
+    const real_t t24 = CP_y * t23;
     const real_t along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y;
-    const real_t t24 = CP_y_right_of_CD * along_d_right_of_CD;
-    J[0] = P_r * s1 + t15;
-    J[1] = c1 * t19 / side + t15;
-    J[2] = -(c1 * t20 / side) + t15;
-    J[3] = t21;
-    J[4] = -(DP_r * t18 / side) + t15;
-    J[5] = DP_r_right_of_CD * along_d / side + t15;
-    J[6] = P_r * c1 + t15;
-    J[7] = -(s1 * t19 / side) + t15;
-    J[8] = s1 * t20 / side + t15;
-    J[9] = s1 * P_r_right_of_CD + t15;
-    J[10] = -(c1 * t23 / side) + t15;
-    J[11] = c1 * t24 / side + t15;
-    J[12] = t21;
-    J[13] = DP_r_right_of_CD * t22 / side + t15;
-    J[14] = -(DP_r * along_d_right_of_CD / side) + t15;
-    J[15] = c1 * P_r_right_of_CD + t15;
-    J[16] = s1 * t23 / side + t15;
-    J[17] = -(s1 * t24 / side) + t15;
+    const real_t t25 = CP_y_right_of_CD * along_d_right_of_CD;
+    J[0] = P_r * s1 + t16;
+    J[1] = c1 * t20 / side + t16;
+    J[2] = -(c1 * t21 / side) + t16;
+    J[3] = t22;
+    J[4] = -(DP_r * t19 / side) + t16;
+    J[5] = DP_r_right_of_CD * along_d / side + t16;
+    J[6] = P_r * c1 + t16;
+    J[7] = -(s1 * t20 / side) + t16;
+    J[8] = s1 * t21 / side + t16;
+    J[9] = s1 * P_r_right_of_CD + t16;
+    J[10] = -(c1 * t24 / side) + t16;
+    J[11] = c1 * t25 / side + t16;
+    J[12] = t22;
+    J[13] = DP_r_right_of_CD * t23 / side + t16;
+    J[14] = -(DP_r * along_d_right_of_CD / side) + t16;
+    J[15] = c1 * P_r_right_of_CD + t16;
+    J[16] = s1 * t24 / side + t16;
+    J[17] = -(s1 * t25 / side) + t16;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -517,7 +522,7 @@ void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params, const real_t
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[2], q[0] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_kernel(params, q, sines, cosines, J);
 }
 
@@ -605,15 +610,16 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *
     const real_t CP_y_right_of_CD = t12 - t13;
     const real_t side = distance * height;
     const real_t t15 = t14 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side;
-    const int t16 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t17 = t16 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t18 = t17 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = (!(t18 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
-    const real_t t19 = cf_poison(failed);
-    const real_t t20 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
-    const real_t t21 = t20 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
-    det[0] = -t15 + t19;
-    det[1] = t21 + t19;
+    const int t16 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t18 = t17 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
+    const int t19 = t18 & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int failed = (!t19) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
+    const real_t t20 = cf_poison(failed);
+    const real_t t21 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
+    const real_t t22 = t21 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
+    det[0] = -t15 + t20;
+    det[1] = t22 + t20;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -622,7 +628,7 @@ void hybrid_five_bar_determinant(const hybrid_five_bar_params *params, const rea
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_determinant_kernel(params, q, sines, cosines, det);
 }
 
@@ -685,25 +691,26 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
-    const int t12 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t13 = t12 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = (!(t14 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
-    const real_t t15 = cf_poison(failed);
-    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t17 = t6 * height;
-    const real_t CP_y = t16 + t17;
+    const int t12 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
+    const int t15 = t14 & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int failed = (!t15) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
+    const real_t t16 = cf_poison(failed);
+    const real_t t17 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t18 = t6 * height;
+    const real_t CP_y = t17 + t18;
     const real_t DP_r = t7 + t11;
-    const real_t CP_y_right_of_CD = t16 - t17;
+    const real_t CP_y_right_of_CD = t17 - t18;
     const real_t side = distance * height;
-    factors[0] = C_r - DP_r_right_of_CD + t15;
-    factors[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t15;
-    factors[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t15;
-    factors[3] = side + t15;
-    factors[4] = C_r - DP_r + t15;
-    factors[5] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t15;
-    factors[6] = t2 * DP_r_right_of_CD + D_r * CP_y + t15;
-    factors[7] = -side + t15;
+    factors[0] = C_r - DP_r_right_of_CD + t16;
+    factors[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t16;
+    factors[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t16;
+    factors[3] = side + t16;
+    factors[4] = C_r - DP_r + t16;
+    factors[5] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t16;
+    factors[6] = t2 * DP_r_right_of_CD + D_r * CP_y + t16;
+    factors[7] = -side + t16;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -712,7 +719,7 @@ void hybrid_five_bar_singularities(const hybrid_five_bar_params *params, const r
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_singularities_kernel(params, q, sines, cosines, factors);
 }
 
@@ -774,13 +781,14 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_par
     const real_t t8 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
     const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t8);
     const real_t t9 = cf_select(coincide, CLOSEDFORM_C(1.0), cf_max(t5, height));
-    const int t10 = cf_is_finite(theta1) & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int t11 = t10 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t7));
-    const real_t t13 = t9 / cf_min(t5, height) + cf_poison(failed);
-    kappa[0] = t13;
-    kappa[1] = t13;
+    const int t10 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t11 = t10 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
+    const int t13 = t12 & cf_is_finite(theta2) & cf_is_finite(theta3);
+    const int failed = (!t13) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t7));
+    const real_t t14 = t9 / cf_min(t5, height) + cf_poison(failed);
+    kappa[0] = t14;
+    kappa[1] = t14;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -789,7 +797,7 @@ void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params, cons
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_condition_number_kernel(params, q, sines, cosines, kappa);
 }
 
@@ -831,10 +839,10 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int vector, const hybrid_five_bar
     const real_t t1 = L1 + L2;
     const real_t t2 = CLOSEDFORM_VANISHING * (L0 + t1);
     const int on_axis = r <= t2;
-    const int t3 = cf_is_finite(x_2) & cf_is_finite(y) & cf_is_finite(z);
-    const int t4 = t3 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int invalid = !(t5 & (CLOSEDFORM_C(0.0) <= L2));
+    const int t3 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(x_2);
+    const int invalid = !(t5 & cf_is_finite(y) & cf_is_finite(z));
     const real_t t6 = -(CLOSEDFORM_FEASIBILITY * t1);
     const real_t t7 = r * r;
     const real_t reach_c = cf_sqrt(t7 + y * y);
@@ -862,7 +870,7 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int vector, const hybrid_five_bar
     const real_t adjacent[8] = { -x_2, y, t19, t12, t21, x_2 };
     real_t angles[8];
     if (vector) {
-        cf_atan2_block(8, opposite, adjacent, angles);
+        cf_atan2_lanes(8, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
@@ -872,23 +880,23 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int vector, const hybrid_five_bar
         angles[5] = cf_atan2(opposite[5], adjacent[5]);
     }
     const real_t t24 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[0]);
-    const real_t t25 = cf_wrap(t24) + t17;
+    const real_t t25 = cf_wrap_cut(t24) + t17;
     const real_t t26 = CLOSEDFORM_C(2.0) * angles[2];
     const real_t t27 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[1] - t26);
-    const real_t t28 = cf_wrap(t27) + t17;
+    const real_t t28 = cf_wrap_cut(t27) + t17;
     const real_t t29 = CLOSEDFORM_C(2.0) * angles[4];
     const real_t t30 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[3] - t29);
-    const real_t t31 = cf_wrap(t30) + t17;
+    const real_t t31 = cf_wrap_cut(t30) + t17;
     const real_t t32 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[3] + t29);
-    const real_t t33 = cf_wrap(t32) + t17;
+    const real_t t33 = cf_wrap_down(t32) + t17;
     const real_t t34 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[1] + t26);
-    const real_t t35 = cf_wrap(t34) + t17;
+    const real_t t35 = cf_wrap_down(t34) + t17;
     const real_t t36 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[5]);
-    const real_t t37 = cf_wrap(-t36) + t17;
-    const real_t t38 = cf_wrap(-t34) + t17;
-    const real_t t39 = cf_wrap(-t32) + t17;
-    const real_t t40 = cf_wrap(-t30) + t17;
-    const real_t t41 = cf_wrap(-t27) + t17;
+    const real_t t37 = cf_wrap_cut(-t36) + t17;
+    const real_t t38 = cf_wrap_up(-t34) + t17;
+    const real_t t39 = cf_wrap_up(-t32) + t17;
+    const real_t t40 = cf_wrap_cut(-t30) + t17;
+    const real_t t41 = cf_wrap_cut(-t27) + t17;
     q[0] = t25;
     q[1] = t28;
     q[2] = t31;
@@ -1017,9 +1025,9 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     const real_t x = p[0];
     const real_t y = p[1];
     const real_t z = p[2];
-    const int t1 = cf_is_finite(x) & cf_is_finite(y) & cf_is_finite(z);
-    const int t2 = t1 & cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t1 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(x);
     const real_t t4 = L1 + L2;
     const real_t t5 = -(CLOSEDFORM_FEASIBILITY * t4);
     const real_t r = cf_sqrt(x * x + z * z);
@@ -1030,7 +1038,7 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     const real_t t9 = y - L0;
     const real_t reach_d = cf_sqrt(t6 + t9 * t9);
     const int t10 = t8 & (t5 <= t4 - reach_d) & (t5 <= reach_d + t7);
-    const int failed = (!(t3 & (CLOSEDFORM_C(0.0) <= L2))) | (!(t10 & (t5 <= reach_d - t7)));
+    const int failed = (!(t3 & cf_is_finite(y) & cf_is_finite(z))) | (!(t10 & (t5 <= reach_d - t7)));
     inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -1099,8 +1107,8 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_par
     const real_t t21 = t10 - r * r * r * CLOSEDFORM_C(8.377580409572783);
     const real_t t22 = cf_select(t17, t18 + t20 * (t7 - t8) / CLOSEDFORM_C(12.0), cf_select(L0 <= t4, t21, t18));
     const real_t t23 = cf_select(t3 <= L0, t10, cf_select(t11, t16 / CLOSEDFORM_C(6.0), t22));
-    const int t24 = cf_is_finite(L0) & cf_is_finite(L1) & cf_is_finite(L2);
-    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t24 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
+    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
     const int failed = (!(t25 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1));
     const real_t t26 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t23) + cf_poison(failed);
     volume[0] = t26;

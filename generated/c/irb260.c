@@ -16,7 +16,7 @@
  *   determinant: 4 add, 7 multiply, 2 sincos
  *   singularities: 4 add, 4 multiply, 2 sincos
  *   point_velocity: 11 add, 20 multiply, 3 sincos
- *   ik: 45 add, 89 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
+ *   ik: 45 add, 87 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
  *   workspace_section: 1 compare and select, 4 add
  *   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
  *   workspace_contains: 38 compare and select, 17 add, 6 multiply, 3 sqrt
@@ -31,7 +31,7 @@ CF_INLINE void irb260_joint4_kernel(const real_t *sines, const real_t *cosines, 
     const real_t s3 = sines[1];
     const real_t c3 = cosines[1];
     const real_t t1 = cf_atan2(s2 * c3 + c2 * s3, c2 * c3 - s2 * s3);
-    theta4[0] = cf_wrap(-t1);
+    theta4[0] = cf_wrap_cut(-t1);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -41,7 +41,7 @@ void irb260_joint4(const irb260_params *params, const real_t q[4],
     (void)params;
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     irb260_joint4_kernel(sines, cosines, theta4);
 }
 
@@ -172,7 +172,7 @@ CF_INLINE void irb260_fk_kernel(const irb260_params *params, const real_t *sines
     x[0] = -(t1 * s1);
     x[1] = t1 * c1;
     x[2] = l2 - l5 + l3 * c2 - l4 * (s2 * c3 + c2 * s3);
-    x[3] = cf_wrap(t2);
+    x[3] = cf_wrap_cut(t2);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -181,7 +181,7 @@ void irb260_fk(const irb260_params *params, const real_t q[4],
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[2], q[0], q[3] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_fk_kernel(params, sines, cosines, x);
 }
 
@@ -255,7 +255,7 @@ void irb260_pose(const irb260_params *params, const real_t q[4],
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[3], q[1], q[2] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_pose_kernel(params, sines, cosines, T);
 }
 
@@ -339,7 +339,7 @@ void irb260_jacobian(const irb260_params *params, const real_t q[4],
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_jacobian_kernel(params, sines, cosines, J);
 }
 
@@ -430,7 +430,7 @@ void irb260_jacobian_space(const irb260_params *params, const real_t q[4],
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[2], q[0] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_jacobian_space_kernel(params, sines, cosines, J);
 }
 
@@ -529,7 +529,7 @@ void irb260_jacobian_body(const irb260_params *params, const real_t q[4],
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[3], q[1], q[2] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_jacobian_body_kernel(params, sines, cosines, J);
 }
 
@@ -620,7 +620,7 @@ void irb260_jacobian_motors(const irb260_params *params, const real_t q[4],
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[2], q[0] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_jacobian_motors_kernel(params, sines, cosines, J);
 }
 
@@ -682,7 +682,7 @@ void irb260_determinant(const irb260_params *params, const real_t q[4],
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[2], q[1] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     irb260_determinant_kernel(params, sines, cosines, det);
 }
 
@@ -729,7 +729,7 @@ void irb260_singularities(const irb260_params *params, const real_t q[4],
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     irb260_singularities_kernel(params, sines, cosines, factors);
 }
 
@@ -791,7 +791,7 @@ void irb260_point_velocity(const irb260_params *params, const real_t q[4],
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     irb260_point_velocity_kernel(params, qdot, sines, cosines, v);
 }
 
@@ -845,52 +845,53 @@ CF_INLINE void irb260_ik_kernel(const int vector, const irb260_params *params, c
     const int on_axis = r <= t4;
     const real_t s_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(0.0), px);
     const real_t c_turret = cf_select(on_axis, CLOSEDFORM_C(1.0), py);
-    const int t5 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(pz);
-    const int t6 = t5 & cf_is_finite(psi) & cf_is_finite(l1) & cf_is_finite(l2);
-    const int t7 = t6 & cf_is_finite(l3) & cf_is_finite(l4) & cf_is_finite(l5);
-    const int t8 = t7 & cf_is_finite(l6) & (CLOSEDFORM_C(0.0) <= l1);
-    const int t9 = t8 & (CLOSEDFORM_C(0.0) <= l2) & (CLOSEDFORM_C(0.0) <= l3);
-    const int t10 = t9 & (CLOSEDFORM_C(0.0) <= l4) & (CLOSEDFORM_C(0.0) <= l5);
-    const int invalid = !(t10 & (CLOSEDFORM_C(0.0) <= l6));
-    const real_t t11 = -(CLOSEDFORM_FEASIBILITY * t3);
+    const int t5 = cf_is_finite(l1) & (CLOSEDFORM_C(0.0) <= l1) & cf_is_finite(l2);
+    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= l2) & cf_is_finite(l3);
+    const int t7 = t6 & (CLOSEDFORM_C(0.0) <= l3) & cf_is_finite(l4);
+    const int t8 = t7 & (CLOSEDFORM_C(0.0) <= l4) & cf_is_finite(l5);
+    const int t9 = t8 & (CLOSEDFORM_C(0.0) <= l5) & cf_is_finite(l6);
+    const int t10 = t9 & (CLOSEDFORM_C(0.0) <= l6) & cf_is_finite(px);
+    const int t11 = t10 & cf_is_finite(py) & cf_is_finite(pz) & cf_is_finite(psi);
+    const int invalid = !t11;
+    const real_t t12 = -(CLOSEDFORM_FEASIBILITY * t3);
     const real_t h = pz - l2 + l5;
-    const real_t t12 = h * h;
-    const real_t t13 = r - t2;
-    const real_t reach = cf_sqrt(t12 + t13 * t13);
-    const real_t t14 = t1 - reach;
-    const real_t t15 = l3 - l4;
-    const real_t t16 = t15 + reach;
-    const real_t t17 = reach - t15;
-    const int unreachable = !((t11 <= t14) & (t11 <= t16) & (t11 <= t17));
-    const real_t t18 = cf_poison(invalid | unreachable);
+    const real_t t13 = h * h;
+    const real_t t14 = r - t2;
+    const real_t reach = cf_sqrt(t13 + t14 * t14);
+    const real_t t15 = t1 - reach;
+    const real_t t16 = l3 - l4;
+    const real_t t17 = t16 + reach;
+    const real_t t18 = reach - t16;
+    const int unreachable = !((t12 <= t15) & (t12 <= t17) & (t12 <= t18));
+    const real_t t19 = cf_poison(invalid | unreachable);
     const int folded = reach <= t4;
     const int no_link = l3 * l4 <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const real_t rA = cf_sqrt(cf_max(t14, CLOSEDFORM_C(0.0)));
-    const real_t rC = cf_sqrt(cf_max(t17, CLOSEDFORM_C(0.0)));
+    const real_t rA = cf_sqrt(cf_max(t15, CLOSEDFORM_C(0.0)));
+    const real_t rC = cf_sqrt(cf_max(t18, CLOSEDFORM_C(0.0)));
     const real_t rS = cf_sqrt(t1 + reach);
-    const real_t rB = cf_sqrt(cf_max(t16, CLOSEDFORM_C(0.0)));
-    const real_t t19 = c_psi * s_turret_back_elbow_up;
-    const real_t t20 = s_psi * s_turret_back_elbow_up;
+    const real_t rB = cf_sqrt(cf_max(t17, CLOSEDFORM_C(0.0)));
+    const real_t t20 = c_psi * s_turret_back_elbow_up;
+    const real_t t21 = s_psi * s_turret_back_elbow_up;
     const real_t c_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(1.0), -py);
-    const real_t t21 = r + t2;
-    const real_t reach_back_elbow_up = cf_sqrt(t12 + t21 * t21);
-    const real_t t22 = t1 - reach_back_elbow_up;
-    const real_t t23 = t15 + reach_back_elbow_up;
-    const real_t t24 = reach_back_elbow_up - t15;
-    const int unreachable_2 = !((t11 <= t22) & (t11 <= t23) & (t11 <= t24));
-    const real_t t25 = cf_poison(invalid | unreachable_2);
+    const real_t t22 = r + t2;
+    const real_t reach_back_elbow_up = cf_sqrt(t13 + t22 * t22);
+    const real_t t23 = t1 - reach_back_elbow_up;
+    const real_t t24 = t16 + reach_back_elbow_up;
+    const real_t t25 = reach_back_elbow_up - t16;
+    const int unreachable_2 = !((t12 <= t23) & (t12 <= t24) & (t12 <= t25));
+    const real_t t26 = cf_poison(invalid | unreachable_2);
     const int folded_back_elbow_up = reach_back_elbow_up <= t4;
-    const real_t rA_back_elbow_up = cf_sqrt(cf_max(t22, CLOSEDFORM_C(0.0)));
-    const real_t rC_back_elbow_up = cf_sqrt(cf_max(t24, CLOSEDFORM_C(0.0)));
+    const real_t rA_back_elbow_up = cf_sqrt(cf_max(t23, CLOSEDFORM_C(0.0)));
+    const real_t rC_back_elbow_up = cf_sqrt(cf_max(t25, CLOSEDFORM_C(0.0)));
     const real_t rS_back_elbow_up = cf_sqrt(t1 + reach_back_elbow_up);
-    const real_t rB_back_elbow_up = cf_sqrt(cf_max(t23, CLOSEDFORM_C(0.0)));
-    const real_t t26 = cf_status(invalid, unreachable, on_axis | folded | no_link);
-    const real_t t27 = cf_status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
-    const real_t opposite[16] = { s_turret_back_elbow_up, rA * rC, -t13, rA * rS, s_psi * c_turret + t19, s_turret_back_elbow_up, rA_back_elbow_up * rC_back_elbow_up, t21, rA_back_elbow_up * rS_back_elbow_up, t19 - s_psi * c_turret_back_elbow_up };
-    const real_t adjacent[16] = { c_turret, rS * rB, h, rC * rB, c_psi * c_turret - t20, c_turret_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up, h, rC_back_elbow_up * rB_back_elbow_up, t20 + c_psi * c_turret_back_elbow_up };
+    const real_t rB_back_elbow_up = cf_sqrt(cf_max(t24, CLOSEDFORM_C(0.0)));
+    const real_t t27 = cf_status(invalid, unreachable, on_axis | folded | no_link);
+    const real_t t28 = cf_status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
+    const real_t opposite[16] = { s_turret_back_elbow_up, rA * rC, -t14, rA * rS, s_psi * c_turret + t20, s_turret_back_elbow_up, rA_back_elbow_up * rC_back_elbow_up, t22, rA_back_elbow_up * rS_back_elbow_up, t20 - s_psi * c_turret_back_elbow_up };
+    const real_t adjacent[16] = { c_turret, rS * rB, h, rC * rB, c_psi * c_turret - t21, c_turret_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up, h, rC_back_elbow_up * rB_back_elbow_up, t21 + c_psi * c_turret_back_elbow_up };
     real_t angles[16];
     if (vector) {
-        cf_atan2_block(16, opposite, adjacent, angles);
+        cf_atan2_lanes(16, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
@@ -903,42 +904,42 @@ CF_INLINE void irb260_ik_kernel(const int vector, const irb260_params *params, c
         angles[8] = cf_atan2(opposite[8], adjacent[8]);
         angles[9] = cf_atan2(opposite[9], adjacent[9]);
     }
-    const real_t t28 = cf_wrap(-angles[0]) + t18;
-    const real_t t29 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
-    const real_t t30 = cf_select(folded, CLOSEDFORM_C(0.0), t29 + angles[2]);
-    const real_t t31 = CLOSEDFORM_C(2.0) * angles[3];
-    const real_t t32 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t31);
-    const real_t t33 = cf_wrap(angles[4]) + t18;
-    const real_t t34 = cf_select(folded, CLOSEDFORM_C(0.0), t29 - angles[2]);
-    const real_t t35 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t31);
-    const real_t t36 = cf_wrap(angles[5]) + t25;
-    const real_t t37 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
-    const real_t t38 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t37 + angles[7]);
-    const real_t t39 = CLOSEDFORM_C(2.0) * angles[8];
-    const real_t t40 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t39);
-    const real_t t41 = cf_wrap(-angles[9]) + t25;
-    const real_t t42 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t37 - angles[7]);
-    const real_t t43 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t39);
-    q[0] = t28;
-    q[1] = cf_wrap(-t30) + t18;
-    q[2] = cf_wrap(-t32) + t18;
-    q[3] = t33;
-    q[4] = t28;
-    q[5] = cf_wrap(t34) + t18;
-    q[6] = cf_wrap(-t35) + t18;
-    q[7] = t33;
-    q[8] = t36;
-    q[9] = cf_wrap(-t38) + t25;
-    q[10] = cf_wrap(-t40) + t25;
-    q[11] = t41;
-    q[12] = t36;
-    q[13] = cf_wrap(t42) + t25;
-    q[14] = cf_wrap(-t43) + t25;
-    q[15] = t41;
-    status[0] = t26;
-    status[1] = t26;
-    status[2] = t27;
-    status[3] = t27;
+    const real_t t29 = cf_wrap_cut(-angles[0]) + t19;
+    const real_t t30 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
+    const real_t t31 = cf_select(folded, CLOSEDFORM_C(0.0), t30 + angles[2]);
+    const real_t t32 = CLOSEDFORM_C(2.0) * angles[3];
+    const real_t t33 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t32);
+    const real_t t34 = cf_wrap_cut(angles[4]) + t19;
+    const real_t t35 = cf_select(folded, CLOSEDFORM_C(0.0), t30 - angles[2]);
+    const real_t t36 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t32);
+    const real_t t37 = cf_wrap_cut(angles[5]) + t26;
+    const real_t t38 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
+    const real_t t39 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t38 + angles[7]);
+    const real_t t40 = CLOSEDFORM_C(2.0) * angles[8];
+    const real_t t41 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t40);
+    const real_t t42 = cf_wrap_cut(-angles[9]) + t26;
+    const real_t t43 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t38 - angles[7]);
+    const real_t t44 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t40);
+    q[0] = t29;
+    q[1] = cf_wrap_up(-t31) + t19;
+    q[2] = -t33 + t19;
+    q[3] = t34;
+    q[4] = t29;
+    q[5] = cf_wrap(t35) + t19;
+    q[6] = cf_wrap_up(-t36) + t19;
+    q[7] = t34;
+    q[8] = t37;
+    q[9] = cf_wrap_up(-t39) + t26;
+    q[10] = -t41 + t26;
+    q[11] = t42;
+    q[12] = t37;
+    q[13] = cf_wrap_cut(t43) + t26;
+    q[14] = cf_wrap_up(-t44) + t26;
+    q[15] = t42;
+    status[0] = t27;
+    status[1] = t27;
+    status[2] = t28;
+    status[3] = t28;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -947,7 +948,7 @@ void irb260_ik(const irb260_params *params, const real_t x[4],
 {
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { x[3] };
-    cf_sincos_block(1, lanes, sines, cosines);
+    cf_sincos_lanes(1, lanes, sines, cosines);
     real_t status_real[4];
     irb260_ik_kernel(1, params, x, sines, cosines, q, status_real);
     for (size_t i = 0; i < 4; ++i)
@@ -1112,12 +1113,12 @@ CF_INLINE void irb260_workspace_contains_kernel(const irb260_params *params, con
     const real_t px = p[0];
     const real_t py = p[1];
     const real_t pz = p[2];
-    const int t1 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(pz);
-    const int t2 = t1 & cf_is_finite(l1) & cf_is_finite(l2) & cf_is_finite(l3);
-    const int t3 = t2 & cf_is_finite(l4) & cf_is_finite(l5) & cf_is_finite(l6);
-    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= l3) & (CLOSEDFORM_C(0.0) <= l4);
-    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= l5) & (CLOSEDFORM_C(0.0) <= l6);
+    const int t1 = cf_is_finite(l1) & (CLOSEDFORM_C(0.0) <= l1) & cf_is_finite(l2);
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= l2) & cf_is_finite(l3);
+    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= l3) & cf_is_finite(l4);
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= l4) & cf_is_finite(l5);
+    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= l5) & cf_is_finite(l6);
+    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= l6) & cf_is_finite(px);
     const real_t t7 = l1 + l6;
     const real_t t8 = l3 + l4;
     const real_t t9 = -(CLOSEDFORM_FEASIBILITY * (l2 + l5 + t7 + t8));
@@ -1130,7 +1131,8 @@ CF_INLINE void irb260_workspace_contains_kernel(const irb260_params *params, con
     const real_t t13 = r - t7;
     const real_t reach_front = cf_sqrt(t10 + t13 * t13);
     const real_t t14 = cf_max(cf_min(reach_back - t12, t8 - reach_back), cf_min(reach_front - t12, t8 - reach_front));
-    inside[0] = (!((!t6) | (!(t9 <= t14)))) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const int failed = (!(t6 & cf_is_finite(py) & cf_is_finite(pz))) | (!(t9 <= t14));
+    inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CLOSEDFORM_DISPATCHED

@@ -11,7 +11,7 @@
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
  *   singularities: 1 sincos
- *   ik: 13 add, 33 compare and select, 3 atan2, 13 multiply, 5 sqrt
+ *   ik: 13 add, 32 compare and select, 3 atan2, 13 multiply, 5 sqrt
  *   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
  *   workspace_radii: 1 compare and select, 2 add
  */
@@ -36,7 +36,7 @@ void planar_2r_fk(const planar_2r_params *params, const real_t q[2],
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     planar_2r_fk_kernel(params, sines, cosines, x);
 }
 
@@ -98,7 +98,7 @@ void planar_2r_pose(const planar_2r_params *params, const real_t q[2],
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     planar_2r_pose_kernel(params, sines, cosines, T);
 }
 
@@ -147,7 +147,7 @@ CF_INLINE void planar_2r_orientation_kernel(const real_t *sines, const real_t *c
     const real_t s2 = sines[1];
     const real_t c2 = cosines[1];
     const real_t t1 = cf_atan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2);
-    phi[0] = cf_wrap(t1);
+    phi[0] = cf_wrap_cut(t1);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -157,7 +157,7 @@ void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
     (void)params;
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     planar_2r_orientation_kernel(sines, cosines, phi);
 }
 
@@ -209,7 +209,7 @@ void planar_2r_jacobian(const planar_2r_params *params, const real_t q[2],
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     planar_2r_jacobian_kernel(params, sines, cosines, J);
 }
 
@@ -255,7 +255,7 @@ void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
 {
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
-    cf_sincos_block(1, lanes, sines, cosines);
+    cf_sincos_lanes(1, lanes, sines, cosines);
     planar_2r_determinant_kernel(params, sines, det);
 }
 
@@ -295,7 +295,7 @@ void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
 {
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
-    cf_sincos_block(1, lanes, sines, cosines);
+    cf_sincos_lanes(1, lanes, sines, cosines);
     planar_2r_manipulability_kernel(params, sines, w);
 }
 
@@ -333,7 +333,7 @@ void planar_2r_singularities(const planar_2r_params *params, const real_t q[2],
     (void)params;
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
-    cf_sincos_block(1, lanes, sines, cosines);
+    cf_sincos_lanes(1, lanes, sines, cosines);
     planar_2r_singularities_kernel(sines, factors);
 }
 
@@ -376,9 +376,9 @@ CF_INLINE void planar_2r_ik_kernel(const int vector, const planar_2r_params *par
     const real_t rS = cf_sqrt(r + t1);
     const real_t t5 = r + t3;
     const real_t rB = cf_sqrt(cf_max(t5, CLOSEDFORM_C(0.0)));
-    const int t6 = cf_is_finite(px) & cf_is_finite(py) & cf_is_finite(l1);
-    const int t7 = t6 & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
-    const int invalid = !(t7 & (CLOSEDFORM_C(0.0) <= l2));
+    const int t6 = cf_is_finite(l1) & (CLOSEDFORM_C(0.0) <= l1) & cf_is_finite(l2);
+    const int t7 = t6 & (CLOSEDFORM_C(0.0) <= l2) & cf_is_finite(px);
+    const int invalid = !(t7 & cf_is_finite(py));
     const real_t t8 = -(CLOSEDFORM_FEASIBILITY * t1);
     const int unreachable = !((t8 <= t2) & (t8 <= t5) & (t8 <= t4));
     const real_t t9 = cf_poison(invalid | unreachable);
@@ -388,7 +388,7 @@ CF_INLINE void planar_2r_ik_kernel(const int vector, const planar_2r_params *par
     const real_t adjacent[4] = { px, rS * rB, rC * rB };
     real_t angles[4];
     if (vector) {
-        cf_atan2_block(4, opposite, adjacent, angles);
+        cf_atan2_lanes(4, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
@@ -398,10 +398,10 @@ CF_INLINE void planar_2r_ik_kernel(const int vector, const planar_2r_params *par
     const real_t t13 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[0] - t12);
     const real_t t14 = CLOSEDFORM_C(2.0) * angles[2];
     const real_t t15 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[0] + t12);
-    q[0] = cf_wrap(t13) + t9;
-    q[1] = cf_wrap(t14) + t9;
+    q[0] = cf_wrap_up(t13) + t9;
+    q[1] = t14 + t9;
     q[2] = cf_wrap(t15) + t9;
-    q[3] = cf_wrap(-t14) + t9;
+    q[3] = cf_wrap_cut(-t14) + t9;
     status[0] = t11;
     status[1] = t11;
 }
@@ -474,12 +474,12 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int vector, const planar_2r_params
     const real_t s1 = cf_select(no_first_link, CLOSEDFORM_C(0.0), elbow_y / l1);
     const real_t elbow_x = T14 - T11 * l2;
     const real_t c1 = cf_select(no_first_link, CLOSEDFORM_C(1.0), elbow_x / l1);
-    const int t2 = cf_is_finite(T14) & cf_is_finite(T24) & cf_is_finite(T34);
-    const int t3 = t2 & cf_is_finite(l1) & cf_is_finite(l2) & (CLOSEDFORM_C(0.0) <= l1);
+    const int t2 = cf_is_finite(l1) & (CLOSEDFORM_C(0.0) <= l1) & cf_is_finite(l2);
+    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= l2) & cf_is_finite(T14);
     const int t4 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
-    const int t5 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
-    const int t6 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
-    const int t7 = t3 & (CLOSEDFORM_C(0.0) <= l2) & t4 & t5 & t6;
+    const int t5 = t3 & cf_is_finite(T24) & cf_is_finite(T34) & t4;
+    const int t6 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
+    const int t7 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
     const real_t t8 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
     const int t9 = cf_abs(t8) <= CLOSEDFORM_ROTATION;
     const real_t t10 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
@@ -488,30 +488,31 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int vector, const planar_2r_params
     const int t13 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
     const int t14 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
     const int t15 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
-    const int t16 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t7 & t9 & t11 & t12 & t13 & t14 & t15 & t16);
-    const real_t t17 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
-    const real_t t18 = CLOSEDFORM_FEASIBILITY * t1;
-    const int t19 = cf_abs(l1 - t17) <= t18;
-    const int t20 = cf_abs(T34) <= t18;
-    const int t21 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
-    const int t22 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
-    const int t23 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
-    const int unreachable = !(t19 & t20 & t21 & t22 & t23);
-    const real_t t24 = cf_poison(invalid | unreachable);
-    const real_t t25 = cf_status(invalid, unreachable, no_first_link);
+    const int t16 = t5 & t6 & t7 & t9 & t11 & t12 & t13 & t14 & t15;
+    const int t17 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t16 & t17);
+    const real_t t18 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
+    const real_t t19 = CLOSEDFORM_FEASIBILITY * t1;
+    const int t20 = cf_abs(l1 - t18) <= t19;
+    const int t21 = cf_abs(T34) <= t19;
+    const int t22 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
+    const int t23 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
+    const int t24 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
+    const int unreachable = !(t20 & t21 & t22 & t23 & t24);
+    const real_t t25 = cf_poison(invalid | unreachable);
+    const real_t t26 = cf_status(invalid, unreachable, no_first_link);
     const real_t opposite[2] = { s1, T11 * s1 - T21 * c1 };
     const real_t adjacent[2] = { c1, T11 * c1 + T21 * s1 };
     real_t angles[2];
     if (vector) {
-        cf_atan2_block(2, opposite, adjacent, angles);
+        cf_atan2_lanes(2, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
     }
-    q[0] = cf_wrap(angles[0]) + t24;
-    q[1] = cf_wrap(-angles[1]) + t24;
-    status[0] = t25;
+    q[0] = cf_wrap_cut(angles[0]) + t25;
+    q[1] = cf_wrap_cut(-angles[1]) + t25;
+    status[0] = t26;
 }
 
 CLOSEDFORM_DISPATCHED

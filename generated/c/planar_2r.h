@@ -11,7 +11,7 @@
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
  *   singularities: 1 sincos
- *   ik: 13 add, 33 compare and select, 3 atan2, 13 multiply, 5 sqrt
+ *   ik: 13 add, 32 compare and select, 3 atan2, 13 multiply, 5 sqrt
  *   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
  *   workspace_radii: 1 compare and select, 2 add
  *

@@ -26,8 +26,8 @@ CF_INLINE void rpr_planar_fk_kernel(const rpr_planar_params *params, const real_
     const real_t t4 = rho1 - rho2;
     const real_t t5 = b * CLOSEDFORM_C(2.0);
     const real_t t6 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t4 * t1 / t5);
-    const int t7 = cf_is_finite(rho1) & cf_is_finite(rho2) & cf_is_finite(b);
-    const int invalid = !(t7 & (CLOSEDFORM_C(0.0) <= b));
+    const int t7 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
+    const int invalid = !(t7 & cf_is_finite(rho2));
     const real_t t8 = -(CLOSEDFORM_FEASIBILITY * t2);
     const real_t t9 = t1 - b;
     const real_t t10 = b + t4;
@@ -113,23 +113,23 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int vector, const rpr_plan
     const real_t P_y = n_1 * height;
     const real_t t11 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t5 * t1 / t9);
     const real_t P_x = n_1 * t11;
-    const int t12 = cf_is_finite(rho1) & cf_is_finite(rho2) & cf_is_finite(b);
+    const int t12 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
     const real_t t13 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= b))) | (!((t13 <= t4) & (t13 <= t7) & (t13 <= t6)));
+    const int failed = (!(t12 & cf_is_finite(rho2))) | (!((t13 <= t4) & (t13 <= t7) & (t13 <= t6)));
     const real_t t14 = cf_poison(failed);
     const real_t opposite[2] = { P_y, P_y };
     const real_t adjacent[2] = { P_x, P_x - b };
     real_t angles[2];
     if (vector) {
-        cf_atan2_block(2, opposite, adjacent, angles);
+        cf_atan2_lanes(2, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
     }
-    theta[0] = cf_wrap(angles[0]) + t14;
-    theta[1] = cf_wrap(angles[1]) + t14;
-    theta[2] = cf_wrap(-angles[0]) + t14;
-    theta[3] = cf_wrap(-angles[1]) + t14;
+    theta[0] = cf_wrap_cut(angles[0]) + t14;
+    theta[1] = cf_wrap_cut(angles[1]) + t14;
+    theta[2] = cf_wrap_cut(-angles[0]) + t14;
+    theta[3] = cf_wrap_cut(-angles[1]) + t14;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -166,7 +166,7 @@ CF_INLINE void rpr_planar_jacobian_kernel(const rpr_planar_params *params, const
     const real_t b = params->b;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
-    const int t1 = cf_is_finite(rho1) & cf_is_finite(rho2) & cf_is_finite(b);
+    const int t1 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
     const real_t t2 = rho1 + rho2;
     const real_t t3 = b + t2;
     const real_t t4 = -(CLOSEDFORM_FEASIBILITY * t3);
@@ -174,7 +174,7 @@ CF_INLINE void rpr_planar_jacobian_kernel(const rpr_planar_params *params, const
     const real_t t6 = rho1 - rho2;
     const real_t t7 = b + t6;
     const real_t t8 = b - t6;
-    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b))) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
+    const int failed = (!(t1 & cf_is_finite(rho2))) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
     const real_t t9 = cf_poison(failed);
     const real_t t10 = rho1 / b + t9;
     const real_t t11 = -(rho2 / b) + t9;
@@ -253,9 +253,9 @@ CF_INLINE void rpr_planar_determinant_kernel(const rpr_planar_params *params, co
     const real_t t9 = t8 * cf_sqrt(slack) * cf_sqrt(t2) / (b * CLOSEDFORM_C(2.0));
     const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
     const real_t t10 = rho1 * rho2 / (b * (n_1 * height));
-    const int t11 = cf_is_finite(rho1) & cf_is_finite(rho2) & cf_is_finite(b);
+    const int t11 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
     const real_t t12 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b))) | (!((t12 <= t4) & (t12 <= t7) & (t12 <= t6)));
+    const int failed = (!(t11 & cf_is_finite(rho2))) | (!((t12 <= t4) & (t12 <= t7) & (t12 <= t6)));
     const real_t t13 = cf_poison(failed);
     det[0] = t10 + t13;
     det[1] = -t10 + t13;
@@ -293,7 +293,7 @@ CF_INLINE void rpr_planar_singularities_kernel(const rpr_planar_params *params, 
     const real_t b = params->b;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
-    const int t1 = cf_is_finite(rho1) & cf_is_finite(rho2) & cf_is_finite(b);
+    const int t1 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
     const real_t t2 = rho1 + rho2;
     const real_t t3 = b + t2;
     const real_t t4 = -(CLOSEDFORM_FEASIBILITY * t3);
@@ -301,7 +301,7 @@ CF_INLINE void rpr_planar_singularities_kernel(const rpr_planar_params *params, 
     const real_t t6 = rho1 - rho2;
     const real_t t7 = b + t6;
     const real_t t8 = b - t6;
-    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b))) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
+    const int failed = (!(t1 & cf_is_finite(rho2))) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
     const real_t t9 = cf_poison(failed);
     const real_t t10 = rho1 + t9;
     const real_t t11 = rho2 + t9;
@@ -358,8 +358,8 @@ CF_INLINE void rpr_planar_ik_kernel(const rpr_planar_params *params, const real_
     const real_t x_2 = x[0];
     const real_t y = x[1];
     const real_t t1 = y * y;
-    const int t2 = cf_is_finite(x_2) & cf_is_finite(y) & cf_is_finite(b);
-    const int invalid = !(t2 & (CLOSEDFORM_C(0.0) <= b));
+    const int t2 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(x_2);
+    const int invalid = !(t2 & cf_is_finite(y));
     const real_t t3 = cf_poison(invalid);
     const real_t t4 = x_2 - b;
     q[0] = cf_sqrt(x_2 * x_2 + t1) + t3;

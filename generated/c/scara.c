@@ -55,7 +55,7 @@ void scara_pose(const scara_params *params, const real_t q[4],
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[3] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     scara_pose_kernel(params, q, sines, cosines, T);
 }
 
@@ -116,7 +116,7 @@ CF_INLINE void scara_fk_kernel(const scara_params *params, const real_t q[4], co
     x[0] = l1 * c1 + l2 * (c1 * c2 - s1 * s2);
     x[1] = l1 * s1 + l2 * (s1 * c2 + c1 * s2);
     x[2] = h - d3;
-    x[3] = cf_wrap(t3);
+    x[3] = cf_wrap_cut(t3);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -125,7 +125,7 @@ void scara_fk(const scara_params *params, const real_t q[4],
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[3] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     scara_fk_kernel(params, q, sines, cosines, x);
 }
 
@@ -190,7 +190,7 @@ void scara_jacobian(const scara_params *params, const real_t q[4],
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     scara_jacobian_kernel(params, sines, cosines, J);
 }
 
@@ -245,7 +245,7 @@ void scara_determinant(const scara_params *params, const real_t q[4],
 {
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
-    cf_sincos_block(1, lanes, sines, cosines);
+    cf_sincos_lanes(1, lanes, sines, cosines);
     scara_determinant_kernel(params, sines, det);
 }
 
@@ -282,7 +282,7 @@ void scara_singularities(const scara_params *params, const real_t q[4],
     (void)params;
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
-    cf_sincos_block(1, lanes, sines, cosines);
+    cf_sincos_lanes(1, lanes, sines, cosines);
     scara_singularities_kernel(sines, factors);
 }
 
@@ -350,7 +350,7 @@ void scara_jacobian_space(const scara_params *params, const real_t q[4],
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     scara_jacobian_space_kernel(params, sines, cosines, J);
 }
 
@@ -441,7 +441,7 @@ void scara_jacobian_body(const scara_params *params, const real_t q[4],
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[3] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     scara_jacobian_body_kernel(params, sines, cosines, J);
 }
 
@@ -527,10 +527,10 @@ CF_INLINE void scara_ik_kernel(const int vector, const scara_params *params, con
     const real_t t11 = x_x * c_base_elbow / r_elbow;
     const real_t t12 = x_y * s_base_elbow / r_elbow;
     const real_t c1 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t11 + t12);
-    const int t13 = cf_is_finite(x_x) & cf_is_finite(x_y) & cf_is_finite(x_z);
-    const int t14 = t13 & cf_is_finite(x_yaw) & cf_is_finite(l1) & cf_is_finite(l2);
-    const int t15 = t14 & cf_is_finite(h) & (CLOSEDFORM_C(0.0) <= l1);
-    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= l2) & (CLOSEDFORM_C(0.0) <= h);
+    const int t13 = cf_is_finite(l1) & (CLOSEDFORM_C(0.0) <= l1) & cf_is_finite(l2);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= l2) & cf_is_finite(h);
+    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= h) & cf_is_finite(x_x);
+    const int t16 = t15 & cf_is_finite(x_y) & cf_is_finite(x_z) & cf_is_finite(x_yaw);
     const int invalid = !t16;
     const real_t t17 = l1 / CLOSEDFORM_C(2.0) + l2 / CLOSEDFORM_C(2.0);
     const real_t t18 = -(CLOSEDFORM_FEASIBILITY * t17);
@@ -553,7 +553,7 @@ CF_INLINE void scara_ik_kernel(const int vector, const scara_params *params, con
     const real_t adjacent[8] = { c1, c2, c_x_yaw * t23 + s_x_yaw * t24, c1_right, c_x_yaw * t25 - s_x_yaw * t26 };
     real_t angles[8];
     if (vector) {
-        cf_atan2_block(8, opposite, adjacent, angles);
+        cf_atan2_lanes(8, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
@@ -561,14 +561,14 @@ CF_INLINE void scara_ik_kernel(const int vector, const scara_params *params, con
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
         angles[4] = cf_atan2(opposite[4], adjacent[4]);
     }
-    q[0] = cf_wrap(angles[0]) + t19;
-    q[1] = cf_wrap(angles[1]) + t19;
+    q[0] = cf_wrap_cut(angles[0]) + t19;
+    q[1] = cf_wrap_cut(angles[1]) + t19;
     q[2] = t22;
-    q[3] = cf_wrap(-angles[2]) + t19;
-    q[4] = cf_wrap(angles[3]) + t19;
-    q[5] = cf_wrap(-angles[1]) + t19;
+    q[3] = cf_wrap_cut(-angles[2]) + t19;
+    q[4] = cf_wrap_cut(angles[3]) + t19;
+    q[5] = cf_wrap_cut(-angles[1]) + t19;
     q[6] = t22;
-    q[7] = cf_wrap(-angles[4]) + t19;
+    q[7] = cf_wrap_cut(-angles[4]) + t19;
     status[0] = t27;
     status[1] = t27;
 }
@@ -579,7 +579,7 @@ void scara_ik(const scara_params *params, const real_t x[4],
 {
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { x[3] };
-    cf_sincos_block(1, lanes, sines, cosines);
+    cf_sincos_lanes(1, lanes, sines, cosines);
     real_t status_real[2];
     scara_ik_kernel(1, params, x, sines, cosines, q, status_real);
     for (size_t i = 0; i < 2; ++i)

@@ -45,7 +45,7 @@ void spherical_wrist_fk(const spherical_wrist_params *params, const real_t
     (void)params;
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[0], q[2] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     spherical_wrist_fk_kernel(sines, cosines, R);
 }
 
@@ -119,7 +119,7 @@ void spherical_wrist_pose(const spherical_wrist_params *params, const real_t
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[0], q[2] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     spherical_wrist_pose_kernel(params, sines, cosines, T);
 }
 
@@ -186,7 +186,7 @@ void spherical_wrist_jacobian_space(const spherical_wrist_params *params, const 
     (void)params;
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     spherical_wrist_jacobian_space_kernel(sines, cosines, J);
 }
 
@@ -245,7 +245,7 @@ void spherical_wrist_jacobian_body(const spherical_wrist_params *params, const r
     (void)params;
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     spherical_wrist_jacobian_body_kernel(sines, cosines, J);
 }
 
@@ -292,7 +292,7 @@ void spherical_wrist_determinant(const spherical_wrist_params *params, const rea
     (void)params;
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
-    cf_sincos_block(1, lanes, sines, cosines);
+    cf_sincos_lanes(1, lanes, sines, cosines);
     spherical_wrist_determinant_kernel(sines, det);
 }
 
@@ -330,7 +330,7 @@ void spherical_wrist_singularities(const spherical_wrist_params *params, const r
     (void)params;
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
-    cf_sincos_block(1, lanes, sines, cosines);
+    cf_sincos_lanes(1, lanes, sines, cosines);
     spherical_wrist_singularities_kernel(sines, factors);
 }
 
@@ -387,17 +387,17 @@ CF_INLINE void spherical_wrist_ik_kernel(const int vector, const real_t R[9], re
     const real_t adjacent[4] = { c4, R33, R22 * c4 - R12 * s4 };
     real_t angles[4];
     if (vector) {
-        cf_atan2_block(4, opposite, adjacent, angles);
+        cf_atan2_lanes(4, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
     }
-    q[0] = cf_wrap(angles[0]) + t9;
-    q[1] = cf_wrap(angles[1]) + t9;
-    q[2] = cf_wrap(-angles[2]) + t9;
+    q[0] = cf_wrap_cut(angles[0]) + t9;
+    q[1] = cf_wrap_cut(angles[1]) + t9;
+    q[2] = cf_wrap_cut(-angles[2]) + t9;
     q[3] = cf_wrap(angles[0] + flip) + t9;
-    q[4] = cf_wrap(-angles[1]) + t9;
+    q[4] = cf_wrap_cut(-angles[1]) + t9;
     q[5] = cf_wrap(flip - angles[2]) + t9;
     status[0] = t10;
     status[1] = t10;

@@ -69,7 +69,7 @@ void stanford_arm_fk(const stanford_arm_params *params, const real_t
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0] };
-    cf_sincos_block(8, lanes, sines, cosines);
+    cf_sincos_lanes(8, lanes, sines, cosines);
     stanford_arm_fk_kernel(params, q, sines, cosines, T);
 }
 
@@ -168,7 +168,7 @@ void stanford_arm_pose(const stanford_arm_params *params, const real_t
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0] };
-    cf_sincos_block(8, lanes, sines, cosines);
+    cf_sincos_lanes(8, lanes, sines, cosines);
     stanford_arm_pose_kernel(params, q, sines, cosines, T);
 }
 
@@ -279,7 +279,7 @@ void stanford_arm_jacobian(const stanford_arm_params *params, const real_t
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[3], q[4] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     stanford_arm_jacobian_kernel(params, q, sines, cosines, J);
 }
 
@@ -416,7 +416,7 @@ void stanford_arm_jacobian_space(const stanford_arm_params *params, const real_t
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[0], q[3], q[4] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     stanford_arm_jacobian_space_kernel(params, q, sines, cosines, J);
 }
 
@@ -553,7 +553,7 @@ void stanford_arm_jacobian_body(const stanford_arm_params *params, const real_t
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[3], q[5], q[4] };
-    cf_sincos_block(4, lanes, sines, cosines);
+    cf_sincos_lanes(4, lanes, sines, cosines);
     stanford_arm_jacobian_body_kernel(params, q, sines, cosines, J);
 }
 
@@ -633,7 +633,7 @@ void stanford_arm_determinant(const stanford_arm_params *params, const real_t
     (void)params;
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[4] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     stanford_arm_determinant_kernel(q, sines, det);
 }
 
@@ -678,7 +678,7 @@ void stanford_arm_singularities(const stanford_arm_params *params, const real_t
     (void)params;
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[4] };
-    cf_sincos_block(2, lanes, sines, cosines);
+    cf_sincos_lanes(2, lanes, sines, cosines);
     stanford_arm_singularities_kernel(q, sines, factors);
 }
 
@@ -746,13 +746,13 @@ CF_INLINE void stanford_arm_ik_kernel(const int vector, const stanford_arm_param
     const real_t t11 = T14 * t9 / t7;
     const real_t t12 = T24 * t6 / t7;
     const real_t c1 = cf_select(free_theta1, CLOSEDFORM_C(1.0), t11 - t12);
-    const int t13 = cf_is_finite(T14) & cf_is_finite(T24) & cf_is_finite(T34);
+    const int t13 = cf_is_finite(d2) & cf_is_finite(T14) & cf_is_finite(T24);
     const int t14 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
     const int t15 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
     const int t16 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
     const real_t t17 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
     const int t18 = cf_abs(t17) <= CLOSEDFORM_ROTATION;
-    const int t19 = t13 & cf_is_finite(d2) & t14 & t15 & t16 & t18;
+    const int t19 = t13 & cf_is_finite(T34) & t14 & t15 & t16 & t18;
     const real_t t20 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
     const int t21 = cf_abs(t20) <= CLOSEDFORM_ROTATION;
     const int t22 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
@@ -840,7 +840,7 @@ CF_INLINE void stanford_arm_ik_kernel(const int vector, const stanford_arm_param
     const real_t adjacent[16] = { c1, c2, c4, t37 + t38, -(c4 * t41 + t36 * (t42 - c2 * R1_12)), c2_right_back_noflip, c4_right_back_noflip, t48 - t38, t50, c1_left_out_noflip, c4_left_out_noflip, t37 - t56, t60, c4_left_back_noflip, t48 + t56, -(t59 * c4_left_back_noflip + t62 * t64) };
     real_t angles[16];
     if (vector) {
-        cf_atan2_block(16, opposite, adjacent, angles);
+        cf_atan2_lanes(16, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
@@ -859,65 +859,65 @@ CF_INLINE void stanford_arm_ik_kernel(const int vector, const stanford_arm_param
         angles[14] = cf_atan2(opposite[14], adjacent[14]);
         angles[15] = cf_atan2(opposite[15], adjacent[15]);
     }
-    const real_t t70 = cf_wrap(angles[0]) + t28;
-    const real_t t71 = cf_wrap(angles[1]) + t28;
-    const real_t t72 = cf_wrap(-angles[5]) + t28;
+    const real_t t70 = cf_wrap_cut(angles[0]) + t28;
+    const real_t t71 = cf_wrap_cut(angles[1]) + t28;
+    const real_t t72 = cf_wrap_cut(-angles[5]) + t28;
     const real_t t73 = cf_wrap(flip_right_back_flip - angles[6]) + t28;
     const real_t t74 = cf_wrap(flip_right_back_flip - angles[8]) + t28;
-    const real_t t75 = cf_wrap(angles[9]) + t28;
-    const real_t t76 = cf_wrap(-angles[1]) + t28;
+    const real_t t75 = cf_wrap_cut(angles[9]) + t28;
+    const real_t t76 = cf_wrap_cut(-angles[1]) + t28;
     const real_t t77 = cf_wrap(flip_left_out_flip - angles[10]) + t28;
     const real_t t78 = cf_wrap(flip_left_out_flip - angles[12]) + t28;
-    const real_t t79 = cf_wrap(angles[5]) + t28;
+    const real_t t79 = cf_wrap_cut(angles[5]) + t28;
     const real_t t80 = cf_wrap(flip_left_back_flip - angles[13]) + t28;
     const real_t t81 = cf_wrap(flip_left_back_flip - angles[15]) + t28;
     q[0] = t70;
     q[1] = t71;
     q[2] = t30;
-    q[3] = cf_wrap(-angles[2]) + t28;
-    q[4] = cf_wrap(angles[3]) + t28;
-    q[5] = cf_wrap(-angles[4]) + t28;
+    q[3] = cf_wrap_cut(-angles[2]) + t28;
+    q[4] = cf_wrap_cut(angles[3]) + t28;
+    q[5] = cf_wrap_cut(-angles[4]) + t28;
     q[6] = t70;
     q[7] = t71;
     q[8] = t30;
     q[9] = cf_wrap(flip - angles[2]) + t28;
-    q[10] = cf_wrap(-angles[3]) + t28;
+    q[10] = cf_wrap_cut(-angles[3]) + t28;
     q[11] = cf_wrap(flip - angles[4]) + t28;
     q[12] = t70;
     q[13] = t72;
     q[14] = t43;
-    q[15] = cf_wrap(-angles[6]) + t28;
-    q[16] = cf_wrap(angles[7]) + t28;
-    q[17] = cf_wrap(-angles[8]) + t28;
+    q[15] = cf_wrap_cut(-angles[6]) + t28;
+    q[16] = cf_wrap_cut(angles[7]) + t28;
+    q[17] = cf_wrap_cut(-angles[8]) + t28;
     q[18] = t70;
     q[19] = t72;
     q[20] = t43;
     q[21] = t73;
-    q[22] = cf_wrap(-angles[7]) + t28;
+    q[22] = cf_wrap_cut(-angles[7]) + t28;
     q[23] = t74;
     q[24] = t75;
     q[25] = t76;
     q[26] = t30;
-    q[27] = cf_wrap(-angles[10]) + t28;
-    q[28] = cf_wrap(angles[11]) + t28;
-    q[29] = cf_wrap(-angles[12]) + t28;
+    q[27] = cf_wrap_cut(-angles[10]) + t28;
+    q[28] = cf_wrap_cut(angles[11]) + t28;
+    q[29] = cf_wrap_cut(-angles[12]) + t28;
     q[30] = t75;
     q[31] = t76;
     q[32] = t30;
     q[33] = t77;
-    q[34] = cf_wrap(-angles[11]) + t28;
+    q[34] = cf_wrap_cut(-angles[11]) + t28;
     q[35] = t78;
     q[36] = t75;
     q[37] = t79;
     q[38] = t43;
-    q[39] = cf_wrap(-angles[13]) + t28;
-    q[40] = cf_wrap(angles[14]) + t28;
-    q[41] = cf_wrap(-angles[15]) + t28;
+    q[39] = cf_wrap_cut(-angles[13]) + t28;
+    q[40] = cf_wrap_cut(angles[14]) + t28;
+    q[41] = cf_wrap_cut(-angles[15]) + t28;
     q[42] = t75;
     q[43] = t79;
     q[44] = t43;
     q[45] = t80;
-    q[46] = cf_wrap(-angles[14]) + t28;
+    q[46] = cf_wrap_cut(-angles[14]) + t28;
     q[47] = t81;
     status[0] = t66;
     status[1] = t66;

@@ -81,7 +81,23 @@ def sincos(angle: Any) -> tuple[Any, Any]:
 
 def wrap(angle: Any) -> Any:
     """An angle of [-2 pi, 2 pi] in (-pi, pi]; by arithmetic, for selections are slow in NumPy."""
-    return angle - 2 * np.pi * (angle > np.pi) + 2 * np.pi * (angle <= -np.pi)
+    turns = (angle > np.pi).view(np.int8) - (angle <= -np.pi).view(np.int8)
+    return angle - 2 * np.pi * turns
+
+
+def wrap_down(angle: Any) -> Any:
+    """The same for an angle of (-pi, 2 pi]."""
+    return angle - 2 * np.pi * (angle > np.pi)
+
+
+def wrap_up(angle: Any) -> Any:
+    """The same for an angle of [-2 pi, pi]."""
+    return angle + 2 * np.pi * (angle <= -np.pi)
+
+
+def wrap_cut(angle: Any) -> Any:
+    """The same for an angle of [-pi, pi], the range of ``atan2``."""
+    return np.where(angle <= -np.pi, np.pi, angle)
 
 
 def poison(failed: Any) -> Any:

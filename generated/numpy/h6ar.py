@@ -10,7 +10,7 @@
 #   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 190 add, 223 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
+#   ik: 190 add, 239 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
 #   wrist_length: 5 add, 26 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -147,25 +147,28 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t35 = L2 + cpsi * t32
     t36 = L1 * (side2A * t3) + c23A * t34 + s23A * t35
     t37 = t17 * t25 - cphi * t33
-    t38 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t39 = t38 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t40 = t39 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t41 = t40 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t42 = t41 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t43 = t42 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t44 = t43 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t45 = t44 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t46 = -(_runtime.FEASIBILITY * t30)
-    failed = np.logical_not(t45) | np.logical_not((t46 <= t31) & (t46 <= t29))
-    t47 = _runtime.poison(failed)
-    t48 = d1 + L1 * (side2A * t26) - c23A * t35 + s23A * t34
+    t38 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t39 = t38 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t40 = t39 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t41 = t40 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t42 = t41 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t43 = t42 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t44 = t43 & np.isfinite(theta1) & np.isfinite(theta2R)
+    t45 = t44 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t46 = t45 & np.isfinite(theta3L) & np.isfinite(theta)
+    t47 = -(_runtime.FEASIBILITY * t30)
+    failed = np.logical_not(t46) | np.logical_not((t47 <= t31) & (t47 <= t29))
+    t48 = _runtime.poison(failed)
+    t49 = d1 + L1 * (side2A * t26) - c23A * t35 + s23A * t34
+    t50 = _runtime.wrap_cut(np.arctan2(-t28, cpsi)) + t48
+    t51 = _runtime.wrap_cut(-np.arctan2(t25, cphi)) + t48
     return (
-        c1 * t36 - s1 * t37 + t47,
-        c1 * t37 + s1 * t36 + t47,
-        t48 + t47,
-        _runtime.wrap(np.arctan2(-t28, cpsi)) + t47,
-        _runtime.wrap(-np.arctan2(t25, cphi)) + t47,
-        _runtime.wrap(np.arctan2(s, c)) + t47,
+        c1 * t36 - s1 * t37 + t48,
+        c1 * t37 + s1 * t36 + t48,
+        t49 + t48,
+        t50,
+        t51,
+        _runtime.wrap_cut(np.arctan2(s, c)) + t48,
     )
 
 
@@ -241,58 +244,59 @@ def _pose(
     t32 = s23A * c1
     cpsi = d / base
     t33 = s * cpsi
-    t34 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t35 = t34 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t36 = t35 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t37 = t36 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t38 = t37 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t39 = t38 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t40 = t39 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t41 = t40 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t42 = gs + al
-    t43 = -(_runtime.FEASIBILITY * t42)
-    t44 = t42 - base
-    t45 = base - (gs - al)
-    failed = np.logical_not(t41) | np.logical_not((t43 <= t44) & (t43 <= t45))
-    t46 = _runtime.poison(failed)
+    t34 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t35 = t34 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t36 = t35 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t37 = t36 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t38 = t37 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t39 = t38 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t40 = t39 & np.isfinite(theta1) & np.isfinite(theta2R)
+    t41 = t40 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t42 = t41 & np.isfinite(theta3L) & np.isfinite(theta)
+    t43 = gs + al
+    t44 = -(_runtime.FEASIBILITY * t43)
+    t45 = t43 - base
+    t46 = base - (gs - al)
+    failed = np.logical_not(t42) | np.logical_not((t44 <= t45) & (t44 <= t46))
+    t47 = _runtime.poison(failed)
     hand_12 = t28 * cpsi
     hand_22 = cphi * cpsi
-    t47 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t46
+    t48 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t47
     hand_13 = s * cphi + c * t29
-    t48 = c * t30 - s * t28
+    t49 = c * t30 - s * t28
     hand_33 = c * cpsi
-    t49 = t14 * hand_13 + s1 * t48 + t32 * hand_33 + t46
+    t50 = t14 * hand_13 + s1 * t49 + t32 * hand_33 + t47
     side2A = np.where(0.0 <= t18 + t19, 1.0, -1.0)
-    t50 = lp * s
-    wrist = np.sqrt(np.maximum(t45, 0.0)) * np.sqrt(np.maximum(t44, 0.0))
-    t51 = loff + lp * c + wrist
-    t52 = a3 + t50 * cphi + t29 * t51
-    t53 = L2 + cpsi * t51
-    t54 = L1 * (side2A * t20) + c23A * t52 + s23A * t53
-    t55 = t50 * t28 - t30 * t51
-    t56 = c23A * s1
-    t57 = s23A * s1
-    t58 = t56 * hand_12 - c1 * hand_22 - t57 * t27 + t46
-    t59 = t56 * hand_13 - c1 * t48 + t57 * hand_33 + t46
-    t60 = d1 + L1 * (side2A * t25) - c23A * t53 + s23A * t52
-    t61 = 0.0 + t46
+    t51 = lp * s
+    wrist = np.sqrt(np.maximum(t46, 0.0)) * np.sqrt(np.maximum(t45, 0.0))
+    t52 = loff + lp * c + wrist
+    t53 = a3 + t51 * cphi + t29 * t52
+    t54 = L2 + cpsi * t52
+    t55 = L1 * (side2A * t20) + c23A * t53 + s23A * t54
+    t56 = t51 * t28 - t30 * t52
+    t57 = c23A * s1
+    t58 = s23A * s1
+    t59 = t57 * hand_12 - c1 * hand_22 - t58 * t27 + t47
+    t60 = t57 * hand_13 - c1 * t49 + t58 * hand_33 + t47
+    t61 = d1 + L1 * (side2A * t25) - c23A * t54 + s23A * t53
+    t62 = 0.0 + t47
     return (
-        t14 * hand_11 - s1 * t31 - t32 * t33 + t46,
-        t47,
-        t49,
-        c1 * t54 - s1 * t55 + t46,
-        t56 * hand_11 + c1 * t31 - t57 * t33 + t46,
-        t58,
+        t14 * hand_11 - s1 * t31 - t32 * t33 + t47,
+        t48,
+        t50,
+        c1 * t55 - s1 * t56 + t47,
+        t57 * hand_11 + c1 * t31 - t58 * t33 + t47,
         t59,
-        c1 * t55 + s1 * t54 + t46,
-        c23A * t33 + s23A * hand_11 + t46,
-        c23A * t27 + s23A * hand_12 + t46,
-        s23A * hand_13 - c23A * hand_33 + t46,
-        t60 + t46,
-        t61,
-        t61,
-        t61,
-        1.0 + t46,
+        t60,
+        c1 * t56 + s1 * t55 + t47,
+        c23A * t33 + s23A * hand_11 + t47,
+        c23A * t27 + s23A * hand_12 + t47,
+        s23A * hand_13 - c23A * hand_33 + t47,
+        t61 + t47,
+        t62,
+        t62,
+        t62,
+        1.0 + t47,
     )
 
 
@@ -487,115 +491,116 @@ def _jacobian(
     t50 = L2 + t49
     outer_33 = c23A * t48 + s23A * t50
     t51 = outer_32 + outer_33
-    t52 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t53 = t52 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t54 = t53 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t55 = t54 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t56 = t55 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t57 = t56 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t58 = t57 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t59 = -(_runtime.FEASIBILITY * t40)
-    failed = np.logical_not(t58 & (0.0 <= lp)) | np.logical_not((t59 <= t41) & (t59 <= t39))
-    t60 = _runtime.poison(failed)
-    t61 = c23A * t43
-    outer_15 = c1 * t61 + s1 * t47
-    t62 = t45 * t17 / 2.0
-    t63 = t31 / 2.0
-    t64 = t62 - t63
-    t65 = t33 / 2.0
-    t66 = L1 * t44
-    t67 = t21 * t66 / 2.0
-    t68 = d * (1.0 + t28 / t27)
-    inner_52 = (t64 + t65 + t67) / t68
-    t69 = L1 * (side2A * t32)
-    t70 = c23A * t50 - s23A * t48
-    t71 = c1 * t70 / 2.0
-    t72 = c1 * t69 / 2.0 - t71
-    t73 = cphi * t49
-    t74 = t29 * t49
-    t75 = t36 * t42
-    t76 = c23A * t74 - s23A * t75
-    t77 = (gs - d / cpsi) * (d * t36)
-    t78 = s23A * cpsi
-    t79 = c23A * t46 + t78
-    t80 = cpsi * cpsi * wrist
-    t81 = s1 * t73 + c1 * t76 + t77 * (s1 * t37 + c1 * t79) / t80
-    t82 = t18 / 2.0
-    t83 = t45 * t30 / 2.0
-    t84 = t82 + t83
-    t85 = t25 / 2.0
-    t86 = t32 * t66 / 2.0
-    t87 = d * (1.0 + t35 / t27)
-    inner_42 = (t84 + t85 - t86) / t87
-    t88 = outer_15 * inner_52 - (t72 + t81 * inner_42) + t60
-    inner_43 = t84 / t87
-    inner_53 = t64 / t68
-    t89 = t71 - inner_43 * t81 + inner_53 * outer_15 + t60
-    t90 = t82 - t83
-    inner_44 = (t90 + t85 + t86) / t87
-    t91 = t62 + t63
-    t92 = (t91 - t65 + t67) / t68
-    t93 = -(t72 + t81 * inner_44 + outer_15 * t92) + t60
-    inner_45 = t90 / t87
-    t94 = t91 / t68
-    t95 = t38 * cphi - t1 * t46
-    t96 = c23A * t95 - t1 * t78
-    t97 = t1 * t37 + t38 * t29
-    outer_25 = s1 * t61 - c1 * t47
-    t98 = s1 * t70 / 2.0
-    t99 = s1 * t69 / 2.0 - t98
-    outer_24 = c1 * t73 - s1 * t76 + t77 * (c1 * t37 - s1 * t79) / t80
-    t100 = inner_52 * outer_25 - (t99 - inner_42 * outer_24)
-    t101 = t98 + inner_43 * outer_24 + inner_53 * outer_25
-    t102 = -(t99 - inner_44 * outer_24 + t92 * outer_25)
-    t103 = t98 + inner_45 * outer_24 - t94 * outer_25 + t60
-    t104 = 0.0 + t60
-    t105 = outer_33 / 2.0
-    t106 = outer_32 / 2.0 + t105
-    t107 = c23A * cpsi
-    t108 = c23A * t75 + s23A * t74 - t77 * (t107 - s23A * t46) / t80
+    t52 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t53 = t52 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t54 = t53 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t55 = t54 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t56 = t55 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t57 = t56 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t58 = t57 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t59 = t58 & np.isfinite(theta3L) & np.isfinite(theta)
+    t60 = -(_runtime.FEASIBILITY * t40)
+    failed = np.logical_not(t59) | np.logical_not((t60 <= t41) & (t60 <= t39))
+    t61 = _runtime.poison(failed)
+    t62 = c23A * t43
+    outer_15 = c1 * t62 + s1 * t47
+    t63 = t45 * t17 / 2.0
+    t64 = t31 / 2.0
+    t65 = t63 - t64
+    t66 = t33 / 2.0
+    t67 = L1 * t44
+    t68 = t21 * t67 / 2.0
+    t69 = d * (1.0 + t28 / t27)
+    inner_52 = (t65 + t66 + t68) / t69
+    t70 = L1 * (side2A * t32)
+    t71 = c23A * t50 - s23A * t48
+    t72 = c1 * t71 / 2.0
+    t73 = c1 * t70 / 2.0 - t72
+    t74 = cphi * t49
+    t75 = t29 * t49
+    t76 = t36 * t42
+    t77 = c23A * t75 - s23A * t76
+    t78 = (gs - d / cpsi) * (d * t36)
+    t79 = s23A * cpsi
+    t80 = c23A * t46 + t79
+    t81 = cpsi * cpsi * wrist
+    t82 = s1 * t74 + c1 * t77 + t78 * (s1 * t37 + c1 * t80) / t81
+    t83 = t18 / 2.0
+    t84 = t45 * t30 / 2.0
+    t85 = t83 + t84
+    t86 = t25 / 2.0
+    t87 = t32 * t67 / 2.0
+    t88 = d * (1.0 + t35 / t27)
+    inner_42 = (t85 + t86 - t87) / t88
+    t89 = outer_15 * inner_52 - (t73 + t82 * inner_42) + t61
+    inner_43 = t85 / t88
+    inner_53 = t65 / t69
+    t90 = t72 - inner_43 * t82 + inner_53 * outer_15 + t61
+    t91 = t83 - t84
+    inner_44 = (t91 + t86 + t87) / t88
+    t92 = t63 + t64
+    t93 = (t92 - t66 + t68) / t69
+    t94 = -(t73 + t82 * inner_44 + outer_15 * t93) + t61
+    inner_45 = t91 / t88
+    t95 = t92 / t69
+    t96 = t38 * cphi - t1 * t46
+    t97 = c23A * t96 - t1 * t79
+    t98 = t1 * t37 + t38 * t29
+    outer_25 = s1 * t62 - c1 * t47
+    t99 = s1 * t71 / 2.0
+    t100 = s1 * t70 / 2.0 - t99
+    outer_24 = c1 * t74 - s1 * t77 + t78 * (c1 * t37 - s1 * t80) / t81
+    t101 = inner_52 * outer_25 - (t100 - inner_42 * outer_24)
+    t102 = t99 + inner_43 * outer_24 + inner_53 * outer_25
+    t103 = -(t100 - inner_44 * outer_24 + t93 * outer_25)
+    t104 = t99 + inner_45 * outer_24 - t95 * outer_25 + t61
+    t105 = 0.0 + t61
+    t106 = outer_33 / 2.0
+    t107 = outer_32 / 2.0 + t106
+    t108 = c23A * cpsi
+    t109 = c23A * t76 + s23A * t75 - t78 * (t108 - s23A * t46) / t81
     outer_35 = s23A * t43
-    t109 = t106 - inner_42 * t108 + inner_52 * outer_35 + t60
-    t110 = t105 - inner_43 * t108 + inner_53 * outer_35 + t60
-    t111 = t106 - inner_44 * t108 - t92 * outer_35 + t60
-    t112 = t105 - inner_45 * t108 - t94 * outer_35 + t60
+    t110 = t107 - inner_42 * t109 + inner_52 * outer_35 + t61
+    t111 = t106 - inner_43 * t109 + inner_53 * outer_35 + t61
+    t112 = t107 - inner_44 * t109 - t93 * outer_35 + t61
+    t113 = t106 - inner_45 * t109 - t95 * outer_35 + t61
     return (
-        -(c1 * t43 + s1 * t51) + t60,
-        t88,
+        -(c1 * t43 + s1 * t51) + t61,
         t89,
-        t93,
-        t71 - inner_45 * t81 - t94 * outer_15 + t60,
-        c1 * t96 - s1 * t97 + t60,
-        c1 * t51 - s1 * t43 + t60,
-        t100 + t60,
-        t101 + t60,
-        t102 + t60,
-        t103,
-        s1 * t96 + c1 * t97 + t60,
+        t90,
+        t94,
+        t72 - inner_45 * t82 - t95 * outer_15 + t61,
+        c1 * t97 - s1 * t98 + t61,
+        c1 * t51 - s1 * t43 + t61,
+        t101 + t61,
+        t102 + t61,
+        t103 + t61,
         t104,
-        t109,
+        s1 * t97 + c1 * t98 + t61,
+        t105,
         t110,
         t111,
         t112,
-        t1 * t107 + s23A * t95 + t60,
-        t104,
-        inner_42 + t60,
-        inner_43 + t60,
-        inner_44 + t60,
-        inner_45 + t60,
-        t104,
-        t104,
-        inner_52 + t60,
-        inner_53 + t60,
-        -t92 + t60,
-        -t94 + t60,
-        t104,
-        t104,
-        t104,
-        t104,
-        t104,
-        t104,
-        1.0 + t60,
+        t113,
+        t1 * t108 + s23A * t96 + t61,
+        t105,
+        inner_42 + t61,
+        inner_43 + t61,
+        inner_44 + t61,
+        inner_45 + t61,
+        t105,
+        t105,
+        inner_52 + t61,
+        inner_53 + t61,
+        -t93 + t61,
+        -t95 + t61,
+        t105,
+        t105,
+        t105,
+        t105,
+        t105,
+        t105,
+        1.0 + t61,
     )
 
 
@@ -679,15 +684,16 @@ def _determinant(
     t36 = a3 + lp * s * cphi + t30 / base * (t29 / rise) * t34
     t37 = t25 * (cphi * cphi) * (cpsi * cpsi) * (t23 * t35 + t24 * t36)
     t38 = t37 * (L1 * c2A + c23A * t36 + s23A * t35) / (t26 * 4.0)
-    t39 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t40 = t39 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t41 = t40 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t42 = t41 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t43 = t42 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t44 = t43 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t45 = t44 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t46 = -(_runtime.FEASIBILITY * t32)
-    failed = np.logical_not(t45 & (0.0 <= lp)) | np.logical_not((t46 <= t33) & (t46 <= t31))
+    t39 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t40 = t39 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t41 = t40 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t42 = t41 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t43 = t42 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t44 = t43 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t45 = t44 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t46 = t45 & np.isfinite(theta3L) & np.isfinite(theta)
+    t47 = -(_runtime.FEASIBILITY * t32)
+    failed = np.logical_not(t46) | np.logical_not((t47 <= t33) & (t47 <= t31))
     return (
         -t38 + _runtime.poison(failed),
     )
@@ -763,26 +769,27 @@ def _singularities(
     t32 = a3 + lp * s * (d / rise) + t27 / base * (t25 / rise) * t31
     s23A = side23A * t21
     t33 = L2 + d / base * t31
-    t34 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t35 = t34 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t36 = t35 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t37 = t36 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t38 = t37 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t39 = t38 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t40 = t39 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t41 = -(_runtime.FEASIBILITY * t29)
-    failed = np.logical_not(t40 & (0.0 <= lp)) | np.logical_not((t41 <= t30) & (t41 <= t28))
-    t42 = _runtime.poison(failed)
+    t34 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t35 = t34 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t36 = t35 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t37 = t36 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t38 = t37 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t39 = t38 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t40 = t39 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t41 = t40 & np.isfinite(theta3L) & np.isfinite(theta)
+    t42 = -(_runtime.FEASIBILITY * t29)
+    failed = np.logical_not(t41) | np.logical_not((t42 <= t30) & (t42 <= t28))
+    t43 = _runtime.poison(failed)
     s2A = side2A * t26
-    t43 = c2A * c23A + s2A * s23A
-    t44 = s2A * c23A - c2A * s23A
+    t44 = c2A * c23A + s2A * s23A
+    t45 = s2A * c23A - c2A * s23A
     return (
-        L1 * c2A + c23A * t32 + s23A * t33 + t42,
-        t43 * t33 + t44 * t32 + t42,
-        L2 * t43 + a3 * t44 + t42,
-        t3 * side2A + t42,
-        t13 * side23A + t42,
-        wrist + t42,
+        L1 * c2A + c23A * t32 + s23A * t33 + t43,
+        t44 * t33 + t45 * t32 + t43,
+        L2 * t44 + a3 * t45 + t43,
+        t3 * side2A + t43,
+        t13 * side23A + t43,
+        wrist + t43,
     )
 
 
@@ -830,367 +837,384 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t13 = np.sqrt(above)
     t14 = 2.0 * np.arctan2(t11, t13)
     t15 = _runtime.wrap(-np.where(nowhere, 0.0, t2 - t14))
-    t16 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t17 = t16 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t18 = t17 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
-    t19 = t18 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
-    t20 = t19 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t21 = t20 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t22 = t21 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    invalid = np.logical_not(t22 & (0.0 <= loff) & (0.0 <= lp))
-    t23 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t5)
-    t25 = -(_runtime.FEASIBILITY * t1)
-    t26 = t24 & (t23 <= t4) & (t25 <= t10) & (t25 <= t12)
+    t16 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t17 = t16 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t18 = t17 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t19 = t18 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t20 = t19 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t21 = t20 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t22 = t21 & np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t23 = t22 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    invalid = np.logical_not(t23)
+    t24 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t5)
+    t26 = -(_runtime.FEASIBILITY * t1)
+    t27 = t25 & (t24 <= t4) & (t26 <= t10) & (t26 <= t12)
     L_2W = L2 + c_psi * t7
     a_3W = a3 + c_phi * t3 + s_phi * t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t27 = L1 + fore
-    t28 = -(_runtime.FEASIBILITY * t27)
-    t29 = z - d1
-    t30 = t29 * t29
+    t28 = L1 + fore
+    t29 = -(_runtime.FEASIBILITY * t28)
+    t30 = z - d1
+    t31 = t30 * t30
     total = below + above
-    t31 = (below - above) / total
-    t32 = y * t31
+    t32 = (below - above) / total
+    t33 = y * t32
     s_turn = 2.0 * t11 * t13 / total
-    t33 = x * s_turn
-    t34 = x * np.where(nowhere, 1.0, -((t32 - t33) / h))
-    t35 = x * t31
-    t36 = y * s_turn
-    outward = t34 + y * np.where(nowhere, 0.0, (t35 + t36) / h)
-    reach = np.sqrt(t30 + outward * outward)
-    t37 = t27 - reach
-    t38 = L1 - fore
-    t39 = reach + t38
-    t40 = reach - t38
-    t41 = t26 & (t28 <= t37) & (t28 <= t39) & (t28 <= t40)
-    t42 = _runtime.VANISHING * t27
-    folded = reach <= t42
-    s_sight = np.where(folded, 0.0, t29 / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t27 * t27)
-    t43 = folded | short
-    A = np.maximum(t37, 0.0)
-    C = np.maximum(t40, 0.0)
-    t44 = A * C
-    S = t27 + reach
-    B = np.maximum(t39, 0.0)
-    t45 = S * B
-    at_base = t44 + t45
-    c_base = np.where(t43, 1.0, -((t44 - t45) / at_base))
-    t46 = s_sight * c_base
+    t34 = x * s_turn
+    t35 = x * np.where(nowhere, 1.0, -((t33 - t34) / h))
+    t36 = x * t32
+    t37 = y * s_turn
+    outward = t35 + y * np.where(nowhere, 0.0, (t36 + t37) / h)
+    reach = np.sqrt(t31 + outward * outward)
+    t38 = t28 - reach
+    t39 = L1 - fore
+    t40 = reach + t39
+    t41 = reach - t39
+    t42 = t27 & (t29 <= t38) & (t29 <= t40) & (t29 <= t41)
+    t43 = _runtime.VANISHING * t28
+    folded = reach <= t43
+    s_sight = np.where(folded, 0.0, t30 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t28 * t28)
+    t44 = folded | short
+    A = np.maximum(t38, 0.0)
+    C = np.maximum(t41, 0.0)
+    t45 = A * C
+    S = t28 + reach
+    B = np.maximum(t40, 0.0)
+    t46 = S * B
+    at_base = t45 + t46
+    c_base = np.where(t44, 1.0, -((t45 - t46) / at_base))
+    t47 = s_sight * c_base
     c_sight = np.where(folded, 1.0, outward / reach)
     rB = np.sqrt(B)
     rC = np.sqrt(C)
-    t47 = rB * rC
+    t48 = rB * rC
     rS = np.sqrt(S)
     rA = np.sqrt(A)
-    t48 = rS * rA
-    area_front_elbow_down = 2.0 * t47 * t48
-    s_base_front_elbow_down = np.where(t43, 0.0, area_front_elbow_down / at_base)
-    t49 = c_sight * s_base_front_elbow_down
-    stheta2A = t46 + t49
-    t50 = L1 * stheta2A
-    t51 = c_sight * c_base
-    t52 = s_sight * s_base_front_elbow_down
-    ctheta2A = t51 - t52
+    t49 = rS * rA
+    area_front_elbow_down = 2.0 * t48 * t49
+    s_base_front_elbow_down = np.where(t44, 0.0, area_front_elbow_down / at_base)
+    t50 = c_sight * s_base_front_elbow_down
+    stheta2A = t47 + t50
+    t51 = L1 * stheta2A
+    t52 = c_sight * c_base
+    t53 = s_sight * s_base_front_elbow_down
+    ctheta2A = t52 - t53
     u2 = L1 * ctheta2A
-    size_u = np.sqrt(t50 * t50 + u2 * u2)
-    t53 = -(_runtime.FEASIBILITY * (d * size_u))
-    bare = fore <= t42
+    size_u = np.sqrt(t51 * t51 + u2 * u2)
+    t54 = -(_runtime.FEASIBILITY * (d * size_u))
+    bare = fore <= t43
     c_lag = np.where(bare, 1.0, a_3W / fore)
-    t54 = A * S
-    t55 = C * B
-    at_elbow = t54 + t55
-    c_bend = np.where(short, 1.0, -((t54 - t55) / at_elbow))
-    t56 = c_lag * c_bend
+    t55 = A * S
+    t56 = C * B
+    at_elbow = t55 + t56
+    c_bend = np.where(short, 1.0, -((t55 - t56) / at_elbow))
+    t57 = c_lag * c_bend
     s_lag = np.where(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down = np.where(short, 0.0, area_front_elbow_down / at_elbow)
-    t57 = s_lag * s_bend_front_elbow_down
-    c_relative = t56 + t57
-    t58 = s_lag * c_bend
-    t59 = c_lag * s_bend_front_elbow_down
-    s_relative = t58 - t59
+    t58 = s_lag * s_bend_front_elbow_down
+    c_relative = t57 + t58
+    t59 = s_lag * c_bend
+    t60 = c_lag * s_bend_front_elbow_down
+    s_relative = t59 - t60
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     v2 = L2 * stheta23A + a3 * ctheta23A
     v1 = L2 * ctheta23A - a3 * stheta23A
-    t60 = t50 * v2 + u2 * v1
-    sigma_uv = np.where(0.0 <= -t60, 1.0, -1.0)
+    t61 = t51 * v2 + u2 * v1
+    sigma_uv = np.where(0.0 <= -t61, 1.0, -1.0)
     ahead = d * s_psi / c_psi
     higher = d * s_phi / c_phi
-    t61 = sigma_uv * (ahead * u2 + higher * t50)
-    t62 = t60 * sigma_uv
-    t63 = t61 - t62
-    t64 = -(t62 + t61)
-    t65 = -(d * _runtime.FEASIBILITY)
-    t66 = _runtime.VANISHING * (64.0 * size_u * np.sqrt(v1 * v1 + v2 * v2))
-    parallel = -t62 <= t66
-    t67 = d * 16.0
-    t68 = _runtime.VANISHING * (_runtime.VANISHING * (t67 * size_u))
-    below_beta = np.maximum(t63, t68)
-    above_beta = np.maximum(t64, t68)
+    t62 = sigma_uv * (ahead * u2 + higher * t51)
+    t63 = t61 * sigma_uv
+    t64 = t62 - t63
+    t65 = -(t63 + t62)
+    t66 = -(d * _runtime.FEASIBILITY)
+    t67 = _runtime.VANISHING * (64.0 * size_u * np.sqrt(v1 * v1 + v2 * v2))
+    parallel = -t63 <= t67
+    t68 = d * 16.0
+    t69 = _runtime.VANISHING * (_runtime.VANISHING * (t68 * size_u))
+    below_beta = np.maximum(t64, t69)
+    above_beta = np.maximum(t65, t69)
     total_beta = below_beta + above_beta
-    t69 = np.where(parallel, 0.0, (below_beta - above_beta) / total_beta)
-    t70 = t50 * (ahead + v1 * t69) - u2 * (higher + v2 * t69)
-    t71 = t70 / size_u
-    t72 = size_u + t71
-    t73 = t41 & (t53 <= t63) & (t53 <= t64) & (t65 <= t72)
-    t74 = size_u - t71
-    unreachable = np.logical_not(t73 & (t65 <= t74))
-    t75 = _runtime.poison(invalid | unreachable)
-    t76 = np.where(folded, 0.0, np.arctan2(t29, outward))
-    t77 = np.where(t43, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
-    t78 = t76 + t77
-    t79 = _runtime.VANISHING * (_runtime.VANISHING * t67)
-    below_alpha = np.maximum(t72, t79)
-    above_alpha = np.maximum(t74, t79)
+    t70 = np.where(parallel, 0.0, (below_beta - above_beta) / total_beta)
+    t71 = t51 * (ahead + v1 * t70) - u2 * (higher + v2 * t70)
+    t72 = t71 / size_u
+    t73 = size_u + t72
+    t74 = t42 & (t54 <= t64) & (t54 <= t65) & (t66 <= t73)
+    t75 = size_u - t72
+    unreachable = np.logical_not(t74 & (t66 <= t75))
+    t76 = _runtime.poison(invalid | unreachable)
+    t77 = np.where(folded, 0.0, np.arctan2(t30, outward))
+    t78 = np.where(t44, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
+    t79 = t77 + t78
+    t80 = _runtime.VANISHING * (_runtime.VANISHING * t68)
+    below_alpha = np.maximum(t73, t80)
+    above_alpha = np.maximum(t75, t80)
     total_alpha = below_alpha + above_alpha
-    t80 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t81 = np.arctan2((below_alpha - above_alpha) / total_alpha, t80 / total_alpha)
-    t82 = np.arctan2(s_lag, c_lag)
-    t83 = np.where(short, 0.0, 2.0 * np.arctan2(t48, t47))
-    t84 = t82 - t83
-    t85 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    t86 = np.arctan2(t69, np.where(parallel, 1.0, t85 / total_beta))
-    t87 = t81 - t86
-    t88 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    stheta2A_front_elbow_down = t46 - t49
-    t89 = L1 * stheta2A_front_elbow_down
-    ctheta2A_front_elbow_down = t51 + t52
+    t81 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t82 = np.arctan2((below_alpha - above_alpha) / total_alpha, t81 / total_alpha)
+    t83 = _runtime.wrap_cut(_runtime.wrap(t79 - t82)) + t76
+    t84 = np.arctan2(s_lag, c_lag)
+    t85 = np.where(short, 0.0, 2.0 * np.arctan2(t49, t48))
+    t86 = t84 - t85
+    t87 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t88 = np.arctan2(t70, np.where(parallel, 1.0, t87 / total_beta))
+    t89 = t82 - t88
+    t90 = _runtime.wrap_up(_runtime.wrap(t86 + t89)) + t76
+    t91 = _runtime.wrap_cut(_runtime.wrap(t79 + t82)) + t76
+    t92 = _runtime.wrap_up(_runtime.wrap(t86 - t89)) + t76
+    t93 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    stheta2A_front_elbow_down = t47 - t50
+    t94 = L1 * stheta2A_front_elbow_down
+    ctheta2A_front_elbow_down = t52 + t53
     u2_front_elbow_down = L1 * ctheta2A_front_elbow_down
-    t90 = t89 * t89 + u2_front_elbow_down * u2_front_elbow_down
-    size_u_front_elbow_down = np.sqrt(t90)
-    t91 = _runtime.FEASIBILITY * (d * size_u_front_elbow_down)
-    c_relative_front_elbow_down = t56 - t57
-    t92 = stheta2A_front_elbow_down * c_relative_front_elbow_down
-    s_relative_front_elbow_down = t58 + t59
-    t93 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
-    stheta23A_front_elbow_down = t92 + t93
-    t94 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
-    t95 = stheta2A_front_elbow_down * s_relative_front_elbow_down
-    ctheta23A_front_elbow_down = t94 - t95
+    t95 = t94 * t94 + u2_front_elbow_down * u2_front_elbow_down
+    size_u_front_elbow_down = np.sqrt(t95)
+    t96 = _runtime.FEASIBILITY * (d * size_u_front_elbow_down)
+    c_relative_front_elbow_down = t57 - t58
+    t97 = stheta2A_front_elbow_down * c_relative_front_elbow_down
+    s_relative_front_elbow_down = t59 + t60
+    t98 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
+    stheta23A_front_elbow_down = t97 + t98
+    t99 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
+    t100 = stheta2A_front_elbow_down * s_relative_front_elbow_down
+    ctheta23A_front_elbow_down = t99 - t100
     v2_front_elbow_down = L2 * stheta23A_front_elbow_down + a3 * ctheta23A_front_elbow_down
     v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down
-    t96 = t89 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
-    sigma_uv_front_elbow_down = np.where(0.0 <= -t96, 1.0, -1.0)
-    t97 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t89)
-    t98 = t96 * sigma_uv_front_elbow_down
-    t99 = t97 - t98
-    t100 = -(t98 + t97)
-    t101 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
-    t102 = 64.0 * size_u_front_elbow_down * np.sqrt(t101)
-    parallel_front_elbow_down = -t98 <= _runtime.VANISHING * t102
-    t103 = _runtime.VANISHING * (t67 * size_u_front_elbow_down)
-    t104 = _runtime.VANISHING * t103
-    below_beta_front_elbow_down = np.maximum(t99, t104)
-    above_beta_front_elbow_down = np.maximum(t100, t104)
-    t105 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t101 = t94 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
+    sigma_uv_front_elbow_down = np.where(0.0 <= -t101, 1.0, -1.0)
+    t102 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t94)
+    t103 = t101 * sigma_uv_front_elbow_down
+    t104 = t102 - t103
+    t105 = -(t103 + t102)
+    t106 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
+    t107 = 64.0 * size_u_front_elbow_down * np.sqrt(t106)
+    parallel_front_elbow_down = -t103 <= _runtime.VANISHING * t107
+    t108 = _runtime.VANISHING * (t68 * size_u_front_elbow_down)
+    t109 = _runtime.VANISHING * t108
+    below_beta_front_elbow_down = np.maximum(t104, t109)
+    above_beta_front_elbow_down = np.maximum(t105, t109)
+    t110 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t106 = np.where(parallel_front_elbow_down, 0.0, t105 / total_beta_front_elbow_down)
-    t107 = u2_front_elbow_down * (higher + v2_front_elbow_down * t106)
-    t108 = t89 * (ahead + v1_front_elbow_down * t106) - t107
-    t109 = t108 / size_u_front_elbow_down
-    t110 = size_u_front_elbow_down + t109
-    t111 = t41 & (-t91 <= t99) & (-t91 <= t100) & (t65 <= t110)
-    t112 = size_u_front_elbow_down - t109
-    unreachable_2 = np.logical_not(t111 & (t65 <= t112))
-    t113 = _runtime.poison(invalid | unreachable_2)
-    t114 = t76 - t77
-    below_alpha_front_elbow_down = np.maximum(t110, t79)
-    above_alpha_front_elbow_down = np.maximum(t112, t79)
-    t115 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t111 = np.where(parallel_front_elbow_down, 0.0, t110 / total_beta_front_elbow_down)
+    t112 = u2_front_elbow_down * (higher + v2_front_elbow_down * t111)
+    t113 = t94 * (ahead + v1_front_elbow_down * t111) - t112
+    t114 = t113 / size_u_front_elbow_down
+    t115 = size_u_front_elbow_down + t114
+    t116 = t42 & (-t96 <= t104) & (-t96 <= t105) & (t66 <= t115)
+    t117 = size_u_front_elbow_down - t114
+    unreachable_2 = np.logical_not(t116 & (t66 <= t117))
+    t118 = _runtime.poison(invalid | unreachable_2)
+    t119 = t77 - t78
+    below_alpha_front_elbow_down = np.maximum(t115, t80)
+    above_alpha_front_elbow_down = np.maximum(t117, t80)
+    t120 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t116 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
-    t117 = np.arctan2(t115 / total_alpha_front_elbow_down, t116 / total_alpha_front_elbow_down)
-    t118 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    cbeta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t118 / total_beta_front_elbow_down)
-    t119 = t117 - np.arctan2(t106, cbeta_front_elbow_down)
-    t120 = t82 + t83
-    t121 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t14))
-    t122 = x * np.where(nowhere, 1.0, -((t32 + t33) / h))
-    outward_rear_elbow_up = t122 + y * np.where(nowhere, 0.0, (t35 - t36) / h)
-    t123 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t30 + t123)
-    t124 = t27 - reach_rear_elbow_up
-    t125 = reach_rear_elbow_up + t38
-    t126 = reach_rear_elbow_up - t38
-    t127 = t26 & (t28 <= t124) & (t28 <= t125) & (t28 <= t126)
-    folded_rear_elbow_up = reach_rear_elbow_up <= t42
-    s_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 0.0, t29 / reach_rear_elbow_up)
-    t128 = folded_rear_elbow_up | short
-    A_rear_elbow_up = np.maximum(t124, 0.0)
-    C_rear_elbow_up = np.maximum(t126, 0.0)
-    t129 = A_rear_elbow_up * C_rear_elbow_up
-    S_rear_elbow_up = t27 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t125, 0.0)
-    t130 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t129 + t130
-    c_base_rear_elbow_up = np.where(t128, 1.0, -((t129 - t130) / at_base_rear_elbow_up))
-    t131 = s_sight_rear_elbow_up * c_base_rear_elbow_up
+    t121 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t122 = np.arctan2(t120 / total_alpha_front_elbow_down, t121 / total_alpha_front_elbow_down)
+    t123 = _runtime.wrap_cut(_runtime.wrap(t119 - t122))
+    t124 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    cbeta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t124 / total_beta_front_elbow_down)
+    t125 = t122 - np.arctan2(t111, cbeta_front_elbow_down)
+    t126 = t84 + t85
+    t127 = _runtime.wrap(_runtime.wrap(t125 + t126)) + t118
+    t128 = _runtime.wrap_cut(_runtime.wrap(t119 + t122))
+    t129 = _runtime.wrap(_runtime.wrap(t126 - t125)) + t118
+    t130 = _runtime.wrap_up(-np.where(nowhere, 0.0, t2 + t14))
+    t131 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
+    outward_rear_elbow_up = t131 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
+    t132 = outward_rear_elbow_up * outward_rear_elbow_up
+    reach_rear_elbow_up = np.sqrt(t31 + t132)
+    t133 = t28 - reach_rear_elbow_up
+    t134 = reach_rear_elbow_up + t39
+    t135 = reach_rear_elbow_up - t39
+    t136 = t27 & (t29 <= t133) & (t29 <= t134) & (t29 <= t135)
+    folded_rear_elbow_up = reach_rear_elbow_up <= t43
+    s_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 0.0, t30 / reach_rear_elbow_up)
+    t137 = folded_rear_elbow_up | short
+    A_rear_elbow_up = np.maximum(t133, 0.0)
+    C_rear_elbow_up = np.maximum(t135, 0.0)
+    t138 = A_rear_elbow_up * C_rear_elbow_up
+    S_rear_elbow_up = t28 + reach_rear_elbow_up
+    B_rear_elbow_up = np.maximum(t134, 0.0)
+    t139 = S_rear_elbow_up * B_rear_elbow_up
+    at_base_rear_elbow_up = t138 + t139
+    c_base_rear_elbow_up = np.where(t137, 1.0, -((t138 - t139) / at_base_rear_elbow_up))
+    t140 = s_sight_rear_elbow_up * c_base_rear_elbow_up
     c_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
     rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
     rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t132 = rB_rear_elbow_up * rC_rear_elbow_up
+    t141 = rB_rear_elbow_up * rC_rear_elbow_up
     rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
     rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t133 = rS_rear_elbow_up * rA_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t132 * t133
-    s_base_rear_elbow_up = np.where(t128, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t134 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t131 - t134
-    t135 = L1 * stheta2A_rear_elbow_up
-    t136 = c_sight_rear_elbow_up * c_base_rear_elbow_up
-    t137 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t136 + t137
+    t142 = rS_rear_elbow_up * rA_rear_elbow_up
+    area_rear_elbow_up = 2.0 * t141 * t142
+    s_base_rear_elbow_up = np.where(t137, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
+    t143 = c_sight_rear_elbow_up * s_base_rear_elbow_up
+    stheta2A_rear_elbow_up = t140 - t143
+    t144 = L1 * stheta2A_rear_elbow_up
+    t145 = c_sight_rear_elbow_up * c_base_rear_elbow_up
+    t146 = s_sight_rear_elbow_up * s_base_rear_elbow_up
+    ctheta2A_rear_elbow_up = t145 + t146
     u2_rear_elbow_up = L1 * ctheta2A_rear_elbow_up
-    t138 = t135 * t135 + u2_rear_elbow_up * u2_rear_elbow_up
-    size_u_rear_elbow_up = np.sqrt(t138)
-    t139 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_up)
-    t140 = A_rear_elbow_up * S_rear_elbow_up
-    t141 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t140 + t141
-    c_bend_rear_elbow_up = np.where(short, 1.0, -((t140 - t141) / at_elbow_rear_elbow_up))
-    t142 = c_lag * c_bend_rear_elbow_up
+    t147 = t144 * t144 + u2_rear_elbow_up * u2_rear_elbow_up
+    size_u_rear_elbow_up = np.sqrt(t147)
+    t148 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_up)
+    t149 = A_rear_elbow_up * S_rear_elbow_up
+    t150 = C_rear_elbow_up * B_rear_elbow_up
+    at_elbow_rear_elbow_up = t149 + t150
+    c_bend_rear_elbow_up = np.where(short, 1.0, -((t149 - t150) / at_elbow_rear_elbow_up))
+    t151 = c_lag * c_bend_rear_elbow_up
     s_bend_rear_elbow_up = np.where(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t143 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t142 - t143
-    t144 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t145 = s_lag * c_bend_rear_elbow_up
-    t146 = c_lag * s_bend_rear_elbow_up
-    s_relative_rear_elbow_up = t145 + t146
-    t147 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    stheta23A_rear_elbow_up = t144 + t147
-    t148 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t149 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    ctheta23A_rear_elbow_up = t148 - t149
+    t152 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t151 - t152
+    t153 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t154 = s_lag * c_bend_rear_elbow_up
+    t155 = c_lag * s_bend_rear_elbow_up
+    s_relative_rear_elbow_up = t154 + t155
+    t156 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    stheta23A_rear_elbow_up = t153 + t156
+    t157 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t158 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    ctheta23A_rear_elbow_up = t157 - t158
     v2_rear_elbow_up = L2 * stheta23A_rear_elbow_up + a3 * ctheta23A_rear_elbow_up
     v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up
-    t150 = t135 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
-    sigma_uv_rear_elbow_up = np.where(0.0 <= -t150, 1.0, -1.0)
-    t151 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t135)
-    t152 = t150 * sigma_uv_rear_elbow_up
-    t153 = t151 - t152
-    t154 = -(t152 + t151)
-    t155 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
-    t156 = _runtime.VANISHING * (64.0 * size_u_rear_elbow_up * np.sqrt(t155))
-    parallel_rear_elbow_up = -t152 <= t156
-    t157 = _runtime.VANISHING * (t67 * size_u_rear_elbow_up)
-    t158 = _runtime.VANISHING * t157
-    below_beta_rear_elbow_up = np.maximum(t153, t158)
-    above_beta_rear_elbow_up = np.maximum(t154, t158)
-    t159 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t159 = t144 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
+    sigma_uv_rear_elbow_up = np.where(0.0 <= -t159, 1.0, -1.0)
+    t160 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t144)
+    t161 = t159 * sigma_uv_rear_elbow_up
+    t162 = t160 - t161
+    t163 = -(t161 + t160)
+    t164 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
+    t165 = _runtime.VANISHING * (64.0 * size_u_rear_elbow_up * np.sqrt(t164))
+    parallel_rear_elbow_up = -t161 <= t165
+    t166 = _runtime.VANISHING * (t68 * size_u_rear_elbow_up)
+    t167 = _runtime.VANISHING * t166
+    below_beta_rear_elbow_up = np.maximum(t162, t167)
+    above_beta_rear_elbow_up = np.maximum(t163, t167)
+    t168 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t160 = np.where(parallel_rear_elbow_up, 0.0, t159 / total_beta_rear_elbow_up)
-    t161 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t160)
-    t162 = t135 * (ahead + v1_rear_elbow_up * t160) - t161
-    t163 = t162 / size_u_rear_elbow_up
-    t164 = size_u_rear_elbow_up + t163
-    t165 = t127 & (-t139 <= t153) & (-t139 <= t154) & (t65 <= t164)
-    t166 = size_u_rear_elbow_up - t163
-    unreachable_3 = np.logical_not(t165 & (t65 <= t166))
-    t167 = _runtime.poison(invalid | unreachable_3)
-    t168 = np.where(folded_rear_elbow_up, 0.0, np.arctan2(t29, outward_rear_elbow_up))
-    t169 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
-    t170 = np.where(t128, 0.0, 2.0 * t169)
-    t171 = t168 - t170
-    below_alpha_rear_elbow_up = np.maximum(t164, t79)
-    above_alpha_rear_elbow_up = np.maximum(t166, t79)
-    t172 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t169 = np.where(parallel_rear_elbow_up, 0.0, t168 / total_beta_rear_elbow_up)
+    t170 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t169)
+    t171 = t144 * (ahead + v1_rear_elbow_up * t169) - t170
+    t172 = t171 / size_u_rear_elbow_up
+    t173 = size_u_rear_elbow_up + t172
+    t174 = t136 & (-t148 <= t162) & (-t148 <= t163) & (t66 <= t173)
+    t175 = size_u_rear_elbow_up - t172
+    unreachable_3 = np.logical_not(t174 & (t66 <= t175))
+    t176 = _runtime.poison(invalid | unreachable_3)
+    t177 = np.where(folded_rear_elbow_up, 0.0, np.arctan2(t30, outward_rear_elbow_up))
+    t178 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
+    t179 = np.where(t137, 0.0, 2.0 * t178)
+    t180 = t177 - t179
+    below_alpha_rear_elbow_up = np.maximum(t173, t80)
+    above_alpha_rear_elbow_up = np.maximum(t175, t80)
+    t181 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t173 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    t174 = np.arctan2(t172 / total_alpha_rear_elbow_up, t173 / total_alpha_rear_elbow_up)
-    t175 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    cbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, t175 / total_beta_rear_elbow_up)
-    t176 = t174 - np.arctan2(t160, cbeta_rear_elbow_up)
-    t177 = np.where(short, 0.0, 2.0 * np.arctan2(t133, t132))
-    t178 = t82 + t177
-    stheta2A_rear_elbow_down = t131 + t134
-    t179 = L1 * stheta2A_rear_elbow_down
-    ctheta2A_rear_elbow_down = t136 - t137
+    t182 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t183 = np.arctan2(t181 / total_alpha_rear_elbow_up, t182 / total_alpha_rear_elbow_up)
+    t184 = _runtime.wrap_cut(_runtime.wrap(t180 - t183))
+    t185 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    cbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, t185 / total_beta_rear_elbow_up)
+    t186 = t183 - np.arctan2(t169, cbeta_rear_elbow_up)
+    t187 = np.where(short, 0.0, 2.0 * np.arctan2(t142, t141))
+    t188 = t84 + t187
+    t189 = _runtime.wrap(_runtime.wrap(t186 + t188)) + t176
+    t190 = _runtime.wrap_cut(_runtime.wrap(t180 + t183))
+    t191 = _runtime.wrap(_runtime.wrap(t188 - t186)) + t176
+    stheta2A_rear_elbow_down = t140 + t143
+    t192 = L1 * stheta2A_rear_elbow_down
+    ctheta2A_rear_elbow_down = t145 - t146
     u2_rear_elbow_down = L1 * ctheta2A_rear_elbow_down
-    t180 = t179 * t179 + u2_rear_elbow_down * u2_rear_elbow_down
-    size_u_rear_elbow_down = np.sqrt(t180)
-    t181 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_down)
-    c_relative_rear_elbow_down = t142 + t143
-    t182 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    s_relative_rear_elbow_down = t145 - t146
-    t183 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    stheta23A_rear_elbow_down = t182 + t183
-    t184 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    t185 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    ctheta23A_rear_elbow_down = t184 - t185
+    t193 = t192 * t192 + u2_rear_elbow_down * u2_rear_elbow_down
+    size_u_rear_elbow_down = np.sqrt(t193)
+    t194 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_down)
+    c_relative_rear_elbow_down = t151 + t152
+    t195 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    s_relative_rear_elbow_down = t154 - t155
+    t196 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    stheta23A_rear_elbow_down = t195 + t196
+    t197 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    t198 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    ctheta23A_rear_elbow_down = t197 - t198
     v2_rear_elbow_down = L2 * stheta23A_rear_elbow_down + a3 * ctheta23A_rear_elbow_down
     v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down
-    t186 = t179 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
-    sigma_uv_rear_elbow_down = np.where(0.0 <= -t186, 1.0, -1.0)
-    t187 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t179)
-    t188 = t186 * sigma_uv_rear_elbow_down
-    t189 = t187 - t188
-    t190 = -(t188 + t187)
-    t191 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
-    t192 = 64.0 * size_u_rear_elbow_down * np.sqrt(t191)
-    parallel_rear_elbow_down = -t188 <= _runtime.VANISHING * t192
-    t193 = _runtime.VANISHING * (t67 * size_u_rear_elbow_down)
-    t194 = _runtime.VANISHING * t193
-    below_beta_rear_elbow_down = np.maximum(t189, t194)
-    above_beta_rear_elbow_down = np.maximum(t190, t194)
-    t195 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t199 = t192 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
+    sigma_uv_rear_elbow_down = np.where(0.0 <= -t199, 1.0, -1.0)
+    t200 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t192)
+    t201 = t199 * sigma_uv_rear_elbow_down
+    t202 = t200 - t201
+    t203 = -(t201 + t200)
+    t204 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
+    t205 = 64.0 * size_u_rear_elbow_down * np.sqrt(t204)
+    parallel_rear_elbow_down = -t201 <= _runtime.VANISHING * t205
+    t206 = _runtime.VANISHING * (t68 * size_u_rear_elbow_down)
+    t207 = _runtime.VANISHING * t206
+    below_beta_rear_elbow_down = np.maximum(t202, t207)
+    above_beta_rear_elbow_down = np.maximum(t203, t207)
+    t208 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t196 = np.where(parallel_rear_elbow_down, 0.0, t195 / total_beta_rear_elbow_down)
-    t197 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t196)
-    t198 = t179 * (ahead + v1_rear_elbow_down * t196) - t197
-    t199 = t198 / size_u_rear_elbow_down
-    t200 = size_u_rear_elbow_down + t199
-    t201 = t127 & (-t181 <= t189) & (-t181 <= t190) & (t65 <= t200)
-    t202 = size_u_rear_elbow_down - t199
-    unreachable_4 = np.logical_not(t201 & (t65 <= t202))
-    t203 = _runtime.poison(invalid | unreachable_4)
-    t204 = t168 + t170
-    below_alpha_rear_elbow_down = np.maximum(t200, t79)
-    above_alpha_rear_elbow_down = np.maximum(t202, t79)
-    t205 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t209 = np.where(parallel_rear_elbow_down, 0.0, t208 / total_beta_rear_elbow_down)
+    t210 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t209)
+    t211 = t192 * (ahead + v1_rear_elbow_down * t209) - t210
+    t212 = t211 / size_u_rear_elbow_down
+    t213 = size_u_rear_elbow_down + t212
+    t214 = t136 & (-t194 <= t202) & (-t194 <= t203) & (t66 <= t213)
+    t215 = size_u_rear_elbow_down - t212
+    unreachable_4 = np.logical_not(t214 & (t66 <= t215))
+    t216 = _runtime.poison(invalid | unreachable_4)
+    t217 = t177 + t179
+    below_alpha_rear_elbow_down = np.maximum(t213, t80)
+    above_alpha_rear_elbow_down = np.maximum(t215, t80)
+    t218 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t206 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    t207 = np.arctan2(t205 / total_alpha_rear_elbow_down, t206 / total_alpha_rear_elbow_down)
-    t208 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    cbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t208 / total_beta_rear_elbow_down)
-    t209 = t207 - np.arctan2(t196, cbeta_rear_elbow_down)
-    t210 = t82 - t177
-    t211 = nowhere | folded | short
-    t212 = _runtime.status(invalid, unreachable, t211 | parallel)
-    t213 = _runtime.status(invalid, unreachable_2, t211 | parallel_front_elbow_down)
-    t214 = nowhere | folded_rear_elbow_up | short
-    t215 = _runtime.status(invalid, unreachable_3, t214 | parallel_rear_elbow_up)
-    t216 = _runtime.status(invalid, unreachable_4, t214 | parallel_rear_elbow_down)
+    t219 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t220 = np.arctan2(t218 / total_alpha_rear_elbow_down, t219 / total_alpha_rear_elbow_down)
+    t221 = _runtime.wrap_cut(_runtime.wrap(t217 - t220))
+    t222 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    cbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t222 / total_beta_rear_elbow_down)
+    t223 = t220 - np.arctan2(t209, cbeta_rear_elbow_down)
+    t224 = t84 - t187
+    t225 = _runtime.wrap_up(_runtime.wrap(t223 + t224)) + t216
+    t226 = _runtime.wrap_cut(_runtime.wrap(t217 + t220))
+    t227 = _runtime.wrap_up(_runtime.wrap(t224 - t223)) + t216
+    t228 = nowhere | folded | short
+    t229 = _runtime.status(invalid, unreachable, t228 | parallel)
+    t230 = _runtime.status(invalid, unreachable_2, t228 | parallel_front_elbow_down)
+    t231 = nowhere | folded_rear_elbow_up | short
+    t232 = _runtime.status(invalid, unreachable_3, t231 | parallel_rear_elbow_up)
+    t233 = _runtime.status(invalid, unreachable_4, t231 | parallel_rear_elbow_down)
     return (
-        t15 + t75,
-        _runtime.wrap(t78 - t81) + t75,
-        _runtime.wrap(t84 + t87) + t75,
-        _runtime.wrap(t78 + t81) + t75,
-        _runtime.wrap(t84 - t87) + t75,
-        t88 + t75,
-        t15 + t113,
-        _runtime.wrap(t114 - t117) + t113,
-        _runtime.wrap(t119 + t120) + t113,
-        _runtime.wrap(t114 + t117) + t113,
-        _runtime.wrap(t120 - t119) + t113,
-        t88 + t113,
-        t121 + t167,
-        _runtime.wrap(t171 - t174) + t167,
-        _runtime.wrap(t176 + t178) + t167,
-        _runtime.wrap(t171 + t174) + t167,
-        _runtime.wrap(t178 - t176) + t167,
-        t88 + t167,
-        t121 + t203,
-        _runtime.wrap(t204 - t207) + t203,
-        _runtime.wrap(t209 + t210) + t203,
-        _runtime.wrap(t204 + t207) + t203,
-        _runtime.wrap(t210 - t209) + t203,
-        t88 + t203,
-        t212,
-        t213,
-        t215,
-        t216,
+        t15 + t76,
+        t83,
+        t90,
+        t91,
+        t92,
+        t93 + t76,
+        t15 + t118,
+        t123 + t118,
+        t127,
+        t128 + t118,
+        t129,
+        t93 + t118,
+        t130 + t176,
+        t184 + t176,
+        t189,
+        t190 + t176,
+        t191,
+        t93 + t176,
+        t130 + t216,
+        t221 + t216,
+        t225,
+        t226 + t216,
+        t227,
+        t93 + t216,
+        t229,
+        t230,
+        t232,
+        t233,
     )
 
 
@@ -1222,9 +1246,9 @@ def _wrist_length(psi, phi, d, gs, al):
     t1 = d - c_psi * (gs - al)
     t2 = (gs + al) * c_psi - d
     t3 = np.sqrt(np.maximum(t1, 0.0)) * np.sqrt(np.maximum(t2, 0.0))
-    t4 = np.isfinite(psi) & np.isfinite(phi) & np.isfinite(d)
-    t5 = t4 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
-    invalid = np.logical_not(t5 & (0.0 <= gs) & (0.0 <= al))
+    t4 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t5 = t4 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    invalid = np.logical_not(t5 & np.isfinite(psi) & np.isfinite(phi))
     t6 = -(_runtime.FEASIBILITY * (d / 2.0))
     t7 = (-_runtime.FEASIBILITY <= c_phi) & (t6 <= t2)
     t8 = _runtime.poison(invalid | np.logical_not(t7 & (t6 <= t1)))
@@ -1291,13 +1315,13 @@ def _largest_yaw(phi, beta_min, d, gs, al):
     span = gs + al * c_beta_min
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
-    t3 = np.isfinite(phi) & np.isfinite(beta_min) & np.isfinite(d)
-    t4 = t3 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
-    invalid = np.logical_not(t4 & (0.0 <= gs) & (0.0 <= al))
+    t3 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t4 = t3 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t5 = t4 & np.isfinite(phi) & np.isfinite(beta_min)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(invalid | unreachable)
+    t6 = _runtime.poison(np.logical_not(t5) | unreachable)
     return (
-        t5,
+        _runtime.wrap_down(2.0 * t2) + t6,
     )
 
 
@@ -1327,11 +1351,11 @@ def _largest_angle(beta_min, d, gs, al):
     span = gs + al * c_beta_min
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
-    t3 = np.isfinite(beta_min) & np.isfinite(d) & np.isfinite(gs)
-    t4 = t3 & np.isfinite(al) & (0.0 <= d) & (0.0 <= gs)
+    t3 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t4 = t3 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    failed = np.logical_not(t4 & (0.0 <= al)) | unreachable
-    t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(failed)
+    failed = np.logical_not(t4 & np.isfinite(beta_min)) | unreachable
+    t5 = _runtime.wrap_down(2.0 * t2) + _runtime.poison(failed)
     return (
         t5,
     )

@@ -202,26 +202,29 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     cpsi = tilted / base
     t64 = L2 + t60 * cpsi
     t65 = L1 * ctheta2A + ctheta23A * t63 + stheta23A * t64
-    t66 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t67 = t66 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t68 = t67 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t69 = t68 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t70 = t69 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t71 = t70 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t72 = t71 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t73 = t72 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t74 = -(_runtime.FEASIBILITY * (d * t23))
-    t75 = -(_runtime.FEASIBILITY * t58)
-    t76 = (t74 <= t43) & (t74 <= t45) & (t75 <= t59) & (t75 <= t57)
-    t77 = _runtime.poison(np.logical_not(t73) | np.logical_not(t76))
-    t78 = d1 + L1 * stheta2A - ctheta23A * t64 + stheta23A * t63
+    t66 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t67 = t66 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t68 = t67 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t69 = t68 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t70 = t69 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t71 = t70 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t72 = t71 & np.isfinite(theta1) & np.isfinite(theta2R)
+    t73 = t72 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t74 = t73 & np.isfinite(theta3L) & np.isfinite(theta)
+    t75 = -(_runtime.FEASIBILITY * (d * t23))
+    t76 = -(_runtime.FEASIBILITY * t58)
+    t77 = (t75 <= t43) & (t75 <= t45) & (t76 <= t59) & (t76 <= t57)
+    t78 = _runtime.poison(np.logical_not(t74) | np.logical_not(t77))
+    t79 = d1 + L1 * stheta2A - ctheta23A * t64 + stheta23A * t63
+    t80 = _runtime.wrap_cut(np.arctan2(-t56, cpsi)) + t78
+    t81 = _runtime.wrap_cut(-np.arctan2(-t55, cphi)) + t78
     return (
-        s1 * t62 + c1 * t65 + t77,
-        s1 * t65 - c1 * t62 + t77,
-        t78 + t77,
-        _runtime.wrap(np.arctan2(-t56, cpsi)) + t77,
-        _runtime.wrap(-np.arctan2(-t55, cphi)) + t77,
-        _runtime.wrap(np.arctan2(s, c)) + t77,
+        s1 * t62 + c1 * t65 + t78,
+        s1 * t65 - c1 * t62 + t78,
+        t79 + t78,
+        t80,
+        t81,
+        _runtime.wrap_cut(np.arctan2(s, c)) + t78,
     )
 
 
@@ -355,61 +358,62 @@ def _pose(
     t59 = c1 * stheta23A
     cpsi = tilted / base
     t60 = s * cpsi
-    t61 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t62 = t61 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t63 = t62 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t64 = t63 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t65 = t64 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t66 = t65 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t67 = t66 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t68 = t67 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t69 = -(_runtime.FEASIBILITY * (d * t26))
-    t70 = gs + al
-    t71 = -(_runtime.FEASIBILITY * t70)
-    t72 = t70 - base
-    t73 = base - (gs - al)
-    t74 = (t69 <= t45) & (t69 <= t47) & (t71 <= t72) & (t71 <= t73)
-    t75 = _runtime.poison(np.logical_not(t68) | np.logical_not(t74))
-    t76 = t52 * hand_11 + s1 * hand_21 - t59 * t60 + t75
-    t77 = t55 * cpsi
+    t61 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t62 = t61 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t63 = t62 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t64 = t63 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t65 = t64 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t66 = t65 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t67 = t66 & np.isfinite(theta1) & np.isfinite(theta2R)
+    t68 = t67 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t69 = t68 & np.isfinite(theta3L) & np.isfinite(theta)
+    t70 = -(_runtime.FEASIBILITY * (d * t26))
+    t71 = gs + al
+    t72 = -(_runtime.FEASIBILITY * t71)
+    t73 = t71 - base
+    t74 = base - (gs - al)
+    t75 = (t70 <= t45) & (t70 <= t47) & (t72 <= t73) & (t72 <= t74)
+    t76 = _runtime.poison(np.logical_not(t69) | np.logical_not(t75))
+    t77 = t52 * hand_11 + s1 * hand_21 - t59 * t60 + t76
+    t78 = t55 * cpsi
     hand_22 = cphi * cpsi
-    t78 = -(t52 * t77 - s1 * hand_22 + t59 * t56) + t75
+    t79 = -(t52 * t78 - s1 * hand_22 + t59 * t56) + t76
     hand_13 = s * cphi - c * t57
-    t79 = s * t55 + c * t58
+    t80 = s * t55 + c * t58
     hand_33 = c * cpsi
-    t80 = t52 * hand_13 + s1 * t79 + t59 * hand_33 + t75
-    t81 = lp * s
-    wrist = np.sqrt(np.maximum(t73, 0.0)) * np.sqrt(np.maximum(t72, 0.0))
-    t82 = loff + lp * c + wrist
-    t83 = t81 * t55 + t58 * t82
-    t84 = a3 + t81 * cphi - t57 * t82
-    t85 = L2 + cpsi * t82
-    t86 = L1 * ctheta2A + ctheta23A * t84 + stheta23A * t85
-    t87 = s1 * ctheta23A
-    t88 = s1 * stheta23A
-    t89 = t87 * hand_11 - c1 * hand_21 - t88 * t60 + t75
-    t90 = -(t87 * t77 + c1 * hand_22 + t88 * t56) + t75
-    t91 = t87 * hand_13 - c1 * t79 + t88 * hand_33 + t75
-    t92 = stheta23A * hand_13 - ctheta23A * hand_33 + t75
-    t93 = d1 + L1 * stheta2A - ctheta23A * t85 + stheta23A * t84
-    t94 = 0.0 + t75
+    t81 = t52 * hand_13 + s1 * t80 + t59 * hand_33 + t76
+    t82 = lp * s
+    wrist = np.sqrt(np.maximum(t74, 0.0)) * np.sqrt(np.maximum(t73, 0.0))
+    t83 = loff + lp * c + wrist
+    t84 = t82 * t55 + t58 * t83
+    t85 = a3 + t82 * cphi - t57 * t83
+    t86 = L2 + cpsi * t83
+    t87 = L1 * ctheta2A + ctheta23A * t85 + stheta23A * t86
+    t88 = s1 * ctheta23A
+    t89 = s1 * stheta23A
+    t90 = t88 * hand_11 - c1 * hand_21 - t89 * t60 + t76
+    t91 = -(t88 * t78 + c1 * hand_22 + t89 * t56) + t76
+    t92 = t88 * hand_13 - c1 * t80 + t89 * hand_33 + t76
+    t93 = stheta23A * hand_13 - ctheta23A * hand_33 + t76
+    t94 = d1 + L1 * stheta2A - ctheta23A * t86 + stheta23A * t85
+    t95 = 0.0 + t76
     return (
-        t76,
-        t78,
-        t80,
-        s1 * t83 + c1 * t86 + t75,
-        t89,
+        t77,
+        t79,
+        t81,
+        s1 * t84 + c1 * t87 + t76,
         t90,
         t91,
-        s1 * t86 - c1 * t83 + t75,
-        ctheta23A * t60 + stheta23A * hand_11 + t75,
-        ctheta23A * t56 - stheta23A * t77 + t75,
         t92,
-        t93 + t75,
-        t94,
-        t94,
-        t94,
-        1.0 + t75,
+        s1 * t87 - c1 * t84 + t76,
+        ctheta23A * t60 + stheta23A * hand_11 + t76,
+        ctheta23A * t56 - stheta23A * t78 + t76,
+        t93,
+        t94 + t76,
+        t95,
+        t95,
+        t95,
+        1.0 + t76,
     )
 
 
@@ -664,167 +668,167 @@ def _jacobian(
     t82 = L2 + t81
     outer_33 = ctheta23A * t80 + stheta23A * t82
     t83 = outer_32 + outer_33
-    t84 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t85 = t84 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t86 = t85 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t87 = t86 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t88 = t87 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t89 = t88 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t90 = t89 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t91 = -(_runtime.FEASIBILITY * (d * t27))
-    t92 = -(_runtime.FEASIBILITY * t74)
-    t93 = (t91 <= t51) & (t91 <= t53) & (t92 <= t75) & (t92 <= t73)
-    failed = np.logical_not(t90 & (0.0 <= lp)) | np.logical_not(t93)
-    t94 = _runtime.poison(failed)
-    t95 = cphi * t81
-    t96 = t68 * t81
-    t97 = t70 * t76
-    t98 = ctheta23A * t96 + stheta23A * t97
-    t99 = d * (gs - d / (cphi * cpsi))
-    t100 = t70 * t99
-    t101 = stheta23A * cpsi
-    t102 = t101 - ctheta23A * t78
-    t103 = s1 * t71 + c1 * t102
-    t104 = cphi * wrist * (cpsi * cpsi)
-    t105 = s1 * t95 - c1 * t98 + t100 * t103 / t104
-    t106 = tilted * tilted
-    t107 = 1.0 + t69 * t69 / t106
-    t108 = t69 * t65 / (tilted * t106 * t107)
-    t109 = t29 / 2.0 + t30 / 2.0
-    t110 = t10 * t109
-    t111 = t56 / 2.0
-    gap_13 = t110 + t111
-    t112 = t36 / 2.0
-    t113 = t58 / 2.0
-    t114 = t112 - t113
-    gap_12 = gap_13 + t114
-    t115 = t60 / 2.0
-    t116 = t16 / 2.0 - t18 / 2.0
-    t117 = t10 * t116
-    gap_23 = t115 - t117
-    t118 = t25 / 2.0
-    t119 = t61 / 2.0
-    t120 = t118 + t119
-    gap_22 = gap_23 + t120
-    t121 = t32 / 2.0
-    t122 = t55 * t116
-    mid_13 = t121 + t122
-    mid_12 = mid_13 + t114
-    t123 = L1 * stheta2A
-    t124 = t55 * t109
-    t125 = t20 / 2.0
-    mid_23 = t124 - t125
-    mid_22 = mid_23 + t120
-    t126 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t127 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t128 = L1 * (t126 + t127)
-    rate_22 = (outer_32 * mid_12 + t123 * mid_22) / t128
+    t84 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t85 = t84 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t86 = t85 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t87 = t86 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t88 = t87 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t89 = t88 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t90 = t89 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t91 = t90 & np.isfinite(theta3L) & np.isfinite(theta)
+    t92 = -(_runtime.FEASIBILITY * (d * t27))
+    t93 = -(_runtime.FEASIBILITY * t74)
+    t94 = (t92 <= t51) & (t92 <= t53) & (t93 <= t75) & (t93 <= t73)
+    t95 = _runtime.poison(np.logical_not(t91) | np.logical_not(t94))
+    t96 = cphi * t81
+    t97 = t68 * t81
+    t98 = t70 * t76
+    t99 = ctheta23A * t97 + stheta23A * t98
+    t100 = d * (gs - d / (cphi * cpsi))
+    t101 = t70 * t100
+    t102 = stheta23A * cpsi
+    t103 = t102 - ctheta23A * t78
+    t104 = s1 * t71 + c1 * t103
+    t105 = cphi * wrist * (cpsi * cpsi)
+    t106 = s1 * t96 - c1 * t99 + t101 * t104 / t105
+    t107 = tilted * tilted
+    t108 = 1.0 + t69 * t69 / t107
+    t109 = t69 * t65 / (tilted * t107 * t108)
+    t110 = t29 / 2.0 + t30 / 2.0
+    t111 = t10 * t110
+    t112 = t56 / 2.0
+    gap_13 = t111 + t112
+    t113 = t36 / 2.0
+    t114 = t58 / 2.0
+    t115 = t113 - t114
+    gap_12 = gap_13 + t115
+    t116 = t60 / 2.0
+    t117 = t16 / 2.0 - t18 / 2.0
+    t118 = t10 * t117
+    gap_23 = t116 - t118
+    t119 = t25 / 2.0
+    t120 = t61 / 2.0
+    t121 = t119 + t120
+    gap_22 = gap_23 + t121
+    t122 = t32 / 2.0
+    t123 = t55 * t117
+    mid_13 = t122 + t123
+    mid_12 = mid_13 + t115
+    t124 = L1 * stheta2A
+    t125 = t55 * t110
+    t126 = t20 / 2.0
+    mid_23 = t125 - t126
+    mid_22 = mid_23 + t121
+    t127 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t128 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t129 = L1 * (t127 + t128)
+    rate_22 = (outer_32 * mid_12 + t124 * mid_22) / t129
     line_12 = ctheta23A * gap_12 + stheta23A * gap_22 + t69 * rate_22
-    turn_12 = 1.0 / (tilted * t107)
-    t129 = ctheta23A * gap_22 - stheta23A * gap_12 + t65 * rate_22
-    t130 = t108 * line_12 + turn_12 * t129
-    t131 = ctheta23A * t77
-    t132 = t68 * t99
-    t133 = cphi * cphi * wrist * cpsi
-    t134 = c1 * t131 - s1 * t79 - t103 * t132 / t133
-    t135 = 1.0 / (d * (1.0 + t67 / t66))
-    t136 = t135 * line_12
-    t137 = c1 * t123
+    turn_12 = 1.0 / (tilted * t108)
+    t130 = ctheta23A * gap_22 - stheta23A * gap_12 + t65 * rate_22
+    t131 = t109 * line_12 + turn_12 * t130
+    t132 = ctheta23A * t77
+    t133 = t68 * t100
+    t134 = cphi * cphi * wrist * cpsi
+    t135 = c1 * t132 - s1 * t79 - t104 * t133 / t134
+    t136 = 1.0 / (d * (1.0 + t67 / t66))
+    t137 = t136 * line_12
+    t138 = c1 * t124
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t138 = L2 * ctheta23A - a3 * stheta23A
-    t139 = (virtual_11 * mid_12 - t138 * mid_22) / t128
-    t140 = ctheta23A * t82 - stheta23A * t80
-    outer_13 = c1 * t140
-    t141 = t105 * t130 + t134 * t136 + t137 * t139 + rate_22 * outer_13
-    t142 = (mid_13 * virtual_11 - mid_23 * t138) / t128
-    rate_23 = (mid_13 * outer_32 + mid_23 * t123) / t128
+    t139 = L2 * ctheta23A - a3 * stheta23A
+    t140 = (virtual_11 * mid_12 - t139 * mid_22) / t129
+    t141 = ctheta23A * t82 - stheta23A * t80
+    outer_13 = c1 * t141
+    t142 = t106 * t131 + t135 * t137 + t138 * t140 + rate_22 * outer_13
+    t143 = (mid_13 * virtual_11 - mid_23 * t139) / t129
+    rate_23 = (mid_13 * outer_32 + mid_23 * t124) / t129
     line_13 = gap_13 * ctheta23A + gap_23 * stheta23A + t69 * rate_23
-    t143 = gap_23 * ctheta23A - gap_13 * stheta23A + t65 * rate_23
-    t144 = t108 * line_13 + turn_12 * t143
-    t145 = t135 * line_13
-    t146 = t137 * t142 + t144 * t105 + t145 * t134 + rate_23 * outer_13
-    gap_15 = t110 - t111
-    t147 = t112 + t113
-    gap_14 = gap_15 + t147
-    t148 = t115 + t117
-    t149 = t118 - t119
-    t150 = t148 - t149
-    t151 = t121 - t122
-    t152 = t151 + t147
-    mid_25 = t124 + t125
-    t153 = mid_25 - t149
-    t154 = (outer_32 * t152 - t123 * t153) / t128
-    line_14 = ctheta23A * gap_14 - stheta23A * t150 - t69 * t154
-    t155 = ctheta23A * t150 + stheta23A * gap_14 + t65 * t154
-    t156 = t108 * line_14 - turn_12 * t155
-    t157 = t135 * line_14
-    rate_14 = (virtual_11 * t152 + t138 * t153) / t128
-    t158 = t105 * t156 + t134 * t157 - t137 * rate_14 - outer_13 * t154
-    rate_15 = (t151 * virtual_11 + mid_25 * t138) / t128
-    t159 = (t151 * outer_32 - mid_25 * t123) / t128
-    line_15 = gap_15 * ctheta23A - t148 * stheta23A - t69 * t159
-    line_25 = t148 * ctheta23A + gap_15 * stheta23A + t65 * t159
-    t160 = t108 * line_15 - turn_12 * line_25
-    t161 = t135 * line_15
-    t162 = t137 * rate_15 - t160 * t105 - t161 * t134 + t159 * outer_13
-    t163 = t72 * t68 - t1 * t71
-    t164 = t72 * cphi + t1 * t78
-    t165 = t1 * t101 - ctheta23A * t164
-    outer_23 = s1 * t140
-    t166 = c1 * t71 - s1 * t102
-    outer_24 = c1 * t95 + s1 * t98 + t100 * t166 / t104
-    t167 = s1 * t131 + c1 * t79 + t132 * t166 / t133
-    t168 = s1 * t123
-    t169 = rate_22 * outer_23 - (t130 * outer_24 - t136 * t167 - t168 * t139)
-    t170 = t142 * t168 - t144 * outer_24 + t145 * t167 + rate_23 * outer_23
-    t171 = t156 * outer_24 - t157 * t167 + t168 * rate_14
-    t172 = rate_15 * t168 + t160 * outer_24 - t161 * t167
-    t173 = 0.0 + t94
-    t174 = ctheta23A * cpsi
-    t175 = t174 + stheta23A * t78
-    t176 = stheta23A * t96 - ctheta23A * t97 + t100 * t175 / t104
-    t177 = stheta23A * t77 + t132 * t175 / t133
-    t178 = outer_33 * rate_22 - (t130 * t176 - t136 * t177 + outer_32 * t139)
-    t179 = rate_23 * outer_33 - (outer_32 * t142 + t144 * t176 - t145 * t177)
-    t180 = t156 * t176 - t157 * t177 - outer_32 * rate_14
-    t181 = outer_32 * rate_15 - t160 * t176 + t161 * t177
+    t144 = gap_23 * ctheta23A - gap_13 * stheta23A + t65 * rate_23
+    t145 = t109 * line_13 + turn_12 * t144
+    t146 = t136 * line_13
+    t147 = t138 * t143 + t145 * t106 + t146 * t135 + rate_23 * outer_13
+    gap_15 = t111 - t112
+    t148 = t113 + t114
+    gap_14 = gap_15 + t148
+    t149 = t116 + t118
+    t150 = t119 - t120
+    t151 = t149 - t150
+    t152 = t122 - t123
+    t153 = t152 + t148
+    mid_25 = t125 + t126
+    t154 = mid_25 - t150
+    t155 = (outer_32 * t153 - t124 * t154) / t129
+    line_14 = ctheta23A * gap_14 - stheta23A * t151 - t69 * t155
+    t156 = ctheta23A * t151 + stheta23A * gap_14 + t65 * t155
+    t157 = t109 * line_14 - turn_12 * t156
+    t158 = t136 * line_14
+    rate_14 = (virtual_11 * t153 + t139 * t154) / t129
+    t159 = t106 * t157 + t135 * t158 - t138 * rate_14 - outer_13 * t155
+    rate_15 = (t152 * virtual_11 + mid_25 * t139) / t129
+    t160 = (t152 * outer_32 - mid_25 * t124) / t129
+    line_15 = gap_15 * ctheta23A - t149 * stheta23A - t69 * t160
+    line_25 = t149 * ctheta23A + gap_15 * stheta23A + t65 * t160
+    t161 = t109 * line_15 - turn_12 * line_25
+    t162 = t136 * line_15
+    t163 = t138 * rate_15 - t161 * t106 - t162 * t135 + t160 * outer_13
+    t164 = t72 * t68 - t1 * t71
+    t165 = t72 * cphi + t1 * t78
+    t166 = t1 * t102 - ctheta23A * t165
+    outer_23 = s1 * t141
+    t167 = c1 * t71 - s1 * t103
+    outer_24 = c1 * t96 + s1 * t99 + t101 * t167 / t105
+    t168 = s1 * t132 + c1 * t79 + t133 * t167 / t134
+    t169 = s1 * t124
+    t170 = rate_22 * outer_23 - (t131 * outer_24 - t137 * t168 - t169 * t140)
+    t171 = t143 * t169 - t145 * outer_24 + t146 * t168 + rate_23 * outer_23
+    t172 = t157 * outer_24 - t158 * t168 + t169 * rate_14
+    t173 = rate_15 * t169 + t161 * outer_24 - t162 * t168
+    t174 = 0.0 + t95
+    t175 = ctheta23A * cpsi
+    t176 = t175 + stheta23A * t78
+    t177 = stheta23A * t97 - ctheta23A * t98 + t101 * t176 / t105
+    t178 = stheta23A * t77 + t133 * t176 / t134
+    t179 = outer_33 * rate_22 - (t131 * t177 - t137 * t178 + outer_32 * t140)
+    t180 = rate_23 * outer_33 - (outer_32 * t143 + t145 * t177 - t146 * t178)
+    t181 = t157 * t177 - t158 * t178 - outer_32 * rate_14
+    t182 = outer_32 * rate_15 - t161 * t177 + t162 * t178
     return (
-        c1 * t77 - s1 * t83 + t94,
-        t141 + t94,
-        t146 + t94,
-        t158 + t94,
-        -t162 + t94,
-        s1 * t163 - c1 * t165 + t94,
-        s1 * t77 + c1 * t83 + t94,
-        t169 + t94,
-        t170 + t94,
-        -(t171 + t154 * outer_23) + t94,
-        -(t172 + t159 * outer_23) + t94,
-        -(c1 * t163 + s1 * t165) + t94,
-        t173,
-        t178 + t94,
-        t179 + t94,
-        -(t180 + outer_33 * t154) + t94,
-        t181 - t159 * outer_33 + t94,
-        t1 * t174 + stheta23A * t164 + t94,
-        t173,
-        -t130 + t94,
-        -t144 + t94,
-        -t156 + t94,
-        -t160 + t94,
-        t173,
-        t173,
-        -t136 + t94,
-        -t145 + t94,
-        -t157 + t94,
-        -t161 + t94,
-        t173,
-        t173,
-        t173,
-        t173,
-        t173,
-        t173,
-        1.0 + t94,
+        c1 * t77 - s1 * t83 + t95,
+        t142 + t95,
+        t147 + t95,
+        t159 + t95,
+        -t163 + t95,
+        s1 * t164 - c1 * t166 + t95,
+        s1 * t77 + c1 * t83 + t95,
+        t170 + t95,
+        t171 + t95,
+        -(t172 + t155 * outer_23) + t95,
+        -(t173 + t160 * outer_23) + t95,
+        -(c1 * t164 + s1 * t166) + t95,
+        t174,
+        t179 + t95,
+        t180 + t95,
+        -(t181 + outer_33 * t155) + t95,
+        t182 - t160 * outer_33 + t95,
+        t1 * t175 + stheta23A * t165 + t95,
+        t174,
+        -t131 + t95,
+        -t145 + t95,
+        -t157 + t95,
+        -t161 + t95,
+        t174,
+        t174,
+        -t137 + t95,
+        -t146 + t95,
+        -t158 + t95,
+        -t162 + t95,
+        t174,
+        t174,
+        t174,
+        t174,
+        t174,
+        t174,
+        1.0 + t95,
     )
 
 
@@ -971,19 +975,20 @@ def _determinant(
     t70 = d * (L1 * L1) * t7 * t14 * (t59 * t66 + t67 * t69)
     t71 = L1 * ctheta2A + ctheta23A * t69 + stheta23A * t66
     t72 = 4.0 * tilted * (L2 * t59 + a3 * t67) * (base * base)
-    t73 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t74 = t73 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t75 = t74 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t76 = t75 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t77 = t76 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t78 = t77 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t79 = t78 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t80 = -(_runtime.FEASIBILITY * (d * t40))
-    t81 = -(_runtime.FEASIBILITY * t63)
-    t82 = (t80 <= t53) & (t80 <= t55) & (t81 <= t64) & (t81 <= t62)
-    failed = np.logical_not(t79 & (0.0 <= lp)) | np.logical_not(t82)
+    t73 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t74 = t73 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t75 = t74 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t76 = t75 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t77 = t76 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t78 = t77 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t79 = t78 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t80 = t79 & np.isfinite(theta3L) & np.isfinite(theta)
+    t81 = -(_runtime.FEASIBILITY * (d * t40))
+    t82 = -(_runtime.FEASIBILITY * t63)
+    t83 = (t81 <= t53) & (t81 <= t55) & (t82 <= t64) & (t82 <= t62)
+    t84 = _runtime.poison(np.logical_not(t80) | np.logical_not(t83))
     return (
-        t70 * t71 / t72 + _runtime.poison(failed),
+        t70 * t71 / t72 + t84,
     )
 
 
@@ -1115,36 +1120,36 @@ def _singularities(
     t61 = a3 + lp * s * (d / tilted) - t56 * t60
     t62 = L2 + t60 * (tilted / base)
     t63 = L1 * ctheta2A + ctheta23A * t61 + stheta23A * t62
-    t64 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t65 = t64 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t66 = t65 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t67 = t66 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t68 = t67 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t69 = t68 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t70 = t69 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t71 = -(_runtime.FEASIBILITY * (d * t26))
-    t72 = -(_runtime.FEASIBILITY * t58)
-    t73 = (t71 <= t46) & (t71 <= t48) & (t72 <= t59) & (t72 <= t57)
-    failed = np.logical_not(t70 & (0.0 <= lp)) | np.logical_not(t73)
-    t74 = _runtime.poison(failed)
-    t75 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t76 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t64 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t65 = t64 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t66 = t65 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t67 = t66 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t68 = t67 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t69 = t68 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t70 = t69 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t71 = t70 & np.isfinite(theta3L) & np.isfinite(theta)
+    t72 = -(_runtime.FEASIBILITY * (d * t26))
+    t73 = -(_runtime.FEASIBILITY * t58)
+    t74 = (t72 <= t46) & (t72 <= t48) & (t73 <= t59) & (t73 <= t57)
+    t75 = _runtime.poison(np.logical_not(t71) | np.logical_not(t74))
+    t76 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t77 = stheta2A * ctheta23A - ctheta2A * stheta23A
     s2R3R = t42 * t53 + t41 * t28
     c2R3R = t42 * t28 - t41 * t53
-    t77 = L2 * (t53 * s2R3R + t28 * c2R3R) + a3 * (t53 * c2R3R - t28 * s2R3R)
-    t78 = s2L_half * c2L_half
-    t79 = t78 + t78
-    t80 = c2L_half * c2L_half - s2L_half * s2L_half
-    s2L3L = t35 * t79 + t34 * t80
-    c2L3L = t35 * t80 - t34 * t79
-    t81 = L2 * (t79 * s2L3L + t80 * c2L3L) + a3 * (t79 * c2L3L - t80 * s2L3L)
+    t78 = L2 * (t53 * s2R3R + t28 * c2R3R) + a3 * (t53 * c2R3R - t28 * s2R3R)
+    t79 = s2L_half * c2L_half
+    t80 = t79 + t79
+    t81 = c2L_half * c2L_half - s2L_half * s2L_half
+    s2L3L = t35 * t80 + t34 * t81
+    c2L3L = t35 * t81 - t34 * t80
+    t82 = L2 * (t80 * s2L3L + t81 * c2L3L) + a3 * (t80 * c2L3L - t81 * s2L3L)
     return (
-        t63 + t74,
-        t75 * t62 + t76 * t61 + t74,
-        t77 + t74,
-        t81 + t74,
-        L2 * t75 + a3 * t76 + t74,
-        wrist + t74,
+        t63 + t75,
+        t76 * t62 + t77 * t61 + t75,
+        t78 + t75,
+        t82 + t75,
+        L2 * t76 + a3 * t77 + t75,
+        wrist + t75,
     )
 
 
@@ -1196,547 +1201,548 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t14 = np.sqrt(above)
     t15 = 2.0 * np.arctan2(t12, t14)
     t16 = _runtime.wrap(-np.where(nowhere, 0.0, t2 - t15))
-    t17 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t18 = t17 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t19 = t18 & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3)
-    t20 = t19 & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs)
-    t21 = t20 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t22 = t21 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t23 = t22 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    invalid = np.logical_not(t23 & (0.0 <= loff) & (0.0 <= lp))
-    t24 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t6)
-    t26 = -(_runtime.FEASIBILITY * t1)
-    t27 = t25 & (t24 <= t5) & (t26 <= t11) & (t26 <= t13)
+    t17 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t18 = t17 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t19 = t18 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t20 = t19 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t21 = t20 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t22 = t21 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t23 = t22 & np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t24 = t23 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    invalid = np.logical_not(t24)
+    t25 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t26 = (-_runtime.FEASIBILITY <= c_phi) & (t25 <= t6)
+    t27 = -(_runtime.FEASIBILITY * t1)
+    t28 = t26 & (t25 <= t5) & (t27 <= t11) & (t27 <= t13)
     L_2W = L2 + c_psi * t8
     a_3W = a3 + c_phi * t3 + s_phi * t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t28 = L1 + fore
-    t29 = -(_runtime.FEASIBILITY * t28)
-    t30 = z - d1
-    t31 = t30 * t30
+    t29 = L1 + fore
+    t30 = -(_runtime.FEASIBILITY * t29)
+    t31 = z - d1
+    t32 = t31 * t31
     total = below + above
-    t32 = (below - above) / total
-    t33 = y * t32
+    t33 = (below - above) / total
+    t34 = y * t33
     s_turn = 2.0 * t12 * t14 / total
-    t34 = x * s_turn
-    t35 = x * np.where(nowhere, 1.0, -((t33 - t34) / h))
-    t36 = x * t32
-    t37 = y * s_turn
-    outward = t35 + y * np.where(nowhere, 0.0, (t36 + t37) / h)
-    reach = np.sqrt(t31 + outward * outward)
-    t38 = t28 - reach
-    t39 = L1 - fore
-    t40 = reach + t39
-    t41 = reach - t39
-    t42 = t27 & (t29 <= t38) & (t29 <= t40) & (t29 <= t41)
+    t35 = x * s_turn
+    t36 = x * np.where(nowhere, 1.0, -((t34 - t35) / h))
+    t37 = x * t33
+    t38 = y * s_turn
+    outward = t36 + y * np.where(nowhere, 0.0, (t37 + t38) / h)
+    reach = np.sqrt(t32 + outward * outward)
+    t39 = t29 - reach
+    t40 = L1 - fore
+    t41 = reach + t40
+    t42 = reach - t40
+    t43 = t28 & (t30 <= t39) & (t30 <= t41) & (t30 <= t42)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
-    t43 = L1 + fore_arm
-    t44 = d * t43
-    t45 = -(_runtime.FEASIBILITY * t44)
-    t46 = L1 * 2.0
-    t47 = _runtime.VANISHING * t28
-    folded = reach <= t47
-    s_sight = np.where(folded, 0.0, t30 / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t28 * t28)
-    t48 = folded | short
-    A = np.maximum(t38, 0.0)
-    C = np.maximum(t41, 0.0)
-    t49 = A * C
-    S = t28 + reach
-    B = np.maximum(t40, 0.0)
-    t50 = S * B
-    at_base = t49 + t50
-    c_base = np.where(t48, 1.0, -((t49 - t50) / at_base))
-    t51 = s_sight * c_base
+    t44 = L1 + fore_arm
+    t45 = d * t44
+    t46 = -(_runtime.FEASIBILITY * t45)
+    t47 = L1 * 2.0
+    t48 = _runtime.VANISHING * t29
+    folded = reach <= t48
+    s_sight = np.where(folded, 0.0, t31 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t29 * t29)
+    t49 = folded | short
+    A = np.maximum(t39, 0.0)
+    C = np.maximum(t42, 0.0)
+    t50 = A * C
+    S = t29 + reach
+    B = np.maximum(t41, 0.0)
+    t51 = S * B
+    at_base = t50 + t51
+    c_base = np.where(t49, 1.0, -((t50 - t51) / at_base))
+    t52 = s_sight * c_base
     c_sight = np.where(folded, 1.0, outward / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = np.where(t48, 0.0, area_front_elbow_down_alike / at_base)
-    t52 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t51 + t52
-    t53 = c_sight * c_base
-    t54 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t53 - t54
-    bare = fore <= t47
+    s_base_front_elbow_down_alike = np.where(t49, 0.0, area_front_elbow_down_alike / at_base)
+    t53 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t52 + t53
+    t54 = c_sight * c_base
+    t55 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t54 - t55
+    bare = fore <= t48
     c_lag = np.where(bare, 1.0, a_3W / fore)
-    t55 = A * S
-    t56 = C * B
-    at_elbow = t55 + t56
-    c_bend = np.where(short, 1.0, -((t55 - t56) / at_elbow))
-    t57 = c_lag * c_bend
+    t56 = A * S
+    t57 = C * B
+    at_elbow = t56 + t57
+    c_bend = np.where(short, 1.0, -((t56 - t57) / at_elbow))
+    t58 = c_lag * c_bend
     s_lag = np.where(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down_alike = np.where(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t58 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t57 + t58
-    t59 = s_lag * c_bend
-    t60 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t59 - t60
+    t59 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t58 + t59
+    t60 = s_lag * c_bend
+    t61 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t60 - t61
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    t61 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t62 = stheta2A * ctheta23A - ctheta2A * stheta23A
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t62 = L2 * t61 - a3 * c_elbow
-    t63 = 0.0 <= -t62
-    t64 = L2 * c_elbow + a3 * t61
-    large = fore_arm + np.where(t63, -t62, t62)
-    small = t64 * t64 / large
-    t65 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t66 = d * t65
-    t67 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t68 = d * t67
-    gap = t66 * t66 + t68 * t68
-    t69 = t46 * np.where(t63, small, large) - gap
+    t63 = L2 * t62 - a3 * c_elbow
+    t64 = 0.0 <= -t63
+    t65 = L2 * c_elbow + a3 * t62
+    large = fore_arm + np.where(t64, -t63, t63)
+    small = t65 * t65 / large
+    t66 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t67 = d * t66
+    t68 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
+    t69 = d * t68
+    gap = t67 * t67 + t69 * t69
+    t70 = t47 * np.where(t64, small, large) - gap
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t70 = 2.0 * t66 * point_11 + 2.0 * t68 * point_21
-    t71 = t69 + t70
-    t72 = gap + t46 * np.where(t63, large, small)
-    t73 = t72 - t70
-    t74 = t69 - t70
-    t75 = t42 & (t45 <= t71) & (t45 <= t73) & (t45 <= t74)
-    t76 = t70 + t72
-    unreachable = np.logical_not(t75 & (t45 <= t76))
-    t77 = _runtime.poison(invalid | unreachable)
-    t78 = t16 + t77
-    t79 = t68 - point_21
-    t80 = t66 - point_11
-    t81 = _runtime.VANISHING * t43
-    folded_right = np.sqrt(t79 * t79 + t80 * t80) <= t81
-    t82 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * (t43 * t43)
-    t83 = 2.0 * np.where(0.0 <= -t64, 1.0, -1.0)
-    t84 = _runtime.VANISHING * (_runtime.VANISHING * (t44 * 16.0))
-    N_right = np.maximum(t71, t84)
+    t71 = 2.0 * t67 * point_11 + 2.0 * t69 * point_21
+    t72 = t70 + t71
+    t73 = gap + t47 * np.where(t64, large, small)
+    t74 = t73 - t71
+    t75 = t70 - t71
+    t76 = t43 & (t46 <= t72) & (t46 <= t74) & (t46 <= t75)
+    t77 = t71 + t73
+    unreachable = np.logical_not(t76 & (t46 <= t77))
+    t78 = _runtime.poison(invalid | unreachable)
+    t79 = t16 + t78
+    t80 = t69 - point_21
+    t81 = t67 - point_11
+    t82 = _runtime.VANISHING * t44
+    folded_right = np.sqrt(t80 * t80 + t81 * t81) <= t82
+    t83 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * (t44 * t44)
+    t84 = 2.0 * np.where(0.0 <= -t65, 1.0, -1.0)
+    t85 = _runtime.VANISHING * (_runtime.VANISHING * (t45 * 16.0))
+    N_right = np.maximum(t72, t85)
     rN_right = np.sqrt(N_right)
-    M_right = np.maximum(t73, t84)
+    M_right = np.maximum(t74, t85)
     rM_right = np.sqrt(M_right)
     whole_right = N_right + M_right
-    s_bend_right = np.where(short_right, 0.0, t83 * rN_right * rM_right / whole_right)
-    t85 = fore_arm * s_bend_right
+    s_bend_right = np.where(short_right, 0.0, t84 * rN_right * rM_right / whole_right)
+    t86 = fore_arm * s_bend_right
     c_bend_right = np.where(short_right, 1.0, -((N_right - M_right) / whole_right))
     ahead_1_right = L1 + fore_arm * c_bend_right
-    t86 = np.arctan2(t80 * t85 - t79 * ahead_1_right, -(t80 * ahead_1_right + t79 * t85))
-    t87 = _runtime.wrap(np.where(folded_right, t82, t86))
-    t88 = t87 + t77
-    bare_right = fore_arm <= t81
-    t89 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
-    t90 = np.where(short_right, 0.0, t83 * np.arctan2(rN_right, rM_right))
-    t91 = _runtime.wrap(t89 + t90) + t77
-    h_left = t68 + point_21
-    r_left = t66 + point_11
-    folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t81
-    N_left = np.maximum(t74, 0.0)
-    M_left = np.maximum(t76, 0.0)
+    t87 = np.arctan2(t81 * t86 - t80 * ahead_1_right, -(t81 * ahead_1_right + t80 * t86))
+    t88 = _runtime.wrap_cut(np.where(folded_right, t83, t87))
+    t89 = t88 + t78
+    bare_right = fore_arm <= t82
+    t90 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
+    t91 = np.where(short_right, 0.0, t84 * np.arctan2(rN_right, rM_right))
+    t92 = _runtime.wrap(t90 + t91) + t78
+    h_left = t69 + point_21
+    r_left = t67 + point_11
+    folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t82
+    N_left = np.maximum(t75, 0.0)
+    M_left = np.maximum(t77, 0.0)
     whole_left = N_left + M_left
     c_bend_left = np.where(short_right, 1.0, -((N_left - M_left) / whole_left))
     ahead_1_left = L1 + fore_arm * c_bend_left
-    t92 = h_left * ahead_1_left
+    t93 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = np.where(short_right, 0.0, t83 * rN_left * rM_left / whole_left)
-    t93 = fore_arm * s_bend_left
-    t94 = r_left * t93
-    t95 = r_left * ahead_1_left
-    t96 = h_left * t93
-    t97 = np.where(folded_left, t82, np.arctan2(t92 - t94, t95 + t96))
-    t98 = np.where(short_right, 0.0, t83 * np.arctan2(rN_left, rM_left))
-    t99 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    t100 = t99 + t77
-    t101 = np.where(folded_left, t82, np.arctan2(t92 + t94, t95 - t96))
-    stheta2A_front_elbow_down_alike = t51 - t52
-    ctheta2A_front_elbow_down_alike = t53 + t54
-    c_relative_front_elbow_down_alike = t57 - t58
-    t102 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t59 + t60
-    t103 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t102 - t103
-    t104 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t105 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t106 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t105 + t106
-    t107 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t108 = t104 - t107
-    t109 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t110 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t109 + t110
-    t111 = L2 * t108 - a3 * c_elbow_front_elbow_down_alike
-    t112 = 0.0 <= -t111
-    t113 = L2 * c_elbow_front_elbow_down_alike + a3 * t108
-    large_front_elbow_down_alike = fore_arm + np.where(t112, -t111, t111)
-    small_front_elbow_down_alike = t113 * t113 / large_front_elbow_down_alike
-    t114 = np.where(t112, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    t115 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t116 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t117 = d * (t115 - t116)
-    t118 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t119 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t120 = d * (t118 + t119)
-    gap_front_elbow_down_alike = t117 * t117 + t120 * t120
-    t121 = t46 * t114 - gap_front_elbow_down_alike
-    t122 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t122 + a3 * ctheta23A_front_elbow_down_alike
-    t123 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t123 + a3 * stheta23A_front_elbow_down_alike
-    t124 = 2.0 * t117 * point_11_front_elbow_down_alike + 2.0 * t120 * point_21_front_elbow_down_alike
-    t125 = t121 + t124
-    t126 = np.where(t112, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    t127 = gap_front_elbow_down_alike + t46 * t126
-    t128 = t127 - t124
-    t129 = t121 - t124
-    t130 = t42 & (t45 <= t125) & (t45 <= t128) & (t45 <= t129)
-    t131 = t124 + t127
-    unreachable_2 = np.logical_not(t130 & (t45 <= t131))
-    t132 = _runtime.poison(invalid | unreachable_2)
-    t133 = t16 + t132
-    t134 = t120 - point_21_front_elbow_down_alike
-    t135 = t117 - point_11_front_elbow_down_alike
-    folded_right_front_elbow_down_alike = np.sqrt(t134 * t134 + t135 * t135) <= t81
-    t136 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    t137 = 2.0 * np.where(0.0 <= -t113, 1.0, -1.0)
-    N_right_front_elbow_down_alike = np.maximum(t125, t84)
+    s_bend_left = np.where(short_right, 0.0, t84 * rN_left * rM_left / whole_left)
+    t94 = fore_arm * s_bend_left
+    t95 = r_left * t94
+    t96 = r_left * ahead_1_left
+    t97 = h_left * t94
+    t98 = np.where(folded_left, t83, np.arctan2(t93 - t95, t96 + t97))
+    t99 = np.where(short_right, 0.0, t84 * np.arctan2(rN_left, rM_left))
+    t100 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t101 = t100 + t78
+    t102 = np.where(folded_left, t83, np.arctan2(t93 + t95, t96 - t97))
+    stheta2A_front_elbow_down_alike = t52 - t53
+    ctheta2A_front_elbow_down_alike = t54 + t55
+    c_relative_front_elbow_down_alike = t58 - t59
+    t103 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t60 + t61
+    t104 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t103 - t104
+    t105 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t106 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t107 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t106 + t107
+    t108 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t109 = t105 - t108
+    t110 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t111 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t110 + t111
+    t112 = L2 * t109 - a3 * c_elbow_front_elbow_down_alike
+    t113 = 0.0 <= -t112
+    t114 = L2 * c_elbow_front_elbow_down_alike + a3 * t109
+    large_front_elbow_down_alike = fore_arm + np.where(t113, -t112, t112)
+    small_front_elbow_down_alike = t114 * t114 / large_front_elbow_down_alike
+    t115 = np.where(t113, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    t116 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t117 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t118 = d * (t116 - t117)
+    t119 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t120 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t121 = d * (t119 + t120)
+    gap_front_elbow_down_alike = t118 * t118 + t121 * t121
+    t122 = t47 * t115 - gap_front_elbow_down_alike
+    t123 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t123 + a3 * ctheta23A_front_elbow_down_alike
+    t124 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t124 + a3 * stheta23A_front_elbow_down_alike
+    t125 = 2.0 * t118 * point_11_front_elbow_down_alike + 2.0 * t121 * point_21_front_elbow_down_alike
+    t126 = t122 + t125
+    t127 = np.where(t113, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    t128 = gap_front_elbow_down_alike + t47 * t127
+    t129 = t128 - t125
+    t130 = t122 - t125
+    t131 = t43 & (t46 <= t126) & (t46 <= t129) & (t46 <= t130)
+    t132 = t125 + t128
+    unreachable_2 = np.logical_not(t131 & (t46 <= t132))
+    t133 = _runtime.poison(invalid | unreachable_2)
+    t134 = t16 + t133
+    t135 = t121 - point_21_front_elbow_down_alike
+    t136 = t118 - point_11_front_elbow_down_alike
+    folded_right_front_elbow_down_alike = np.sqrt(t135 * t135 + t136 * t136) <= t82
+    t137 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    t138 = 2.0 * np.where(0.0 <= -t114, 1.0, -1.0)
+    N_right_front_elbow_down_alike = np.maximum(t126, t85)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(t128, t84)
+    M_right_front_elbow_down_alike = np.maximum(t129, t85)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t138 = t137 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    t139 = t138 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = N_right_front_elbow_down_alike + M_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t138 / whole_right_front_elbow_down_alike)
-    t139 = fore_arm * s_bend_right_front_elbow_down_alike
-    t140 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
-    c_bend_right_front_elbow_down_alike = np.where(short_right, 1.0, -(t140 / whole_right_front_elbow_down_alike))
-    t141 = fore_arm * c_bend_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = L1 + t141
-    up_right_front_elbow_down_alike = t135 * t139 - t134 * ahead_1_right_front_elbow_down_alike
-    t142 = t135 * ahead_1_right_front_elbow_down_alike + t134 * t139
-    t143 = np.arctan2(up_right_front_elbow_down_alike, -t142)
-    t144 = np.where(folded_right_front_elbow_down_alike, t136, t143)
-    t145 = _runtime.wrap(t144) + t132
-    t146 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t147 = t89 + np.where(short_right, 0.0, t137 * t146)
-    t148 = _runtime.wrap(t147) + t132
-    h_left_front_elbow_down_alike = t120 + point_21_front_elbow_down_alike
-    t149 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = t117 + point_11_front_elbow_down_alike
-    t150 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    folded_left_front_elbow_down_alike = np.sqrt(t149 + t150) <= t81
-    N_left_front_elbow_down_alike = np.maximum(t129, 0.0)
-    M_left_front_elbow_down_alike = np.maximum(t131, 0.0)
-    t151 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t139 / whole_right_front_elbow_down_alike)
+    t140 = fore_arm * s_bend_right_front_elbow_down_alike
+    t141 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
+    c_bend_right_front_elbow_down_alike = np.where(short_right, 1.0, -(t141 / whole_right_front_elbow_down_alike))
+    t142 = fore_arm * c_bend_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = L1 + t142
+    up_right_front_elbow_down_alike = t136 * t140 - t135 * ahead_1_right_front_elbow_down_alike
+    t143 = t136 * ahead_1_right_front_elbow_down_alike + t135 * t140
+    t144 = np.arctan2(up_right_front_elbow_down_alike, -t143)
+    t145 = np.where(folded_right_front_elbow_down_alike, t137, t144)
+    t146 = _runtime.wrap_cut(t145) + t133
+    t147 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t148 = t90 + np.where(short_right, 0.0, t138 * t147)
+    t149 = _runtime.wrap(t148) + t133
+    h_left_front_elbow_down_alike = t121 + point_21_front_elbow_down_alike
+    t150 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = t118 + point_11_front_elbow_down_alike
+    t151 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    folded_left_front_elbow_down_alike = np.sqrt(t150 + t151) <= t82
+    N_left_front_elbow_down_alike = np.maximum(t130, 0.0)
+    M_left_front_elbow_down_alike = np.maximum(t132, 0.0)
+    t152 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
     whole_left_front_elbow_down_alike = N_left_front_elbow_down_alike + M_left_front_elbow_down_alike
-    c_bend_left_front_elbow_down_alike = np.where(short_right, 1.0, -(t151 / whole_left_front_elbow_down_alike))
-    t152 = fore_arm * c_bend_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = L1 + t152
-    t153 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    c_bend_left_front_elbow_down_alike = np.where(short_right, 1.0, -(t152 / whole_left_front_elbow_down_alike))
+    t153 = fore_arm * c_bend_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = L1 + t153
+    t154 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t154 = t137 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t154 / whole_left_front_elbow_down_alike)
-    t155 = fore_arm * s_bend_left_front_elbow_down_alike
-    t156 = r_left_front_elbow_down_alike * t155
-    t157 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t158 = h_left_front_elbow_down_alike * t155
-    t159 = np.where(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 - t156, t157 + t158))
-    t160 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t161 = np.where(short_right, 0.0, t137 * t160)
-    t162 = t99 + t132
-    t163 = np.where(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 + t156, t157 - t158))
-    t164 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
-    t165 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
-    outward_rear_elbow_up_alike = t165 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
-    t166 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t31 + t166)
-    t167 = t28 - reach_rear_elbow_up_alike
-    t168 = reach_rear_elbow_up_alike + t39
-    t169 = reach_rear_elbow_up_alike - t39
-    t170 = t27 & (t29 <= t167) & (t29 <= t168) & (t29 <= t169)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t47
-    s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t30 / reach_rear_elbow_up_alike)
-    t171 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t167, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t169, 0.0)
-    t172 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
-    S_rear_elbow_up_alike = t28 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t168, 0.0)
-    t173 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t172 + t173
-    t174 = -((t172 - t173) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = np.where(t171, 1.0, t174)
-    t175 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t176 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t176)
-    t177 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t177 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t178 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = np.where(t171, 0.0, t178)
-    t179 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t175 - t179
-    t180 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t181 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t180 + t181
-    t182 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t183 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t182 + t183
-    t184 = -((t182 - t183) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t184)
-    t185 = c_lag * c_bend_rear_elbow_up_alike
-    t186 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t186)
-    t187 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t185 - t187
-    t188 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t189 = s_lag * c_bend_rear_elbow_up_alike
-    t190 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t189 + t190
-    t191 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t188 - t191
-    t192 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t193 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t194 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t193 + t194
-    t195 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t196 = t192 - t195
-    t197 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t198 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t197 + t198
-    t199 = L2 * t196 - a3 * c_elbow_rear_elbow_up_alike
-    t200 = 0.0 <= -t199
-    t201 = L2 * c_elbow_rear_elbow_up_alike + a3 * t196
-    large_rear_elbow_up_alike = fore_arm + np.where(t200, -t199, t199)
-    small_rear_elbow_up_alike = t201 * t201 / large_rear_elbow_up_alike
-    t202 = np.where(t200, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    t203 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t204 = t203 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t205 = d * t204
-    t206 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t207 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t206
-    t208 = d * t207
-    gap_rear_elbow_up_alike = t205 * t205 + t208 * t208
-    t209 = t46 * t202 - gap_rear_elbow_up_alike
-    t210 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t210 + a3 * ctheta23A_rear_elbow_up_alike
-    t211 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t211 + a3 * stheta23A_rear_elbow_up_alike
-    t212 = 2.0 * t205 * point_11_rear_elbow_up_alike + 2.0 * t208 * point_21_rear_elbow_up_alike
-    t213 = t209 + t212
-    t214 = np.where(t200, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    t215 = gap_rear_elbow_up_alike + t46 * t214
-    t216 = t215 - t212
-    t217 = t209 - t212
-    t218 = t170 & (t45 <= t213) & (t45 <= t216) & (t45 <= t217)
-    t219 = t212 + t215
-    unreachable_3 = np.logical_not(t218 & (t45 <= t219))
-    t220 = _runtime.poison(invalid | unreachable_3)
-    t221 = t164 + t220
-    t222 = t208 - point_21_rear_elbow_up_alike
-    t223 = t205 - point_11_rear_elbow_up_alike
-    folded_right_rear_elbow_up_alike = np.sqrt(t222 * t222 + t223 * t223) <= t81
-    t224 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    t225 = 2.0 * np.where(0.0 <= -t201, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t213, t84)
+    t155 = t138 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t155 / whole_left_front_elbow_down_alike)
+    t156 = fore_arm * s_bend_left_front_elbow_down_alike
+    t157 = r_left_front_elbow_down_alike * t156
+    t158 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t159 = h_left_front_elbow_down_alike * t156
+    t160 = np.where(folded_left_front_elbow_down_alike, t137, np.arctan2(t154 - t157, t158 + t159))
+    t161 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t162 = np.where(short_right, 0.0, t138 * t161)
+    t163 = t100 + t133
+    t164 = np.where(folded_left_front_elbow_down_alike, t137, np.arctan2(t154 + t157, t158 - t159))
+    t165 = _runtime.wrap_up(-np.where(nowhere, 0.0, t2 + t15))
+    t166 = x * np.where(nowhere, 1.0, -((t34 + t35) / h))
+    outward_rear_elbow_up_alike = t166 + y * np.where(nowhere, 0.0, (t37 - t38) / h)
+    t167 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t32 + t167)
+    t168 = t29 - reach_rear_elbow_up_alike
+    t169 = reach_rear_elbow_up_alike + t40
+    t170 = reach_rear_elbow_up_alike - t40
+    t171 = t28 & (t30 <= t168) & (t30 <= t169) & (t30 <= t170)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t48
+    s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t31 / reach_rear_elbow_up_alike)
+    t172 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t168, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t170, 0.0)
+    t173 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    S_rear_elbow_up_alike = t29 + reach_rear_elbow_up_alike
+    B_rear_elbow_up_alike = np.maximum(t169, 0.0)
+    t174 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t173 + t174
+    t175 = -((t173 - t174) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = np.where(t172, 1.0, t175)
+    t176 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t177 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t177)
+    t178 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t178 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t179 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = np.where(t172, 0.0, t179)
+    t180 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t176 - t180
+    t181 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t182 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t181 + t182
+    t183 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t184 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t183 + t184
+    t185 = -((t183 - t184) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t185)
+    t186 = c_lag * c_bend_rear_elbow_up_alike
+    t187 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t187)
+    t188 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t186 - t188
+    t189 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t190 = s_lag * c_bend_rear_elbow_up_alike
+    t191 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t190 + t191
+    t192 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t189 - t192
+    t193 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t194 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t195 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t194 + t195
+    t196 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t197 = t193 - t196
+    t198 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t199 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t198 + t199
+    t200 = L2 * t197 - a3 * c_elbow_rear_elbow_up_alike
+    t201 = 0.0 <= -t200
+    t202 = L2 * c_elbow_rear_elbow_up_alike + a3 * t197
+    large_rear_elbow_up_alike = fore_arm + np.where(t201, -t200, t200)
+    small_rear_elbow_up_alike = t202 * t202 / large_rear_elbow_up_alike
+    t203 = np.where(t201, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    t204 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t205 = t204 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t206 = d * t205
+    t207 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t208 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t207
+    t209 = d * t208
+    gap_rear_elbow_up_alike = t206 * t206 + t209 * t209
+    t210 = t47 * t203 - gap_rear_elbow_up_alike
+    t211 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t211 + a3 * ctheta23A_rear_elbow_up_alike
+    t212 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t212 + a3 * stheta23A_rear_elbow_up_alike
+    t213 = 2.0 * t206 * point_11_rear_elbow_up_alike + 2.0 * t209 * point_21_rear_elbow_up_alike
+    t214 = t210 + t213
+    t215 = np.where(t201, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    t216 = gap_rear_elbow_up_alike + t47 * t215
+    t217 = t216 - t213
+    t218 = t210 - t213
+    t219 = t171 & (t46 <= t214) & (t46 <= t217) & (t46 <= t218)
+    t220 = t213 + t216
+    unreachable_3 = np.logical_not(t219 & (t46 <= t220))
+    t221 = _runtime.poison(invalid | unreachable_3)
+    t222 = t165 + t221
+    t223 = t209 - point_21_rear_elbow_up_alike
+    t224 = t206 - point_11_rear_elbow_up_alike
+    folded_right_rear_elbow_up_alike = np.sqrt(t223 * t223 + t224 * t224) <= t82
+    t225 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    t226 = 2.0 * np.where(0.0 <= -t202, 1.0, -1.0)
+    N_right_rear_elbow_up_alike = np.maximum(t214, t85)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(t216, t84)
+    M_right_rear_elbow_up_alike = np.maximum(t217, t85)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t226 = t225 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    t227 = t226 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = N_right_rear_elbow_up_alike + M_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t226 / whole_right_rear_elbow_up_alike)
-    t227 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t228 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
-    c_bend_right_rear_elbow_up_alike = np.where(short_right, 1.0, -(t228 / whole_right_rear_elbow_up_alike))
+    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t227 / whole_right_rear_elbow_up_alike)
+    t228 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t229 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
+    c_bend_right_rear_elbow_up_alike = np.where(short_right, 1.0, -(t229 / whole_right_rear_elbow_up_alike))
     ahead_1_right_rear_elbow_up_alike = L1 + fore_arm * c_bend_right_rear_elbow_up_alike
-    up_right_rear_elbow_up_alike = t223 * t227 - t222 * ahead_1_right_rear_elbow_up_alike
-    t229 = t223 * ahead_1_right_rear_elbow_up_alike + t222 * t227
-    t230 = np.arctan2(up_right_rear_elbow_up_alike, -t229)
-    t231 = np.where(folded_right_rear_elbow_up_alike, t224, t230)
-    t232 = _runtime.wrap(t231) + t220
-    t233 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t234 = t89 + np.where(short_right, 0.0, t225 * t233)
-    t235 = _runtime.wrap(t234) + t220
-    h_left_rear_elbow_up_alike = t208 + point_21_rear_elbow_up_alike
-    t236 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = t205 + point_11_rear_elbow_up_alike
-    t237 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    folded_left_rear_elbow_up_alike = np.sqrt(t236 + t237) <= t81
-    N_left_rear_elbow_up_alike = np.maximum(t217, 0.0)
-    M_left_rear_elbow_up_alike = np.maximum(t219, 0.0)
-    t238 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
+    up_right_rear_elbow_up_alike = t224 * t228 - t223 * ahead_1_right_rear_elbow_up_alike
+    t230 = t224 * ahead_1_right_rear_elbow_up_alike + t223 * t228
+    t231 = np.arctan2(up_right_rear_elbow_up_alike, -t230)
+    t232 = np.where(folded_right_rear_elbow_up_alike, t225, t231)
+    t233 = _runtime.wrap_cut(t232) + t221
+    t234 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t235 = t90 + np.where(short_right, 0.0, t226 * t234)
+    t236 = _runtime.wrap(t235) + t221
+    h_left_rear_elbow_up_alike = t209 + point_21_rear_elbow_up_alike
+    t237 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = t206 + point_11_rear_elbow_up_alike
+    t238 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    folded_left_rear_elbow_up_alike = np.sqrt(t237 + t238) <= t82
+    N_left_rear_elbow_up_alike = np.maximum(t218, 0.0)
+    M_left_rear_elbow_up_alike = np.maximum(t220, 0.0)
+    t239 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
     whole_left_rear_elbow_up_alike = N_left_rear_elbow_up_alike + M_left_rear_elbow_up_alike
-    c_bend_left_rear_elbow_up_alike = np.where(short_right, 1.0, -(t238 / whole_left_rear_elbow_up_alike))
+    c_bend_left_rear_elbow_up_alike = np.where(short_right, 1.0, -(t239 / whole_left_rear_elbow_up_alike))
     ahead_1_left_rear_elbow_up_alike = L1 + fore_arm * c_bend_left_rear_elbow_up_alike
-    t239 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t240 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t240 = t225 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t240 / whole_left_rear_elbow_up_alike)
-    t241 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t242 = r_left_rear_elbow_up_alike * t241
-    t243 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t244 = h_left_rear_elbow_up_alike * t241
-    t245 = np.where(folded_left_rear_elbow_up_alike, t224, np.arctan2(t239 - t242, t243 + t244))
-    t246 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t247 = np.where(short_right, 0.0, t225 * t246)
-    t248 = t99 + t220
-    t249 = np.where(folded_left_rear_elbow_up_alike, t224, np.arctan2(t239 + t242, t243 - t244))
-    stheta2A_rear_elbow_down_alike = t175 + t179
-    ctheta2A_rear_elbow_down_alike = t180 - t181
-    c_relative_rear_elbow_down_alike = t185 + t187
-    t250 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t189 - t190
-    t251 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t250 - t251
-    t252 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t253 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t254 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t253 + t254
-    t255 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t256 = t252 - t255
-    t257 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t258 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t257 + t258
-    t259 = L2 * t256 - a3 * c_elbow_rear_elbow_down_alike
-    t260 = 0.0 <= -t259
-    t261 = L2 * c_elbow_rear_elbow_down_alike + a3 * t256
-    large_rear_elbow_down_alike = fore_arm + np.where(t260, -t259, t259)
-    small_rear_elbow_down_alike = t261 * t261 / large_rear_elbow_down_alike
-    t262 = np.where(t260, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    t263 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t264 = t263 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t265 = d * t264
-    t266 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t267 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t266
-    t268 = d * t267
-    gap_rear_elbow_down_alike = t265 * t265 + t268 * t268
-    t269 = t46 * t262 - gap_rear_elbow_down_alike
-    t270 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t270 + a3 * ctheta23A_rear_elbow_down_alike
-    t271 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t271 + a3 * stheta23A_rear_elbow_down_alike
-    t272 = 2.0 * t265 * point_11_rear_elbow_down_alike + 2.0 * t268 * point_21_rear_elbow_down_alike
-    t273 = t269 + t272
-    t274 = np.where(t260, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    t275 = gap_rear_elbow_down_alike + t46 * t274
-    t276 = t275 - t272
-    t277 = t269 - t272
-    t278 = t170 & (t45 <= t273) & (t45 <= t276) & (t45 <= t277)
-    t279 = t272 + t275
-    unreachable_4 = np.logical_not(t278 & (t45 <= t279))
-    t280 = _runtime.poison(invalid | unreachable_4)
-    t281 = t164 + t280
-    t282 = t268 - point_21_rear_elbow_down_alike
-    t283 = t265 - point_11_rear_elbow_down_alike
-    folded_right_rear_elbow_down_alike = np.sqrt(t282 * t282 + t283 * t283) <= t81
-    t284 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    t285 = 2.0 * np.where(0.0 <= -t261, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t273, t84)
+    t241 = t226 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t241 / whole_left_rear_elbow_up_alike)
+    t242 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t243 = r_left_rear_elbow_up_alike * t242
+    t244 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t245 = h_left_rear_elbow_up_alike * t242
+    t246 = np.where(folded_left_rear_elbow_up_alike, t225, np.arctan2(t240 - t243, t244 + t245))
+    t247 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t248 = np.where(short_right, 0.0, t226 * t247)
+    t249 = t100 + t221
+    t250 = np.where(folded_left_rear_elbow_up_alike, t225, np.arctan2(t240 + t243, t244 - t245))
+    stheta2A_rear_elbow_down_alike = t176 + t180
+    ctheta2A_rear_elbow_down_alike = t181 - t182
+    c_relative_rear_elbow_down_alike = t186 + t188
+    t251 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t190 - t191
+    t252 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t251 - t252
+    t253 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t254 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    t255 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t254 + t255
+    t256 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t257 = t253 - t256
+    t258 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t259 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t258 + t259
+    t260 = L2 * t257 - a3 * c_elbow_rear_elbow_down_alike
+    t261 = 0.0 <= -t260
+    t262 = L2 * c_elbow_rear_elbow_down_alike + a3 * t257
+    large_rear_elbow_down_alike = fore_arm + np.where(t261, -t260, t260)
+    small_rear_elbow_down_alike = t262 * t262 / large_rear_elbow_down_alike
+    t263 = np.where(t261, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    t264 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t265 = t264 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t266 = d * t265
+    t267 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t268 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t267
+    t269 = d * t268
+    gap_rear_elbow_down_alike = t266 * t266 + t269 * t269
+    t270 = t47 * t263 - gap_rear_elbow_down_alike
+    t271 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t271 + a3 * ctheta23A_rear_elbow_down_alike
+    t272 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t272 + a3 * stheta23A_rear_elbow_down_alike
+    t273 = 2.0 * t266 * point_11_rear_elbow_down_alike + 2.0 * t269 * point_21_rear_elbow_down_alike
+    t274 = t270 + t273
+    t275 = np.where(t261, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    t276 = gap_rear_elbow_down_alike + t47 * t275
+    t277 = t276 - t273
+    t278 = t270 - t273
+    t279 = t171 & (t46 <= t274) & (t46 <= t277) & (t46 <= t278)
+    t280 = t273 + t276
+    unreachable_4 = np.logical_not(t279 & (t46 <= t280))
+    t281 = _runtime.poison(invalid | unreachable_4)
+    t282 = t165 + t281
+    t283 = t269 - point_21_rear_elbow_down_alike
+    t284 = t266 - point_11_rear_elbow_down_alike
+    folded_right_rear_elbow_down_alike = np.sqrt(t283 * t283 + t284 * t284) <= t82
+    t285 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    t286 = 2.0 * np.where(0.0 <= -t262, 1.0, -1.0)
+    N_right_rear_elbow_down_alike = np.maximum(t274, t85)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(t276, t84)
+    M_right_rear_elbow_down_alike = np.maximum(t277, t85)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t286 = t285 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    t287 = t286 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
     whole_right_rear_elbow_down_alike = N_right_rear_elbow_down_alike + M_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t286 / whole_right_rear_elbow_down_alike)
-    t287 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t288 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
-    c_bend_right_rear_elbow_down_alike = np.where(short_right, 1.0, -(t288 / whole_right_rear_elbow_down_alike))
-    t289 = fore_arm * c_bend_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = L1 + t289
-    up_right_rear_elbow_down_alike = t283 * t287 - t282 * ahead_1_right_rear_elbow_down_alike
-    t290 = t283 * ahead_1_right_rear_elbow_down_alike + t282 * t287
-    t291 = np.arctan2(up_right_rear_elbow_down_alike, -t290)
-    t292 = np.where(folded_right_rear_elbow_down_alike, t284, t291)
-    t293 = _runtime.wrap(t292) + t280
-    t294 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t295 = t89 + np.where(short_right, 0.0, t285 * t294)
-    t296 = _runtime.wrap(t295) + t280
-    h_left_rear_elbow_down_alike = t268 + point_21_rear_elbow_down_alike
-    t297 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = t265 + point_11_rear_elbow_down_alike
-    t298 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    folded_left_rear_elbow_down_alike = np.sqrt(t297 + t298) <= t81
-    N_left_rear_elbow_down_alike = np.maximum(t277, 0.0)
-    M_left_rear_elbow_down_alike = np.maximum(t279, 0.0)
-    t299 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t287 / whole_right_rear_elbow_down_alike)
+    t288 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t289 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
+    c_bend_right_rear_elbow_down_alike = np.where(short_right, 1.0, -(t289 / whole_right_rear_elbow_down_alike))
+    t290 = fore_arm * c_bend_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = L1 + t290
+    up_right_rear_elbow_down_alike = t284 * t288 - t283 * ahead_1_right_rear_elbow_down_alike
+    t291 = t284 * ahead_1_right_rear_elbow_down_alike + t283 * t288
+    t292 = np.arctan2(up_right_rear_elbow_down_alike, -t291)
+    t293 = np.where(folded_right_rear_elbow_down_alike, t285, t292)
+    t294 = _runtime.wrap_cut(t293) + t281
+    t295 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t296 = t90 + np.where(short_right, 0.0, t286 * t295)
+    t297 = _runtime.wrap(t296) + t281
+    h_left_rear_elbow_down_alike = t269 + point_21_rear_elbow_down_alike
+    t298 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = t266 + point_11_rear_elbow_down_alike
+    t299 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    folded_left_rear_elbow_down_alike = np.sqrt(t298 + t299) <= t82
+    N_left_rear_elbow_down_alike = np.maximum(t278, 0.0)
+    M_left_rear_elbow_down_alike = np.maximum(t280, 0.0)
+    t300 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
     whole_left_rear_elbow_down_alike = N_left_rear_elbow_down_alike + M_left_rear_elbow_down_alike
-    c_bend_left_rear_elbow_down_alike = np.where(short_right, 1.0, -(t299 / whole_left_rear_elbow_down_alike))
+    c_bend_left_rear_elbow_down_alike = np.where(short_right, 1.0, -(t300 / whole_left_rear_elbow_down_alike))
     ahead_1_left_rear_elbow_down_alike = L1 + fore_arm * c_bend_left_rear_elbow_down_alike
-    t300 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t301 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t301 = t285 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t301 / whole_left_rear_elbow_down_alike)
-    t302 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t303 = r_left_rear_elbow_down_alike * t302
-    t304 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t305 = h_left_rear_elbow_down_alike * t302
-    t306 = np.where(folded_left_rear_elbow_down_alike, t284, np.arctan2(t300 - t303, t304 + t305))
-    t307 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t308 = np.where(short_right, 0.0, t285 * t307)
-    t309 = t99 + t280
-    t310 = np.where(folded_left_rear_elbow_down_alike, t284, np.arctan2(t300 + t303, t304 - t305))
-    t311 = nowhere | folded | short
-    t312 = t311 | folded_right | short_right | folded_left
-    t313 = _runtime.status(invalid, unreachable, t312)
-    t314 = t311 | folded_right_front_elbow_down_alike | short_right
-    t315 = _runtime.status(invalid, unreachable_2, t314 | folded_left_front_elbow_down_alike)
-    t316 = nowhere | folded_rear_elbow_up_alike | short
-    t317 = t316 | folded_right_rear_elbow_up_alike | short_right
-    t318 = _runtime.status(invalid, unreachable_3, t317 | folded_left_rear_elbow_up_alike)
-    t319 = t316 | folded_right_rear_elbow_down_alike | short_right
-    t320 = _runtime.status(invalid, unreachable_4, t319 | folded_left_rear_elbow_down_alike)
+    t302 = t286 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t302 / whole_left_rear_elbow_down_alike)
+    t303 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t304 = r_left_rear_elbow_down_alike * t303
+    t305 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t306 = h_left_rear_elbow_down_alike * t303
+    t307 = np.where(folded_left_rear_elbow_down_alike, t285, np.arctan2(t301 - t304, t305 + t306))
+    t308 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t309 = np.where(short_right, 0.0, t286 * t308)
+    t310 = t100 + t281
+    t311 = np.where(folded_left_rear_elbow_down_alike, t285, np.arctan2(t301 + t304, t305 - t306))
+    t312 = nowhere | folded | short
+    t313 = t312 | folded_right | short_right | folded_left
+    t314 = _runtime.status(invalid, unreachable, t313)
+    t315 = t312 | folded_right_front_elbow_down_alike | short_right
+    t316 = _runtime.status(invalid, unreachable_2, t315 | folded_left_front_elbow_down_alike)
+    t317 = nowhere | folded_rear_elbow_up_alike | short
+    t318 = t317 | folded_right_rear_elbow_up_alike | short_right
+    t319 = _runtime.status(invalid, unreachable_3, t318 | folded_left_rear_elbow_up_alike)
+    t320 = t317 | folded_right_rear_elbow_down_alike | short_right
+    t321 = _runtime.status(invalid, unreachable_4, t320 | folded_left_rear_elbow_down_alike)
     return (
-        t78,
-        t88,
-        t91,
-        _runtime.wrap(t97) + t77,
-        _runtime.wrap(t89 + t98) + t77,
-        t100,
-        t78,
-        t88,
-        t91,
-        _runtime.wrap(t101) + t77,
-        _runtime.wrap(t89 - t98) + t77,
-        t100,
-        t133,
-        t145,
-        t148,
-        _runtime.wrap(t159) + t132,
-        _runtime.wrap(t89 + t161) + t132,
-        t162,
-        t133,
-        t145,
-        t148,
-        _runtime.wrap(t163) + t132,
-        _runtime.wrap(t89 - t161) + t132,
-        t162,
-        t221,
-        t232,
-        t235,
-        _runtime.wrap(t245) + t220,
-        _runtime.wrap(t89 + t247) + t220,
-        t248,
-        t221,
-        t232,
-        t235,
-        _runtime.wrap(t249) + t220,
-        _runtime.wrap(t89 - t247) + t220,
-        t248,
-        t281,
-        t293,
-        t296,
-        _runtime.wrap(t306) + t280,
-        _runtime.wrap(t89 + t308) + t280,
-        t309,
-        t281,
-        t293,
-        t296,
-        _runtime.wrap(t310) + t280,
-        _runtime.wrap(t89 - t308) + t280,
-        t309,
-        t313,
-        t313,
-        t315,
-        t315,
-        t318,
-        t318,
-        t320,
-        t320,
+        t79,
+        t89,
+        t92,
+        _runtime.wrap_cut(t98) + t78,
+        _runtime.wrap(t90 + t99) + t78,
+        t101,
+        t79,
+        t89,
+        t92,
+        _runtime.wrap_cut(t102) + t78,
+        _runtime.wrap(t90 - t99) + t78,
+        t101,
+        t134,
+        t146,
+        t149,
+        _runtime.wrap_cut(t160) + t133,
+        _runtime.wrap(t90 + t162) + t133,
+        t163,
+        t134,
+        t146,
+        t149,
+        _runtime.wrap_cut(t164) + t133,
+        _runtime.wrap(t90 - t162) + t133,
+        t163,
+        t222,
+        t233,
+        t236,
+        _runtime.wrap_cut(t246) + t221,
+        _runtime.wrap(t90 + t248) + t221,
+        t249,
+        t222,
+        t233,
+        t236,
+        _runtime.wrap_cut(t250) + t221,
+        _runtime.wrap(t90 - t248) + t221,
+        t249,
+        t282,
+        t294,
+        t297,
+        _runtime.wrap_cut(t307) + t281,
+        _runtime.wrap(t90 + t309) + t281,
+        t310,
+        t282,
+        t294,
+        t297,
+        _runtime.wrap_cut(t311) + t281,
+        _runtime.wrap(t90 - t309) + t281,
+        t310,
+        t314,
+        t314,
+        t316,
+        t316,
+        t319,
+        t319,
+        t321,
+        t321,
     )
 
 
@@ -1777,9 +1783,9 @@ def _wrist_length(psi, phi, d, gs, al):
     t2 = d - (gs - al) * t1
     t3 = (gs + al) * t1 - d
     t4 = np.sqrt(np.maximum(t2, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
-    t5 = np.isfinite(psi) & np.isfinite(phi) & np.isfinite(d)
-    t6 = t5 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
-    invalid = np.logical_not(t6 & (0.0 <= gs) & (0.0 <= al))
+    t5 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t6 = t5 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    invalid = np.logical_not(t6 & np.isfinite(psi) & np.isfinite(phi))
     t7 = -(_runtime.FEASIBILITY * (d / 2.0))
     t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t3)
     t9 = _runtime.poison(invalid | np.logical_not(t8 & (t7 <= t2)))
@@ -1849,13 +1855,13 @@ def _largest_yaw(phi, beta_min, d, gs, al):
     span = (gs + al * c_beta_min) * c_phi
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
-    t3 = np.isfinite(phi) & np.isfinite(beta_min) & np.isfinite(d)
-    t4 = t3 & np.isfinite(gs) & np.isfinite(al) & (0.0 <= d)
-    invalid = np.logical_not(t4 & (0.0 <= gs) & (0.0 <= al))
+    t3 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t4 = t3 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t5 = t4 & np.isfinite(phi) & np.isfinite(beta_min)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(invalid | unreachable)
+    t6 = _runtime.poison(np.logical_not(t5) | unreachable)
     return (
-        t5,
+        _runtime.wrap_down(2.0 * t2) + t6,
     )
 
 
@@ -1885,11 +1891,11 @@ def _largest_angle(beta_min, d, gs, al):
     span = gs + al * c_beta_min
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d) + np.sqrt(span))
-    t3 = np.isfinite(beta_min) & np.isfinite(d) & np.isfinite(gs)
-    t4 = t3 & np.isfinite(al) & (0.0 <= d) & (0.0 <= gs)
+    t3 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t4 = t3 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    failed = np.logical_not(t4 & (0.0 <= al)) | unreachable
-    t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(failed)
+    failed = np.logical_not(t4 & np.isfinite(beta_min)) | unreachable
+    t5 = _runtime.wrap_down(2.0 * t2) + _runtime.poison(failed)
     return (
         t5,
     )

@@ -103,10 +103,10 @@ def _fk(theta1, theta2, theta3, L0, L1, L2):
     height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
     t9 = n_1 * height
     P_r = C_r - (t6 - t9)
-    t10 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t11 = t10 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
-    invalid = np.logical_not(t12)
+    t10 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t11 = t10 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t12 = t11 & np.isfinite(theta1) & np.isfinite(theta2)
+    invalid = np.logical_not(t12 & np.isfinite(theta3))
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
     t13 = _runtime.poison(invalid | unreachable)
     t14 = distance * n_1 / 2.0
@@ -173,17 +173,18 @@ def _passive_angles(theta1, theta2, theta3, L0, L1, L2):
     t10 = distance * n_1 / 2.0
     t11 = t5 * height
     CP_y = t10 + t11
-    t12 = _runtime.wrap(-np.arctan2(DP_r_right_of_CD, CP_y))
-    t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t14 = t13 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t15 = t14 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t12 = _runtime.wrap_cut(-np.arctan2(DP_r_right_of_CD, CP_y))
+    t13 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t14 = t13 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t15 = t14 & np.isfinite(theta1) & np.isfinite(theta2)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
-    t16 = _runtime.poison(np.logical_not(t15) | unreachable)
+    failed = np.logical_not(t15 & np.isfinite(theta3)) | unreachable
+    t16 = _runtime.poison(failed)
     DP_r = t6 + t9
     CP_y_right_of_CD = t10 - t11
-    t17 = _runtime.wrap(np.arctan2(DP_r, -CP_y_right_of_CD))
-    t18 = _runtime.wrap(-np.arctan2(DP_r, CP_y_right_of_CD))
-    t19 = _runtime.wrap(np.arctan2(DP_r_right_of_CD, -CP_y))
+    t17 = _runtime.wrap_cut(np.arctan2(DP_r, -CP_y_right_of_CD))
+    t18 = _runtime.wrap_cut(-np.arctan2(DP_r, CP_y_right_of_CD))
+    t19 = _runtime.wrap_cut(np.arctan2(DP_r_right_of_CD, -CP_y))
     return (
         t12 + t16,
         t17 + t16,
@@ -219,58 +220,59 @@ def _jacobian_parallel(theta1, theta2, theta3, L0, L1, L2):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
-    t1 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t2 = t1 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    invalid = np.logical_not(t2 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2))
-    t3 = L0 + L1 + L2
-    t4 = L2 * 2.0
-    t5 = L1 * s2 - L1 * s3
-    t6 = L1 * c2 - (L0 + L1 * c3)
-    apart = np.sqrt(t5 * t5 + t6 * t6)
-    t7 = t4 - apart
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t7)
-    t8 = _runtime.poison(invalid | unreachable)
-    t9 = L2 * s1 + t8
-    t10 = 0.0 + t8
-    t11 = L2 * c1 + t8
-    t12 = t3 * _runtime.VANISHING
-    coincide = apart <= t12
+    t1 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t2 = t1 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t3 = t2 & np.isfinite(theta1) & np.isfinite(theta2)
+    t4 = L0 + L1 + L2
+    t5 = L2 * 2.0
+    t6 = L1 * s2 - L1 * s3
+    t7 = L1 * c2 - (L0 + L1 * c3)
+    apart = np.sqrt(t6 * t6 + t7 * t7)
+    t8 = t5 - apart
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t8)
+    failed = np.logical_not(t3 & np.isfinite(theta3)) | unreachable
+    t9 = _runtime.poison(failed)
+    t10 = L2 * s1 + t9
+    t11 = 0.0 + t9
+    t12 = L2 * c1 + t9
+    t13 = t4 * _runtime.VANISHING
+    coincide = apart <= t13
     distance = np.where(coincide, 0.0, apart)
-    t13 = np.where(coincide, 0.0, t5 / apart)
-    t14 = distance * t13 / 2.0
-    n_1 = np.where(coincide, 1.0, -(t6 / apart))
-    slack = np.maximum(t7, 0.0)
-    height = np.where(slack <= t12, 0.0, np.sqrt(slack) * np.sqrt(apart + t4) / 2.0)
-    t15 = n_1 * height
-    DP_r_right_of_CD = t14 - t15
-    t16 = DP_r_right_of_CD * c1
-    t17 = distance * n_1 / 2.0
-    t18 = t13 * height
-    CP_y = t17 + t18
-    t19 = DP_r_right_of_CD * s1
-    DP_r = t14 + t15
-    t20 = DP_r * c1
-    CP_y_right_of_CD = t17 - t18
-    t21 = DP_r * s1
+    t14 = np.where(coincide, 0.0, t6 / apart)
+    t15 = distance * t14 / 2.0
+    n_1 = np.where(coincide, 1.0, -(t7 / apart))
+    slack = np.maximum(t8, 0.0)
+    height = np.where(slack <= t13, 0.0, np.sqrt(slack) * np.sqrt(apart + t5) / 2.0)
+    t16 = n_1 * height
+    DP_r_right_of_CD = t15 - t16
+    t17 = DP_r_right_of_CD * c1
+    t18 = distance * n_1 / 2.0
+    t19 = t14 * height
+    CP_y = t18 + t19
+    t20 = DP_r_right_of_CD * s1
+    DP_r = t15 + t16
+    t21 = DP_r * c1
+    CP_y_right_of_CD = t18 - t19
+    t22 = DP_r * s1
     return (
-        t9,
         t10,
         t11,
-        t16 + t8,
-        CP_y + t8,
-        -t19 + t8,
-        -t20 + t8,
-        -CP_y_right_of_CD + t8,
-        t21 + t8,
-        t9,
+        t12,
+        t17 + t9,
+        CP_y + t9,
+        -t20 + t9,
+        -t21 + t9,
+        -CP_y_right_of_CD + t9,
+        t22 + t9,
         t10,
         t11,
-        t20 + t8,
-        CP_y_right_of_CD + t8,
-        -t21 + t8,
-        -t16 + t8,
-        -CP_y + t8,
-        t19 + t8,
+        t12,
+        t21 + t9,
+        CP_y_right_of_CD + t9,
+        -t22 + t9,
+        -t17 + t9,
+        -CP_y + t9,
+        t20 + t9,
     )
 
 
@@ -319,11 +321,12 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
-    t11 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t12 = t11 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t13 = t12 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t11 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t12 = t11 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t13 = t12 & np.isfinite(theta1) & np.isfinite(theta2)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
-    t14 = _runtime.poison(np.logical_not(t13) | unreachable)
+    failed = np.logical_not(t13 & np.isfinite(theta3)) | unreachable
+    t14 = _runtime.poison(failed)
     t15 = distance * n_1 / 2.0
     t16 = t6 * height
     CP_y = t15 + t16
@@ -387,11 +390,12 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     P_r = C_r - DP_r_right_of_CD
-    t11 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t12 = t11 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t13 = t12 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t11 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t12 = t11 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t13 = t12 & np.isfinite(theta1) & np.isfinite(theta2)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
-    t14 = _runtime.poison(np.logical_not(t13) | unreachable)
+    failed = np.logical_not(t13 & np.isfinite(theta3)) | unreachable
+    t14 = _runtime.poison(failed)
     t15 = distance * n_1 / 2.0
     t16 = t6 * height
     CP_y_right_of_CD = t15 - t16
@@ -484,11 +488,12 @@ def _determinant(theta1, theta2, theta3, L0, L1, L2):
     CP_y_right_of_CD = t11 - t12
     side = distance * height
     t14 = t13 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side
-    t15 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t16 = t15 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t17 = t16 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t15 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t16 = t15 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t17 = t16 & np.isfinite(theta1) & np.isfinite(theta2)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
-    t18 = _runtime.poison(np.logical_not(t17) | unreachable)
+    failed = np.logical_not(t17 & np.isfinite(theta3)) | unreachable
+    t18 = _runtime.poison(failed)
     t19 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD)
     t20 = t19 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side
     return (
@@ -543,11 +548,12 @@ def _singularities(theta1, theta2, theta3, L0, L1, L2):
     height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
-    t11 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t12 = t11 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t13 = t12 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t11 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t12 = t11 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t13 = t12 & np.isfinite(theta1) & np.isfinite(theta2)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
-    t14 = _runtime.poison(np.logical_not(t13) | unreachable)
+    failed = np.logical_not(t13 & np.isfinite(theta3)) | unreachable
+    t14 = _runtime.poison(failed)
     t15 = distance * n_1 / 2.0
     t16 = t6 * height
     CP_y = t15 + t16
@@ -603,15 +609,15 @@ def _condition_number(theta1, theta2, theta3, L0, L1, L2):
     slack = np.maximum(t7, 0.0)
     height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
     t8 = np.where(coincide, 1.0, np.maximum(t5, height))
-    t9 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t10 = t9 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t9 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t10 = t9 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t11 = t10 & np.isfinite(theta1) & np.isfinite(theta2)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t7)
-    t12 = _runtime.poison(np.logical_not(t11) | unreachable)
-    t13 = t8 / np.minimum(t5, height) + t12
+    failed = np.logical_not(t11 & np.isfinite(theta3)) | unreachable
+    t12 = t8 / np.minimum(t5, height) + _runtime.poison(failed)
     return (
-        t13,
-        t13,
+        t12,
+        t12,
     )
 
 
@@ -644,85 +650,86 @@ def _ik(x, y, z, L0, L1, L2):
     t1 = L1 + L2
     t2 = _runtime.VANISHING * (L0 + t1)
     on_axis = r <= t2
-    t3 = _runtime.wrap(np.where(on_axis, 0.0, np.arctan2(z, -x)))
-    t4 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t5 = t4 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    invalid = np.logical_not(t5 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2))
-    t6 = -(_runtime.FEASIBILITY * t1)
-    t7 = r * r
-    reach_c = np.sqrt(t7 + y * y)
-    t8 = t1 - reach_c
-    t9 = L1 - L2
-    t10 = reach_c + t9
-    t11 = reach_c - t9
-    t12 = y - L0
-    reach_d = np.sqrt(t7 + t12 * t12)
-    t13 = t1 - reach_d
-    t14 = (t6 <= t8) & (t6 <= t10) & (t6 <= t11) & (t6 <= t13)
-    t15 = reach_d + t9
-    t16 = reach_d - t9
-    unreachable = np.logical_not(t14 & (t6 <= t15) & (t6 <= t16))
-    t17 = _runtime.poison(invalid | unreachable)
-    t18 = t3 + t17
+    t3 = _runtime.wrap_cut(np.where(on_axis, 0.0, np.arctan2(z, -x)))
+    t4 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t5 = t4 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t6 = t5 & np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    invalid = np.logical_not(t6)
+    t7 = -(_runtime.FEASIBILITY * t1)
+    t8 = r * r
+    reach_c = np.sqrt(t8 + y * y)
+    t9 = t1 - reach_c
+    t10 = L1 - L2
+    t11 = reach_c + t10
+    t12 = reach_c - t10
+    t13 = y - L0
+    reach_d = np.sqrt(t8 + t13 * t13)
+    t14 = t1 - reach_d
+    t15 = (t7 <= t9) & (t7 <= t11) & (t7 <= t12) & (t7 <= t14)
+    t16 = reach_d + t10
+    t17 = reach_d - t10
+    unreachable = np.logical_not(t15 & (t7 <= t16) & (t7 <= t17))
+    t18 = _runtime.poison(invalid | unreachable)
+    t19 = t3 + t18
     at_A = reach_c <= t2
-    t19 = np.arctan2(r, y)
-    t20 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t11, 0.0))
-    t21 = np.sqrt(reach_c + t1) * np.sqrt(np.maximum(t10, 0.0))
-    t22 = 2.0 * np.arctan2(t20, t21)
-    t23 = np.where(at_A, 0.0, t19 - t22)
-    t24 = _runtime.wrap(t23) + t17
+    t20 = np.arctan2(r, y)
+    t21 = np.sqrt(np.maximum(t9, 0.0)) * np.sqrt(np.maximum(t12, 0.0))
+    t22 = np.sqrt(reach_c + t1) * np.sqrt(np.maximum(t11, 0.0))
+    t23 = 2.0 * np.arctan2(t21, t22)
+    t24 = np.where(at_A, 0.0, t20 - t23)
+    t25 = _runtime.wrap_cut(t24) + t18
     at_B = reach_d <= t2
-    t25 = np.arctan2(r, t12)
-    t26 = np.sqrt(np.maximum(t13, 0.0)) * np.sqrt(np.maximum(t16, 0.0))
-    t27 = np.sqrt(reach_d + t1) * np.sqrt(np.maximum(t15, 0.0))
-    t28 = 2.0 * np.arctan2(t26, t27)
-    t29 = np.where(at_B, 0.0, t25 - t28)
-    t30 = _runtime.wrap(t29) + t17
-    t31 = np.where(at_B, 0.0, t25 + t28)
-    t32 = _runtime.wrap(t31) + t17
-    t33 = np.where(at_A, 0.0, t19 + t22)
-    t34 = _runtime.wrap(t33) + t17
-    t35 = _runtime.wrap(-np.where(on_axis, 0.0, np.arctan2(z, x)))
-    t36 = t35 + t17
-    t37 = _runtime.wrap(-t33) + t17
-    t38 = _runtime.wrap(-t31) + t17
-    t39 = _runtime.wrap(-t29) + t17
-    t40 = _runtime.wrap(-t23) + t17
-    t41 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
-    t42 = _runtime.status(invalid, unreachable, t41)
+    t26 = np.arctan2(r, t13)
+    t27 = np.sqrt(np.maximum(t14, 0.0)) * np.sqrt(np.maximum(t17, 0.0))
+    t28 = np.sqrt(reach_d + t1) * np.sqrt(np.maximum(t16, 0.0))
+    t29 = 2.0 * np.arctan2(t27, t28)
+    t30 = np.where(at_B, 0.0, t26 - t29)
+    t31 = _runtime.wrap_cut(t30) + t18
+    t32 = np.where(at_B, 0.0, t26 + t29)
+    t33 = _runtime.wrap_down(t32) + t18
+    t34 = np.where(at_A, 0.0, t20 + t23)
+    t35 = _runtime.wrap_down(t34) + t18
+    t36 = _runtime.wrap_cut(-np.where(on_axis, 0.0, np.arctan2(z, x)))
+    t37 = t36 + t18
+    t38 = _runtime.wrap_up(-t34) + t18
+    t39 = _runtime.wrap_up(-t32) + t18
+    t40 = _runtime.wrap_cut(-t30) + t18
+    t41 = _runtime.wrap_cut(-t24) + t18
+    t42 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
+    t43 = _runtime.status(invalid, unreachable, t42)
     return (
-        t18,
-        t24,
-        t30,
-        t18,
-        t24,
-        t32,
-        t18,
-        t34,
-        t30,
-        t18,
-        t34,
-        t32,
-        t36,
+        t19,
+        t25,
+        t31,
+        t19,
+        t25,
+        t33,
+        t19,
+        t35,
+        t31,
+        t19,
+        t35,
+        t33,
         t37,
         t38,
-        t36,
+        t39,
         t37,
-        t39,
-        t36,
-        t40,
         t38,
-        t36,
         t40,
+        t37,
+        t41,
         t39,
-        t42,
-        t42,
-        t42,
-        t42,
-        t42,
-        t42,
-        t42,
-        t42,
+        t37,
+        t41,
+        t40,
+        t43,
+        t43,
+        t43,
+        t43,
+        t43,
+        t43,
+        t43,
+        t43,
     )
 
 
@@ -758,20 +765,20 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
 
 
 def _workspace_contains(x, y, z, L0, L1, L2):
-    t1 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t2 = t1 & np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    invalid = np.logical_not(t2 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2))
-    t3 = L1 + L2
-    t4 = -(_runtime.FEASIBILITY * t3)
+    t1 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t2 = t1 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t3 = t2 & np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t4 = L1 + L2
+    t5 = -(_runtime.FEASIBILITY * t4)
     r = np.sqrt(x * x + z * z)
-    t5 = r * r
-    reach_c = np.sqrt(t5 + y * y)
-    t6 = L1 - L2
-    t7 = (t4 <= t3 - reach_c) & (t4 <= reach_c + t6) & (t4 <= reach_c - t6)
-    t8 = y - L0
-    reach_d = np.sqrt(t5 + t8 * t8)
-    t9 = t7 & (t4 <= t3 - reach_d) & (t4 <= reach_d + t6)
-    failed = invalid | np.logical_not(t9 & (t4 <= reach_d - t6))
+    t6 = r * r
+    reach_c = np.sqrt(t6 + y * y)
+    t7 = L1 - L2
+    t8 = (t5 <= t4 - reach_c) & (t5 <= reach_c + t7) & (t5 <= reach_c - t7)
+    t9 = y - L0
+    reach_d = np.sqrt(t6 + t9 * t9)
+    t10 = t8 & (t5 <= t4 - reach_d) & (t5 <= reach_d + t7)
+    failed = np.logical_not(t3) | np.logical_not(t10 & (t5 <= reach_d - t7))
     return (
         np.logical_not(failed),
     )
@@ -820,8 +827,8 @@ def _workspace_volume(L0, L1, L2):
     t16 = np.where(2.0 * np.maximum(m, r) <= L0, t12 + t14, t15)
     t17 = np.where(L0 <= 2.0 * np.minimum(m, r), 3.141592653589793 * t11 / 6.0, t16)
     t18 = np.where(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, np.where(t2 <= L0, t8, t17))
-    t19 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t20 = t19 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t19 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
+    t20 = t19 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
     unreachable = np.logical_not(-(t1 * _runtime.FEASIBILITY) <= t1)
     t21 = _runtime.poison(np.logical_not(t20) | unreachable)
     return (

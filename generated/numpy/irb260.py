@@ -15,7 +15,7 @@
 #   determinant: 4 add, 7 multiply, 2 sincos
 #   singularities: 4 add, 4 multiply, 2 sincos
 #   point_velocity: 11 add, 20 multiply, 3 sincos
-#   ik: 45 add, 89 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
+#   ik: 45 add, 87 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
 #   workspace_section: 1 compare and select, 4 add
 #   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
 #   workspace_contains: 38 compare and select, 17 add, 6 multiply, 3 sqrt
@@ -101,7 +101,7 @@ def _joint4(_theta1, theta2, theta3, _theta5):
     s3, c3 = _runtime.sincos(theta3)
     t1 = np.arctan2(s2 * c3 + c2 * s3, c2 * c3 - s2 * s3)
     return (
-        _runtime.wrap(-t1),
+        _runtime.wrap_cut(-t1),
     )
 
 
@@ -197,7 +197,7 @@ def _fk(theta1, theta2, theta3, theta5, l1, l2, l3, l4, l5, l6):
         -(t1 * s1),
         t1 * c1,
         l2 - l5 + l3 * c2 - l4 * (s2 * c3 + c2 * s3),
-        _runtime.wrap(t2),
+        _runtime.wrap_cut(t2),
     )
 
 
@@ -597,13 +597,13 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     on_axis = r <= t4
     s_turret_back_elbow_up = np.where(on_axis, 0.0, px)
     c_turret = np.where(on_axis, 1.0, py)
-    t5 = _runtime.wrap(-np.arctan2(s_turret_back_elbow_up, c_turret))
-    t6 = np.isfinite(px) & np.isfinite(py) & np.isfinite(pz)
-    t7 = t6 & np.isfinite(psi) & np.isfinite(l1) & np.isfinite(l2)
-    t8 = t7 & np.isfinite(l3) & np.isfinite(l4) & np.isfinite(l5)
-    t9 = t8 & np.isfinite(l6) & (0.0 <= l1) & (0.0 <= l2)
-    t10 = t9 & (0.0 <= l3) & (0.0 <= l4) & (0.0 <= l5) & (0.0 <= l6)
-    invalid = np.logical_not(t10)
+    t5 = _runtime.wrap_cut(-np.arctan2(s_turret_back_elbow_up, c_turret))
+    t6 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
+    t7 = t6 & (0.0 <= l2) & np.isfinite(l3) & (0.0 <= l3)
+    t8 = t7 & np.isfinite(l4) & (0.0 <= l4) & np.isfinite(l5)
+    t9 = t8 & (0.0 <= l5) & np.isfinite(l6) & (0.0 <= l6)
+    t10 = t9 & np.isfinite(px) & np.isfinite(py) & np.isfinite(pz)
+    invalid = np.logical_not(t10 & np.isfinite(psi))
     t11 = -(_runtime.FEASIBILITY * t3)
     h = pz - l2 + l5
     t12 = h * h
@@ -624,13 +624,13 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     rB = np.sqrt(np.maximum(t16, 0.0))
     t20 = np.where(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
     t21 = np.arctan2(-t13, h)
-    t22 = _runtime.wrap(-np.where(folded, 0.0, t20 + t21))
+    t22 = _runtime.wrap_up(-np.where(folded, 0.0, t20 + t21))
     t23 = 2.0 * np.arctan2(rA * rS, rC * rB)
     t24 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 - t23)
     t25 = c_psi * s_turret_back_elbow_up
     t26 = s_psi * s_turret_back_elbow_up
     t27 = np.arctan2(s_psi * c_turret + t25, c_psi * c_turret - t26)
-    t28 = _runtime.wrap(t27) + t18
+    t28 = _runtime.wrap_cut(t27) + t18
     t29 = _runtime.wrap(np.where(folded, 0.0, t20 - t21))
     t30 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 + t23)
     c_turret_back_elbow_up = np.where(on_axis, 1.0, -py)
@@ -642,7 +642,7 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     t35 = reach_back_elbow_up - t15
     unreachable_2 = np.logical_not((t11 <= t33) & (t11 <= t34) & (t11 <= t35))
     t36 = _runtime.poison(invalid | unreachable_2)
-    t37 = _runtime.wrap(t31) + t36
+    t37 = _runtime.wrap_cut(t31) + t36
     folded_back_elbow_up = reach_back_elbow_up <= t4
     rA_back_elbow_up = np.sqrt(np.maximum(t33, 0.0))
     rC_back_elbow_up = np.sqrt(np.maximum(t35, 0.0))
@@ -656,7 +656,7 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     t43 = 2.0 * t42
     t44 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 - t43)
     t45 = np.arctan2(t25 - s_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up)
-    t46 = _runtime.wrap(-t45) + t36
+    t46 = _runtime.wrap_cut(-t45) + t36
     t47 = np.where(folded_back_elbow_up, 0.0, t39 - t40)
     t48 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 + t43)
     t49 = _runtime.status(invalid, unreachable, on_axis | folded | no_link)
@@ -664,19 +664,19 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     return (
         t19,
         t22 + t18,
-        _runtime.wrap(-t24) + t18,
+        -t24 + t18,
         t28,
         t19,
         t29 + t18,
-        _runtime.wrap(-t30) + t18,
+        _runtime.wrap_up(-t30) + t18,
         t28,
         t37,
-        _runtime.wrap(-t41) + t36,
-        _runtime.wrap(-t44) + t36,
+        _runtime.wrap_up(-t41) + t36,
+        -t44 + t36,
         t46,
         t37,
-        _runtime.wrap(t47) + t36,
-        _runtime.wrap(-t48) + t36,
+        _runtime.wrap_cut(t47) + t36,
+        _runtime.wrap_up(-t48) + t36,
         t46,
         t49,
         t49,
@@ -783,27 +783,28 @@ def workspace_margin(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = 
 
 
 def _workspace_contains(px, py, pz, l1, l2, l3, l4, l5, l6):
-    t1 = np.isfinite(px) & np.isfinite(py) & np.isfinite(pz)
-    t2 = t1 & np.isfinite(l1) & np.isfinite(l2) & np.isfinite(l3)
-    t3 = t2 & np.isfinite(l4) & np.isfinite(l5) & np.isfinite(l6)
-    t4 = t3 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= l3) & (0.0 <= l4)
-    invalid = np.logical_not(t4 & (0.0 <= l5) & (0.0 <= l6))
-    t5 = l1 + l6
-    t6 = l3 + l4
-    t7 = -(_runtime.FEASIBILITY * (l2 + l5 + t5 + t6))
+    t1 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
+    t2 = t1 & (0.0 <= l2) & np.isfinite(l3) & (0.0 <= l3)
+    t3 = t2 & np.isfinite(l4) & (0.0 <= l4) & np.isfinite(l5)
+    t4 = t3 & (0.0 <= l5) & np.isfinite(l6) & (0.0 <= l6)
+    t5 = t4 & np.isfinite(px) & np.isfinite(py) & np.isfinite(pz)
+    t6 = l1 + l6
+    t7 = l3 + l4
+    t8 = -(_runtime.FEASIBILITY * (l2 + l5 + t6 + t7))
     h = pz - l2 + l5
-    t8 = h * h
+    t9 = h * h
     r = np.sqrt(px * px + py * py)
-    t9 = r + t5
-    reach_back = np.sqrt(t8 + t9 * t9)
-    t10 = np.abs(l3 - l4)
-    margin_back = np.minimum(reach_back - t10, t6 - reach_back)
-    t11 = r - t5
-    reach_front = np.sqrt(t8 + t11 * t11)
-    margin_front = np.minimum(reach_front - t10, t6 - reach_front)
-    unreachable = np.logical_not(t7 <= np.maximum(margin_back, margin_front))
+    t10 = r + t6
+    reach_back = np.sqrt(t9 + t10 * t10)
+    t11 = np.abs(l3 - l4)
+    margin_back = np.minimum(reach_back - t11, t7 - reach_back)
+    t12 = r - t6
+    reach_front = np.sqrt(t9 + t12 * t12)
+    margin_front = np.minimum(reach_front - t11, t7 - reach_front)
+    unreachable = np.logical_not(t8 <= np.maximum(margin_back, margin_front))
+    t13 = np.logical_not(np.logical_not(t5) | unreachable)
     return (
-        np.logical_not(invalid | unreachable),
+        t13,
     )
 
 

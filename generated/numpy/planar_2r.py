@@ -10,7 +10,7 @@
 #   determinant: 2 multiply, 1 sincos
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
 #   singularities: 1 sincos
-#   ik: 13 add, 33 compare and select, 3 atan2, 13 multiply, 5 sqrt
+#   ik: 13 add, 32 compare and select, 3 atan2, 13 multiply, 5 sqrt
 #   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
 #   workspace_radii: 1 compare and select, 2 add
 """Planar 2R arm.
@@ -154,7 +154,7 @@ def _orientation(theta1, theta2):
     s2, c2 = _runtime.sincos(theta2)
     t1 = np.arctan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2)
     return (
-        _runtime.wrap(t1),
+        _runtime.wrap_cut(t1),
     )
 
 
@@ -310,9 +310,9 @@ def _ik(px, py, l1, l2):
     t6 = r + t4
     rB = np.sqrt(np.maximum(t6, 0.0))
     t7 = 2.0 * np.arctan2(rA * rC, rS * rB)
-    t8 = _runtime.wrap(np.where(at_base, 0.0, t2 - t7))
-    t9 = np.isfinite(px) & np.isfinite(py) & np.isfinite(l1)
-    t10 = t9 & np.isfinite(l2) & (0.0 <= l1) & (0.0 <= l2)
+    t8 = _runtime.wrap_up(np.where(at_base, 0.0, t2 - t7))
+    t9 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
+    t10 = t9 & (0.0 <= l2) & np.isfinite(px) & np.isfinite(py)
     invalid = np.logical_not(t10)
     t11 = -(_runtime.FEASIBILITY * t1)
     unreachable = np.logical_not((t11 <= t3) & (t11 <= t6) & (t11 <= t5))
@@ -323,9 +323,9 @@ def _ik(px, py, l1, l2):
     t16 = _runtime.status(invalid, unreachable, t15)
     return (
         t8 + t12,
-        _runtime.wrap(t13) + t12,
+        t13 + t12,
         t14 + t12,
-        _runtime.wrap(-t13) + t12,
+        _runtime.wrap_cut(-t13) + t12,
         t16,
         t16,
     )
@@ -366,13 +366,13 @@ def _ik_pose(
     s1 = np.where(no_first_link, 0.0, elbow_y / l1)
     elbow_x = T14 - T11 * l2
     c1 = np.where(no_first_link, 1.0, elbow_x / l1)
-    t2 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t3 = t2 & np.isfinite(l1) & np.isfinite(l2) & (0.0 <= l1)
+    t2 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
+    t3 = t2 & (0.0 <= l2) & np.isfinite(T14) & np.isfinite(T24)
     t4 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t5 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
     t6 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
     t7 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t8 = t3 & (0.0 <= l2) & t4 & t5 & t6 & (t7 <= _runtime.ROTATION)
+    t8 = t3 & np.isfinite(T34) & t4 & t5 & t6 & (t7 <= _runtime.ROTATION)
     t9 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
     t10 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
     t11 = t8 & (t9 <= _runtime.ROTATION) & t10 & (np.abs(T41) <= _runtime.ROTATION)
@@ -389,8 +389,8 @@ def _ik_pose(
     t20 = np.arctan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1)
     t21 = _runtime.status(invalid, unreachable, no_first_link)
     return (
-        _runtime.wrap(np.arctan2(s1, c1)) + t19,
-        _runtime.wrap(-t20) + t19,
+        _runtime.wrap_cut(np.arctan2(s1, c1)) + t19,
+        _runtime.wrap_cut(-t20) + t19,
         t21,
     )
 

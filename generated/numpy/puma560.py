@@ -549,9 +549,9 @@ def _ik(
     t11 = T24 * t5 / t6
     t12 = T14 * t8 / t6
     c1 = np.where(free_theta1, 1.0, t11 + t12)
-    t13 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t14 = t13 & np.isfinite(a2) & np.isfinite(a3) & np.isfinite(d3)
-    t15 = t14 & np.isfinite(d4) & (0.0 <= a2) & (0.0 <= d4)
+    t13 = np.isfinite(a2) & (0.0 <= a2) & np.isfinite(a3)
+    t14 = t13 & np.isfinite(d3) & np.isfinite(d4) & (0.0 <= d4)
+    t15 = t14 & np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t16 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t17 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
     t18 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
@@ -572,7 +572,7 @@ def _ik(
     t31 = reach - t28
     unreachable = np.logical_not(t30 & (t26 <= t31))
     t32 = _runtime.poison(invalid | unreachable)
-    t33 = _runtime.wrap(-np.arctan2(t10, c1)) + t32
+    t33 = _runtime.wrap_cut(-np.arctan2(t10, c1)) + t32
     folded = reach <= t2
     t34 = np.where(folded, 0.0, T34 / reach)
     no_link = a2 * f <= _runtime.VANISHING * (t1 * t1)
@@ -597,7 +597,7 @@ def _ik(
     t42 = t34 * t38
     t43 = t36 * t40
     t44 = t42 - t43
-    t45 = _runtime.wrap(np.arctan2(s2, -t44)) + t32
+    t45 = _runtime.wrap_cut(np.arctan2(s2, -t44)) + t32
     no_forearm = f <= t2
     t46 = np.where(no_forearm, 0.0, d4 / f)
     links = SA + BC
@@ -610,7 +610,7 @@ def _ik(
     t53 = t46 * t49
     t54 = t47 * t50
     t55 = t53 - t54
-    t56 = _runtime.wrap(-np.arctan2(t52, -t55)) + t32
+    t56 = _runtime.wrap_cut(-np.arctan2(t52, -t55)) + t32
     t57 = T13 * t10 + T23 * c1
     t58 = t57 * t57
     s23 = t44 * t52 - s2 * t55
@@ -633,10 +633,10 @@ def _ik(
     s2_right_down_noflip = t37 - t41
     c2_right_down_noflip = t42 + t43
     t66 = np.arctan2(s2_right_down_noflip, c2_right_down_noflip)
-    t67 = _runtime.wrap(t66) + t32
+    t67 = _runtime.wrap_cut(t66) + t32
     t68 = t48 - t51
     c3_right_down_noflip = t53 + t54
-    t69 = _runtime.wrap(-np.arctan2(t68, c3_right_down_noflip))
+    t69 = _runtime.wrap_cut(-np.arctan2(t68, c3_right_down_noflip))
     t70 = t69 + t32
     t71 = c2_right_down_noflip * t68 - s2_right_down_noflip * c3_right_down_noflip
     c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t68
@@ -655,7 +655,7 @@ def _ik(
     t80 = _runtime.wrap(t78 + flip_right_down_flip) + t32
     t81 = np.where(free_theta1, 0.0, t7 + t9)
     c1_left_up_noflip = np.where(free_theta1, 1.0, t11 - t12)
-    t82 = _runtime.wrap(-np.arctan2(t81, c1_left_up_noflip))
+    t82 = _runtime.wrap_cut(-np.arctan2(t81, c1_left_up_noflip))
     t83 = t82 + t32
     t84 = np.where(folded, 1.0, -t39)
     t85 = t38 * t84
@@ -663,7 +663,7 @@ def _ik(
     t86 = t36 * t84
     c2_left_up_noflip = t42 + t86
     t87 = np.arctan2(s2_left_up_noflip, c2_left_up_noflip)
-    t88 = _runtime.wrap(t87) + t32
+    t88 = _runtime.wrap_cut(t87) + t32
     t89 = T13 * t81 + T23 * c1_left_up_noflip
     t90 = t89 * t89
     t91 = t68 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip
@@ -688,7 +688,7 @@ def _ik(
     t101 = _runtime.wrap(t100 + flip_left_up_flip) + t32
     s2_left_down_noflip = t37 + t85
     t102 = t42 - t86
-    t103 = _runtime.wrap(np.arctan2(s2_left_down_noflip, -t102))
+    t103 = _runtime.wrap_cut(np.arctan2(s2_left_down_noflip, -t102))
     t104 = t103 + t32
     s23_left_down_noflip = t52 * t102 - t55 * s2_left_down_noflip
     c23_left_down_noflip = t55 * t102 + t52 * s2_left_down_noflip
@@ -720,50 +720,50 @@ def _ik(
         t33,
         t45,
         t56,
-        _runtime.wrap(-t61) + t32,
-        _runtime.wrap(t62) + t32,
-        _runtime.wrap(t65) + t32,
+        _runtime.wrap_cut(-t61) + t32,
+        _runtime.wrap_cut(t62) + t32,
+        _runtime.wrap_cut(t65) + t32,
         t33,
         t45,
         t56,
         _runtime.wrap(flip - t61) + t32,
-        _runtime.wrap(-t62) + t32,
+        _runtime.wrap_cut(-t62) + t32,
         _runtime.wrap(t65 + flip) + t32,
         t33,
         t67,
         t70,
-        _runtime.wrap(-t74) + t32,
-        _runtime.wrap(t75) + t32,
-        _runtime.wrap(t78) + t32,
+        _runtime.wrap_cut(-t74) + t32,
+        _runtime.wrap_cut(t75) + t32,
+        _runtime.wrap_cut(t78) + t32,
         t33,
         t67,
         t70,
         t79,
-        _runtime.wrap(-t75) + t32,
+        _runtime.wrap_cut(-t75) + t32,
         t80,
         t83,
         t88,
         t70,
-        _runtime.wrap(-t94) + t32,
-        _runtime.wrap(t95) + t32,
-        _runtime.wrap(t100) + t32,
+        _runtime.wrap_cut(-t94) + t32,
+        _runtime.wrap_cut(t95) + t32,
+        _runtime.wrap_cut(t100) + t32,
         t83,
         t88,
         t70,
         _runtime.wrap(flip_left_up_flip - t94) + t32,
-        _runtime.wrap(-t95) + t32,
+        _runtime.wrap_cut(-t95) + t32,
         t101,
         t83,
         t104,
         t56,
-        _runtime.wrap(-t108) + t32,
-        _runtime.wrap(t110) + t32,
-        _runtime.wrap(t113) + t32,
+        _runtime.wrap_cut(-t108) + t32,
+        _runtime.wrap_cut(t110) + t32,
+        _runtime.wrap_cut(t113) + t32,
         t83,
         t104,
         t56,
         t114,
-        _runtime.wrap(-t110) + t32,
+        _runtime.wrap_cut(-t110) + t32,
         t115,
         t117,
         t117,

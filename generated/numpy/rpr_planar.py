@@ -72,8 +72,8 @@ def _fk(rho1, rho2, b):
     t4 = rho1 - rho2
     t5 = b * 2.0
     t6 = np.where(coincide, rho1, b / 2.0 + t4 * t1 / t5)
-    t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(b)
-    invalid = np.logical_not(t7 & (0.0 <= b))
+    t7 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
+    invalid = np.logical_not(t7 & np.isfinite(rho2))
     t8 = -(_runtime.FEASIBILITY * t2)
     t9 = t1 - b
     t10 = b + t4
@@ -138,17 +138,17 @@ def _passive_angles(rho1, rho2, b):
     t11 = np.where(coincide, rho1, b / 2.0 + t5 * t1 / t9)
     P_x = n_1 * t11
     t12 = np.arctan2(P_y, P_x)
-    t13 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(b)
+    t13 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
     t14 = -(_runtime.FEASIBILITY * t2)
     unreachable = np.logical_not((t14 <= t4) & (t14 <= t7) & (t14 <= t6))
-    failed = np.logical_not(t13 & (0.0 <= b)) | unreachable
+    failed = np.logical_not(t13 & np.isfinite(rho2)) | unreachable
     t15 = _runtime.poison(failed)
     t16 = np.arctan2(P_y, P_x - b)
     return (
-        _runtime.wrap(t12) + t15,
-        _runtime.wrap(t16) + t15,
-        _runtime.wrap(-t12) + t15,
-        _runtime.wrap(-t16) + t15,
+        _runtime.wrap_cut(t12) + t15,
+        _runtime.wrap_cut(t16) + t15,
+        _runtime.wrap_cut(-t12) + t15,
+        _runtime.wrap_cut(-t16) + t15,
     )
 
 
@@ -174,7 +174,7 @@ def passive_angles(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = No
 
 
 def _jacobian(rho1, rho2, b):
-    t1 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(b)
+    t1 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
     t2 = rho1 + rho2
     t3 = b + t2
     t4 = -(_runtime.FEASIBILITY * t3)
@@ -183,7 +183,7 @@ def _jacobian(rho1, rho2, b):
     t7 = b + t6
     t8 = b - t6
     unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
-    failed = np.logical_not(t1 & (0.0 <= b)) | unreachable
+    failed = np.logical_not(t1 & np.isfinite(rho2)) | unreachable
     t9 = _runtime.poison(failed)
     t10 = rho1 / b + t9
     t11 = -(rho2 / b) + t9
@@ -247,10 +247,10 @@ def _determinant(rho1, rho2, b):
     height = np.where(slack <= t3, 0.0, np.where(coincide, 0.0, t9))
     t10 = b * (np.where(coincide, 1.0, b / b) * height)
     t11 = rho1 * rho2 / t10
-    t12 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(b)
+    t12 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
     t13 = -(_runtime.FEASIBILITY * t2)
     unreachable = np.logical_not((t13 <= t4) & (t13 <= t7) & (t13 <= t6))
-    failed = np.logical_not(t12 & (0.0 <= b)) | unreachable
+    failed = np.logical_not(t12 & np.isfinite(rho2)) | unreachable
     t14 = _runtime.poison(failed)
     return (
         t11 + t14,
@@ -280,7 +280,7 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 
 
 def _singularities(rho1, rho2, b):
-    t1 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(b)
+    t1 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
     t2 = rho1 + rho2
     t3 = b + t2
     t4 = -(_runtime.FEASIBILITY * t3)
@@ -289,7 +289,7 @@ def _singularities(rho1, rho2, b):
     t7 = b + t6
     t8 = b - t6
     unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
-    failed = np.logical_not(t1 & (0.0 <= b)) | unreachable
+    failed = np.logical_not(t1 & np.isfinite(rho2)) | unreachable
     t9 = _runtime.poison(failed)
     t10 = rho1 + t9
     t11 = rho2 + t9
@@ -333,8 +333,8 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 
 def _ik(x, y, b):
     t1 = y * y
-    t2 = np.isfinite(x) & np.isfinite(y) & np.isfinite(b)
-    invalid = np.logical_not(t2 & (0.0 <= b))
+    t2 = np.isfinite(b) & (0.0 <= b) & np.isfinite(x) & np.isfinite(y)
+    invalid = np.logical_not(t2)
     t3 = _runtime.poison(invalid)
     t4 = x - b
     t5 = _runtime.status(invalid, np.False_, np.False_)

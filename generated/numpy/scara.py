@@ -129,7 +129,7 @@ def _fk(theta1, theta2, d3, theta4, l1, l2, h):
         l1 * c1 + l2 * (c1 * c2 - s1 * s2),
         l1 * s1 + l2 * (s1 * c2 + c1 * s2),
         h - d3,
-        _runtime.wrap(t3),
+        _runtime.wrap_cut(t3),
     )
 
 
@@ -386,10 +386,10 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     t11 = x_x * c_base_elbow / r_elbow
     t12 = x_y * s_base_elbow / r_elbow
     c1 = np.where(folded_elbow, 1.0, t11 + t12)
-    t13 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z)
-    t14 = t13 & np.isfinite(x_yaw) & np.isfinite(l1) & np.isfinite(l2)
-    t15 = t14 & np.isfinite(h) & (0.0 <= l1) & (0.0 <= l2)
-    invalid = np.logical_not(t15 & (0.0 <= h))
+    t13 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
+    t14 = t13 & (0.0 <= l2) & np.isfinite(h) & (0.0 <= h)
+    t15 = t14 & np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z)
+    invalid = np.logical_not(t15 & np.isfinite(x_yaw))
     t16 = -(_runtime.FEASIBILITY * (l1 / 2.0 + l2 / 2.0))
     unreachable = np.logical_not((t16 <= t2) & (t16 <= t6) & (t16 <= t4))
     t17 = _runtime.poison(invalid | unreachable)
@@ -405,20 +405,20 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     t24 = np.arctan2(s_x_yaw * t22 - c_x_yaw * t23, c_x_yaw * t22 + s_x_yaw * t23)
     s1_right = np.where(folded_elbow, 0.0, t8 + t10)
     c1_right = np.where(folded_elbow, 1.0, t11 - t12)
-    t25 = _runtime.wrap(np.arctan2(s1_right, c1_right))
+    t25 = _runtime.wrap_cut(np.arctan2(s1_right, c1_right))
     t26 = c2 * c1_right + s2 * s1_right
     t27 = s2 * c1_right - c2 * s1_right
     t28 = np.arctan2(s_x_yaw * t26 + c_x_yaw * t27, c_x_yaw * t26 - s_x_yaw * t27)
     t29 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
     return (
-        _runtime.wrap(np.arctan2(s1, c1)) + t17,
-        _runtime.wrap(t20) + t17,
+        _runtime.wrap_cut(np.arctan2(s1, c1)) + t17,
+        _runtime.wrap_cut(t20) + t17,
         t21,
-        _runtime.wrap(-t24) + t17,
+        _runtime.wrap_cut(-t24) + t17,
         t25 + t17,
-        _runtime.wrap(-t20) + t17,
+        _runtime.wrap_cut(-t20) + t17,
         t21,
-        _runtime.wrap(-t28) + t17,
+        _runtime.wrap_cut(-t28) + t17,
         t29,
         t29,
     )

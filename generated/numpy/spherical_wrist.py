@@ -303,11 +303,11 @@ def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33):
     flip = np.where(aligned, 0.0, 3.141592653589793)
     t12 = _runtime.status(invalid, np.False_, aligned)
     return (
-        _runtime.wrap(t1) + t9,
-        _runtime.wrap(t10) + t9,
-        _runtime.wrap(-t11) + t9,
+        _runtime.wrap_cut(t1) + t9,
+        _runtime.wrap_cut(t10) + t9,
+        _runtime.wrap_cut(-t11) + t9,
         _runtime.wrap(t1 + flip) + t9,
-        _runtime.wrap(-t10) + t9,
+        _runtime.wrap_cut(-t10) + t9,
         _runtime.wrap(flip - t11) + t9,
         t12,
         t12,

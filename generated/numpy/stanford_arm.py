@@ -501,12 +501,12 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t11 = T14 * t9 / t7
     t12 = T24 * t6 / t7
     c1 = np.where(free_theta1, 1.0, t11 - t12)
-    t13 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t13 = np.isfinite(d2) & np.isfinite(T14) & np.isfinite(T24)
     t14 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t15 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
     t16 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
     t17 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t18 = t13 & np.isfinite(d2) & t14 & t15 & t16 & (t17 <= _runtime.ROTATION)
+    t18 = t13 & np.isfinite(T34) & t14 & t15 & t16 & (t17 <= _runtime.ROTATION)
     t19 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
     t20 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
     t21 = t18 & (t19 <= _runtime.ROTATION) & t20 & (np.abs(T41) <= _runtime.ROTATION)
@@ -516,14 +516,14 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t24 = -(_runtime.FEASIBILITY * size)
     unreachable = np.logical_not((t24 <= t4) & (t24 <= t5))
     t25 = _runtime.poison(invalid | unreachable)
-    t26 = _runtime.wrap(np.arctan2(s1, c1)) + t25
+    t26 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t25
     reach = np.sqrt(t2 + root * root)
     drawn_in = reach <= t3
     s2 = np.where(drawn_in, 0.0, root / reach)
     t27 = T34 / reach
     c2 = np.where(drawn_in, 1.0, t27)
     t28 = np.arctan2(s2, c2)
-    t29 = _runtime.wrap(t28) + t25
+    t29 = _runtime.wrap_cut(t28) + t25
     t30 = reach + t25
     t31 = T13 * s1 - T23 * c1
     t32 = t31 * t31
@@ -549,7 +549,7 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     flip = np.where(aligned, 0.0, 3.141592653589793)
     c2_right_back_noflip = np.where(drawn_in, 1.0, -t27)
     t46 = np.arctan2(s2, c2_right_back_noflip)
-    t47 = _runtime.wrap(-t46) + t25
+    t47 = _runtime.wrap_cut(-t46) + t25
     t48 = -reach + t25
     R2_13_right_back_noflip = t33 + R1_13 * c2_right_back_noflip
     t49 = R2_13_right_back_noflip * R2_13_right_back_noflip
@@ -571,8 +571,8 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     s1_left_out_noflip = np.where(free_theta1, 0.0, t8 - t10)
     c1_left_out_noflip = np.where(free_theta1, 1.0, -(t12 + t11))
     t61 = np.arctan2(s1_left_out_noflip, c1_left_out_noflip)
-    t62 = _runtime.wrap(t61) + t25
-    t63 = _runtime.wrap(-t28) + t25
+    t62 = _runtime.wrap_cut(t61) + t25
+    t63 = _runtime.wrap_cut(-t28) + t25
     t64 = T13 * s1_left_out_noflip - T23 * c1_left_out_noflip
     t65 = t64 * t64
     R1_13_left_out_noflip = T13 * c1_left_out_noflip + T23 * s1_left_out_noflip
@@ -596,7 +596,7 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     flip_left_out_flip = np.where(aligned_left_out_noflip, 0.0, 3.141592653589793)
     t77 = _runtime.wrap(flip_left_out_flip - t68) + t25
     t78 = _runtime.wrap(flip_left_out_flip - t76) + t25
-    t79 = _runtime.wrap(t46) + t25
+    t79 = _runtime.wrap_cut(t46) + t25
     t80 = t33 - c2_right_back_noflip * R1_13_left_out_noflip
     h_left_back_noflip = np.sqrt(t65 + t80 * t80)
     aligned_left_back_noflip = h_left_back_noflip <= t35
@@ -619,50 +619,50 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
         t26,
         t29,
         t30,
-        _runtime.wrap(-t37) + t25,
-        _runtime.wrap(t40) + t25,
-        _runtime.wrap(-t45) + t25,
+        _runtime.wrap_cut(-t37) + t25,
+        _runtime.wrap_cut(t40) + t25,
+        _runtime.wrap_cut(-t45) + t25,
         t26,
         t29,
         t30,
         _runtime.wrap(flip - t37) + t25,
-        _runtime.wrap(-t40) + t25,
+        _runtime.wrap_cut(-t40) + t25,
         _runtime.wrap(flip - t45) + t25,
         t26,
         t47,
         t48,
-        _runtime.wrap(-t52) + t25,
-        _runtime.wrap(t55) + t25,
-        _runtime.wrap(-t58) + t25,
+        _runtime.wrap_cut(-t52) + t25,
+        _runtime.wrap_cut(t55) + t25,
+        _runtime.wrap_cut(-t58) + t25,
         t26,
         t47,
         t48,
         t59,
-        _runtime.wrap(-t55) + t25,
+        _runtime.wrap_cut(-t55) + t25,
         t60,
         t62,
         t63,
         t30,
-        _runtime.wrap(-t68) + t25,
-        _runtime.wrap(t71) + t25,
-        _runtime.wrap(-t76) + t25,
+        _runtime.wrap_cut(-t68) + t25,
+        _runtime.wrap_cut(t71) + t25,
+        _runtime.wrap_cut(-t76) + t25,
         t62,
         t63,
         t30,
         t77,
-        _runtime.wrap(-t71) + t25,
+        _runtime.wrap_cut(-t71) + t25,
         t78,
         t62,
         t79,
         t48,
-        _runtime.wrap(-t82) + t25,
-        _runtime.wrap(t83) + t25,
-        _runtime.wrap(-t86) + t25,
+        _runtime.wrap_cut(-t82) + t25,
+        _runtime.wrap_cut(t83) + t25,
+        _runtime.wrap_cut(-t86) + t25,
         t62,
         t79,
         t48,
         t87,
-        _runtime.wrap(-t83) + t25,
+        _runtime.wrap_cut(-t83) + t25,
         t88,
         t90,
         t90,

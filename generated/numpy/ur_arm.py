@@ -583,12 +583,12 @@ def _ik(
     t12 = w_y * t6 / t7
     t13 = w_x * t9 / t7
     c1 = np.where(free1, 1.0, t12 - t13)
-    t14 = _runtime.wrap(-np.arctan2(t11, c1))
-    t15 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t16 = t15 & np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3)
-    t17 = t16 & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
-    t18 = t17 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
-    t19 = t18 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    t14 = _runtime.wrap_cut(-np.arctan2(t11, c1))
+    t15 = np.isfinite(d1) & (0.0 <= d1) & np.isfinite(L2)
+    t16 = t15 & (0.0 <= L2) & np.isfinite(L3) & (0.0 <= L3)
+    t17 = t16 & np.isfinite(d4) & (0.0 <= d4) & np.isfinite(d5)
+    t18 = t17 & (0.0 <= d5) & np.isfinite(d6) & (0.0 <= d6)
+    t19 = t18 & np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t20 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t21 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
     t22 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
@@ -696,12 +696,12 @@ def _ik(
     t74 = cphi * c2 + sphi * s2
     t75 = np.arctan2(c3 * t73 - s3 * t74, c3 * t74 + s3 * t73)
     M_33 = -(T13 * t11 + T23 * c1)
-    t76 = _runtime.wrap(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
+    t76 = _runtime.wrap_cut(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
     t77 = t76 + t61
     M_11 = T11 * c1 - T21 * t11
     M_12 = T12 * c1 - T22 * t11
     t78 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
-    t79 = _runtime.wrap(-t78) + t61
+    t79 = _runtime.wrap_cut(-t78) + t61
     s2_left_noflip_down = np.where(folded_elbow, 0.0, t65 - t67)
     c2_left_noflip_down = np.where(folded_elbow, 1.0, -(t69 + t68))
     t80 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
@@ -771,7 +771,7 @@ def _ik(
     t114 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up
     t115 = t99 * c_base_elbow_left_flip_up / r_elbow_left_flip_up
     c2_left_flip_up = np.where(folded_elbow_left_flip_up, 1.0, t114 - t115)
-    t116 = _runtime.wrap(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t116 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
     t117 = A_elbow_left_flip_up * S_elbow_left_flip_up
     t118 = C_elbow_left_flip_up * B_elbow_left_flip_up
     sum_elbow_left_flip_up = t117 + t118
@@ -783,305 +783,311 @@ def _ik(
     t122 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
     t123 = c3_left_flip_up * t121 - s3_left_flip_up * t122
     t124 = c3_left_flip_up * t122 + s3_left_flip_up * t121
-    t125 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
-    t126 = _runtime.wrap(-np.arctan2(t125, M_33)) + t106
-    t127 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
-    t128 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
-    t129 = _runtime.wrap(-np.arctan2(t127, t128)) + t106
+    t125 = _runtime.wrap_cut(np.arctan2(t123, t124)) + t106
+    t126 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t127 = _runtime.wrap_cut(-np.arctan2(t126, M_33)) + t106
+    t128 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
+    t129 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
+    t130 = _runtime.wrap_cut(-np.arctan2(t128, t129)) + t106
     s2_left_flip_down = np.where(folded_elbow_left_flip_up, 0.0, t110 - t113)
     c2_left_flip_down = np.where(folded_elbow_left_flip_up, 1.0, -(t115 + t114))
-    t130 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t131 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t132 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
-    t133 = c3_left_flip_up * t131 + s3_left_flip_up * t132
-    t134 = c3_left_flip_up * t132 - s3_left_flip_up * t131
-    t135 = np.where(free1, 0.0, t8 - t10)
+    t131 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t132 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t133 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t134 = c3_left_flip_up * t132 + s3_left_flip_up * t133
+    t135 = c3_left_flip_up * t133 - s3_left_flip_up * t132
+    t136 = _runtime.wrap_cut(np.arctan2(t134, t135)) + t106
+    t137 = np.where(free1, 0.0, t8 - t10)
     c1_right_noflip_up = np.where(free1, 1.0, t12 + t13)
-    t136 = _runtime.wrap(np.arctan2(-t135, c1_right_noflip_up))
-    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t135
-    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t135
-    t137 = t33 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t137)
+    t138 = _runtime.wrap_cut(np.arctan2(-t137, c1_right_noflip_up))
+    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t137
+    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t137
+    t139 = t33 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t139)
     aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t34
-    t138 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t36 + t138)
+    t140 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t36 + t140)
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t3
-    t139 = d5 + r_hub_right_noflip_up
-    t140 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(t1, t139) / 2.0 + np.maximum(t39, np.abs(t140)) / 2.0
-    t141 = (t139 - mid_reach_right_noflip_up) * (t139 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t141)
-    t142 = (t140 - mid_reach_right_noflip_up) * (t140 + mid_reach_right_noflip_up)
-    d_mid_right_noflip_up = np.maximum(0.0, -t142)
+    t141 = d5 + r_hub_right_noflip_up
+    t142 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(t1, t141) / 2.0 + np.maximum(t39, np.abs(t142)) / 2.0
+    t143 = (t141 - mid_reach_right_noflip_up) * (t141 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t143)
+    t144 = (t142 - mid_reach_right_noflip_up) * (t142 + mid_reach_right_noflip_up)
+    d_mid_right_noflip_up = np.maximum(0.0, -t144)
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
     any_mid_right_noflip_up = n_mid_right_noflip_up <= t41
-    t143 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    uc_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 1.0, t143 / n_mid_right_noflip_up)
-    t144 = across_right_noflip_up * uc_mid_right_noflip_up
-    t145 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
-    us_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 0.0, t145 / n_mid_right_noflip_up)
-    t146 = (t144 + t35 * us_mid_right_noflip_up) / r_hub_right_noflip_up
-    c_mid_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t146)
+    t145 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    uc_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 1.0, t145 / n_mid_right_noflip_up)
+    t146 = across_right_noflip_up * uc_mid_right_noflip_up
+    t147 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
+    us_mid_right_noflip_up = np.where(any_mid_right_noflip_up, 0.0, t147 / n_mid_right_noflip_up)
+    t148 = (t146 + t35 * us_mid_right_noflip_up) / r_hub_right_noflip_up
+    c_mid_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t148)
     s_phi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, 0.0, T33 / h_wrist_right_noflip_up)
-    t147 = d5 * s_phi_right_noflip_up
-    t148 = across_right_noflip_up - t147
-    t149 = M_13_right_noflip_up / h_wrist_right_noflip_up
-    c_phi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, 1.0, t149)
-    t150 = t35 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t148 * t148 + t150 * t150)
+    t149 = d5 * s_phi_right_noflip_up
+    t150 = across_right_noflip_up - t149
+    t151 = M_13_right_noflip_up / h_wrist_right_noflip_up
+    c_phi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, 1.0, t151)
+    t152 = t35 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t150 * t150 + t152 * t152)
     in_reach_right_noflip_up = np.minimum(t1, np.maximum(here_right_noflip_up, t39))
-    t151 = (t139 - in_reach_right_noflip_up) * (t139 + in_reach_right_noflip_up)
-    k_near_right_noflip_up = np.maximum(0.0, t151)
-    t152 = (t140 - in_reach_right_noflip_up) * (t140 + in_reach_right_noflip_up)
-    d_near_right_noflip_up = np.maximum(0.0, -t152)
+    t153 = (t141 - in_reach_right_noflip_up) * (t141 + in_reach_right_noflip_up)
+    k_near_right_noflip_up = np.maximum(0.0, t153)
+    t154 = (t142 - in_reach_right_noflip_up) * (t142 + in_reach_right_noflip_up)
+    d_near_right_noflip_up = np.maximum(0.0, -t154)
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
     any_near_right_noflip_up = n_near_right_noflip_up <= t41
-    t153 = k_near_right_noflip_up - d_near_right_noflip_up
-    uc_near_right_noflip_up = np.where(any_near_right_noflip_up, 1.0, t153 / n_near_right_noflip_up)
-    t154 = across_right_noflip_up * uc_near_right_noflip_up
-    t155 = across_right_noflip_up * c_phi_right_noflip_up
-    t156 = t35 * s_phi_right_noflip_up
-    t157 = t155 - t156
-    t158 = np.abs(t157)
-    t159 = 2.0 * np.where(t158 <= t3, 1.0, -(t157 / t158))
-    t160 = t159 * np.sqrt(d_near_right_noflip_up) * np.sqrt(k_near_right_noflip_up)
-    us_near_right_noflip_up = np.where(any_near_right_noflip_up, 0.0, t160 / n_near_right_noflip_up)
-    t161 = (t154 + t35 * us_near_right_noflip_up) / r_hub_right_noflip_up
-    c_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t161)
-    t162 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t163 = across_right_noflip_up * us_near_right_noflip_up
-    t164 = (t163 - t35 * uc_near_right_noflip_up) / r_hub_right_noflip_up
-    s_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 0.0, t164)
-    t165 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t166 = h_wrist_right_noflip_up * np.sqrt(t162 * t162 + t165 * t165)
-    within_rounding_right_noflip_up = t166 <= t53
-    t167 = here_right_noflip_up - in_reach_right_noflip_up
-    inside_right_noflip_up = np.abs(t167) <= t3
+    t155 = k_near_right_noflip_up - d_near_right_noflip_up
+    uc_near_right_noflip_up = np.where(any_near_right_noflip_up, 1.0, t155 / n_near_right_noflip_up)
+    t156 = across_right_noflip_up * uc_near_right_noflip_up
+    t157 = across_right_noflip_up * c_phi_right_noflip_up
+    t158 = t35 * s_phi_right_noflip_up
+    t159 = t157 - t158
+    t160 = np.abs(t159)
+    t161 = 2.0 * np.where(t160 <= t3, 1.0, -(t159 / t160))
+    t162 = t161 * np.sqrt(d_near_right_noflip_up) * np.sqrt(k_near_right_noflip_up)
+    us_near_right_noflip_up = np.where(any_near_right_noflip_up, 0.0, t162 / n_near_right_noflip_up)
+    t163 = (t156 + t35 * us_near_right_noflip_up) / r_hub_right_noflip_up
+    c_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 1.0, t163)
+    t164 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t165 = across_right_noflip_up * us_near_right_noflip_up
+    t166 = (t165 - t35 * uc_near_right_noflip_up) / r_hub_right_noflip_up
+    s_near_right_noflip_up = np.where(hub_mid_right_noflip_up, 0.0, t166)
+    t167 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t168 = h_wrist_right_noflip_up * np.sqrt(t164 * t164 + t167 * t167)
+    within_rounding_right_noflip_up = t168 <= t53
+    t169 = here_right_noflip_up - in_reach_right_noflip_up
+    inside_right_noflip_up = np.abs(t169) <= t3
     c_moved_right_noflip_up = np.where(inside_right_noflip_up, s_phi_right_noflip_up, c_near_right_noflip_up)
-    t168 = np.where(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
-    sphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t168)
-    t169 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t170 = across_right_noflip_up * us_mid_right_noflip_up
-    t171 = (t170 - t35 * uc_mid_right_noflip_up) / r_hub_right_noflip_up
+    t170 = np.where(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
+    sphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t170)
+    t171 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t172 = across_right_noflip_up * us_mid_right_noflip_up
+    t173 = (t172 - t35 * uc_mid_right_noflip_up) / r_hub_right_noflip_up
     s_moved_right_noflip_up = np.where(inside_right_noflip_up, -c_phi_right_noflip_up, s_near_right_noflip_up)
-    t172 = np.where(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
-    cphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t171), t172)
+    t174 = np.where(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
+    cphi_right_noflip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t173), t174)
     ey_right_noflip_up = t35 - d5 * cphi_right_noflip_up
-    t173 = t169 * t169 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t173)
-    t174 = t1 - r_elbow_right_noflip_up
-    t175 = t38 + r_elbow_right_noflip_up
-    t176 = r_elbow_right_noflip_up - t38
-    t177 = t32 & (t31 <= t174) & (t31 <= t175) & (t31 <= t176)
-    unreachable_3 = np.logical_not(t177)
-    t178 = _runtime.poison(invalid | unreachable_3)
-    t179 = t136 + t178
+    t175 = t171 * t171 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t175)
+    t176 = t1 - r_elbow_right_noflip_up
+    t177 = t38 + r_elbow_right_noflip_up
+    t178 = r_elbow_right_noflip_up - t38
+    t179 = t32 & (t31 <= t176) & (t31 <= t177) & (t31 <= t178)
+    unreachable_3 = np.logical_not(t179)
+    t180 = _runtime.poison(invalid | unreachable_3)
+    t181 = t138 + t180
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
-    A_elbow_right_noflip_up = np.maximum(t174, 0.0)
-    C_elbow_right_noflip_up = np.maximum(t176, 0.0)
-    t180 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    A_elbow_right_noflip_up = np.maximum(t176, 0.0)
+    C_elbow_right_noflip_up = np.maximum(t178, 0.0)
+    t182 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t175, 0.0)
-    t181 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    width_elbow_right_noflip_up = t180 + t181
-    t182 = -((t180 - t181) / width_elbow_right_noflip_up)
-    c_base_elbow_right_noflip_up = np.where(no_link_elbow, 1.0, t182)
-    t183 = ey_right_noflip_up * c_base_elbow_right_noflip_up
-    t184 = t183 / r_elbow_right_noflip_up
-    t185 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
-    area_elbow_right_noflip_up = t185 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
-    t186 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
-    s_base_elbow_right_noflip_up = np.where(no_link_elbow, 0.0, t186)
-    t187 = t169 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    s2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 0.0, t184 + t187)
-    t188 = ey_right_noflip_up * s_base_elbow_right_noflip_up
-    t189 = t188 / r_elbow_right_noflip_up
-    t190 = t169 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    c2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 1.0, t189 - t190)
-    t191 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t192 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
-    t193 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
-    sum_elbow_right_noflip_up = t192 + t193
-    t194 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
-    s3_right_noflip_up = np.where(no_link_elbow, 0.0, t194)
-    c3_right_noflip_up = np.where(no_link_elbow, 1.0, -((t192 - t193) / sum_elbow_right_noflip_up))
-    t195 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t196 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t197 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
-    t198 = c3_right_noflip_up * t196 - s3_right_noflip_up * t197
-    t199 = c3_right_noflip_up * t197 + s3_right_noflip_up * t196
-    t200 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
-    M_33_right_noflip_up = -(T13 * t135 + T23 * c1_right_noflip_up)
-    t201 = _runtime.wrap(-np.arctan2(t200, M_33_right_noflip_up))
-    t202 = t201 + t178
-    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t135
-    t203 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
-    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t135
-    t204 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
-    t205 = _runtime.wrap(-np.arctan2(t203, t204)) + t178
-    s2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 0.0, t184 - t187)
-    c2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 1.0, -(t190 + t189))
-    t206 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t207 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t208 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
-    t209 = c3_right_noflip_up * t207 + s3_right_noflip_up * t208
-    t210 = c3_right_noflip_up * t208 - s3_right_noflip_up * t207
-    t211 = across_right_noflip_up + t147
-    c_phi_right_flip_up = np.where(aligned_wrist_right_noflip_up, 1.0, -t149)
-    t212 = t35 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t211 * t211 + t212 * t212)
+    B_elbow_right_noflip_up = np.maximum(t177, 0.0)
+    t183 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    width_elbow_right_noflip_up = t182 + t183
+    t184 = -((t182 - t183) / width_elbow_right_noflip_up)
+    c_base_elbow_right_noflip_up = np.where(no_link_elbow, 1.0, t184)
+    t185 = ey_right_noflip_up * c_base_elbow_right_noflip_up
+    t186 = t185 / r_elbow_right_noflip_up
+    t187 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
+    area_elbow_right_noflip_up = t187 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
+    t188 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
+    s_base_elbow_right_noflip_up = np.where(no_link_elbow, 0.0, t188)
+    t189 = t171 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
+    s2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 0.0, t186 + t189)
+    t190 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    t191 = t190 / r_elbow_right_noflip_up
+    t192 = t171 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
+    c2_right_noflip_up = np.where(folded_elbow_right_noflip_up, 1.0, t191 - t192)
+    t193 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t194 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t195 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    sum_elbow_right_noflip_up = t194 + t195
+    t196 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
+    s3_right_noflip_up = np.where(no_link_elbow, 0.0, t196)
+    c3_right_noflip_up = np.where(no_link_elbow, 1.0, -((t194 - t195) / sum_elbow_right_noflip_up))
+    t197 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t198 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t199 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    t200 = c3_right_noflip_up * t198 - s3_right_noflip_up * t199
+    t201 = c3_right_noflip_up * t199 + s3_right_noflip_up * t198
+    t202 = _runtime.wrap_cut(np.arctan2(t200, t201)) + t180
+    t203 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    M_33_right_noflip_up = -(T13 * t137 + T23 * c1_right_noflip_up)
+    t204 = _runtime.wrap_cut(-np.arctan2(t203, M_33_right_noflip_up))
+    t205 = t204 + t180
+    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t137
+    t206 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t137
+    t207 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t208 = _runtime.wrap_cut(-np.arctan2(t206, t207)) + t180
+    s2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 0.0, t186 - t189)
+    c2_right_noflip_down = np.where(folded_elbow_right_noflip_up, 1.0, -(t192 + t191))
+    t209 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t210 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t211 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t212 = c3_right_noflip_up * t210 + s3_right_noflip_up * t211
+    t213 = c3_right_noflip_up * t211 - s3_right_noflip_up * t210
+    t214 = _runtime.wrap_cut(np.arctan2(t212, t213)) + t180
+    t215 = across_right_noflip_up + t149
+    c_phi_right_flip_up = np.where(aligned_wrist_right_noflip_up, 1.0, -t151)
+    t216 = t35 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t215 * t215 + t216 * t216)
     in_reach_right_flip_up = np.minimum(t1, np.maximum(here_right_flip_up, t39))
-    t213 = (t139 - in_reach_right_flip_up) * (t139 + in_reach_right_flip_up)
-    k_near_right_flip_up = np.maximum(0.0, t213)
-    t214 = (t140 - in_reach_right_flip_up) * (t140 + in_reach_right_flip_up)
-    d_near_right_flip_up = np.maximum(0.0, -t214)
+    t217 = (t141 - in_reach_right_flip_up) * (t141 + in_reach_right_flip_up)
+    k_near_right_flip_up = np.maximum(0.0, t217)
+    t218 = (t142 - in_reach_right_flip_up) * (t142 + in_reach_right_flip_up)
+    d_near_right_flip_up = np.maximum(0.0, -t218)
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
     any_near_right_flip_up = n_near_right_flip_up <= t41
-    t215 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up
-    uc_near_right_flip_up = np.where(any_near_right_flip_up, 1.0, t215)
-    t216 = across_right_noflip_up * uc_near_right_flip_up
-    t217 = t156 + across_right_noflip_up * c_phi_right_flip_up
-    t218 = np.abs(t217)
-    t219 = 2.0 * np.where(t218 <= t3, 1.0, -(t217 / t218))
-    t220 = t219 * np.sqrt(d_near_right_flip_up) * np.sqrt(k_near_right_flip_up)
-    us_near_right_flip_up = np.where(any_near_right_flip_up, 0.0, t220 / n_near_right_flip_up)
-    t221 = (t216 + t35 * us_near_right_flip_up) / r_hub_right_noflip_up
-    c_near_right_flip_up = np.where(hub_mid_right_noflip_up, 1.0, t221)
-    t222 = s_phi_right_noflip_up + c_near_right_flip_up
-    t223 = across_right_noflip_up * us_near_right_flip_up
-    t224 = (t223 - t35 * uc_near_right_flip_up) / r_hub_right_noflip_up
-    s_near_right_flip_up = np.where(hub_mid_right_noflip_up, 0.0, t224)
-    t225 = c_phi_right_flip_up + s_near_right_flip_up
-    t226 = h_wrist_right_noflip_up * np.sqrt(t222 * t222 + t225 * t225)
-    within_rounding_right_flip_up = t226 <= t53
-    t227 = np.abs(here_right_flip_up - in_reach_right_flip_up)
-    inside_right_flip_up = t227 <= t3
+    t219 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up
+    uc_near_right_flip_up = np.where(any_near_right_flip_up, 1.0, t219)
+    t220 = across_right_noflip_up * uc_near_right_flip_up
+    t221 = t158 + across_right_noflip_up * c_phi_right_flip_up
+    t222 = np.abs(t221)
+    t223 = 2.0 * np.where(t222 <= t3, 1.0, -(t221 / t222))
+    t224 = t223 * np.sqrt(d_near_right_flip_up) * np.sqrt(k_near_right_flip_up)
+    us_near_right_flip_up = np.where(any_near_right_flip_up, 0.0, t224 / n_near_right_flip_up)
+    t225 = (t220 + t35 * us_near_right_flip_up) / r_hub_right_noflip_up
+    c_near_right_flip_up = np.where(hub_mid_right_noflip_up, 1.0, t225)
+    t226 = s_phi_right_noflip_up + c_near_right_flip_up
+    t227 = across_right_noflip_up * us_near_right_flip_up
+    t228 = (t227 - t35 * uc_near_right_flip_up) / r_hub_right_noflip_up
+    s_near_right_flip_up = np.where(hub_mid_right_noflip_up, 0.0, t228)
+    t229 = c_phi_right_flip_up + s_near_right_flip_up
+    t230 = h_wrist_right_noflip_up * np.sqrt(t226 * t226 + t229 * t229)
+    within_rounding_right_flip_up = t230 <= t53
+    t231 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    inside_right_flip_up = t231 <= t3
     c_moved_right_flip_up = np.where(inside_right_flip_up, -s_phi_right_noflip_up, c_near_right_flip_up)
-    t228 = np.where(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
-    sphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t228)
-    t229 = across_right_noflip_up - d5 * sphi_right_flip_up
+    t232 = np.where(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
+    sphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t232)
+    t233 = across_right_noflip_up - d5 * sphi_right_flip_up
     s_moved_right_flip_up = np.where(inside_right_flip_up, -c_phi_right_flip_up, s_near_right_flip_up)
-    t230 = np.where(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
-    cphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t171), t230)
+    t234 = np.where(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
+    cphi_right_flip_up = np.where(aligned_wrist_right_noflip_up, -np.where(hub_mid_right_noflip_up, 0.0, t173), t234)
     ey_right_flip_up = t35 - d5 * cphi_right_flip_up
-    t231 = t229 * t229 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t231)
-    t232 = t1 - r_elbow_right_flip_up
-    t233 = t38 + r_elbow_right_flip_up
-    t234 = r_elbow_right_flip_up - t38
-    t235 = t32 & (t31 <= t232) & (t31 <= t233) & (t31 <= t234)
-    unreachable_4 = np.logical_not(t235)
-    t236 = _runtime.poison(invalid | unreachable_4)
-    t237 = t136 + t236
+    t235 = t233 * t233 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t235)
+    t236 = t1 - r_elbow_right_flip_up
+    t237 = t38 + r_elbow_right_flip_up
+    t238 = r_elbow_right_flip_up - t38
+    t239 = t32 & (t31 <= t236) & (t31 <= t237) & (t31 <= t238)
+    unreachable_4 = np.logical_not(t239)
+    t240 = _runtime.poison(invalid | unreachable_4)
+    t241 = t138 + t240
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3
-    A_elbow_right_flip_up = np.maximum(t232, 0.0)
-    C_elbow_right_flip_up = np.maximum(t234, 0.0)
-    t238 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    A_elbow_right_flip_up = np.maximum(t236, 0.0)
+    C_elbow_right_flip_up = np.maximum(t238, 0.0)
+    t242 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = t1 + r_elbow_right_flip_up
-    B_elbow_right_flip_up = np.maximum(t233, 0.0)
-    t239 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    width_elbow_right_flip_up = t238 + t239
-    c_base_elbow_right_flip_up = np.where(no_link_elbow, 1.0, -((t238 - t239) / width_elbow_right_flip_up))
-    t240 = ey_right_flip_up * c_base_elbow_right_flip_up
-    t241 = t240 / r_elbow_right_flip_up
-    t242 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
-    area_elbow_right_flip_up = t242 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
-    t243 = area_elbow_right_flip_up / width_elbow_right_flip_up
-    s_base_elbow_right_flip_up = np.where(no_link_elbow, 0.0, t243)
-    t244 = t229 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
-    s2_right_flip_up = np.where(folded_elbow_right_flip_up, 0.0, t241 + t244)
-    t245 = ey_right_flip_up * s_base_elbow_right_flip_up
-    t246 = t245 / r_elbow_right_flip_up
-    t247 = t229 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
-    c2_right_flip_up = np.where(folded_elbow_right_flip_up, 1.0, t246 - t247)
-    t248 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t249 = A_elbow_right_flip_up * S_elbow_right_flip_up
-    t250 = C_elbow_right_flip_up * B_elbow_right_flip_up
-    sum_elbow_right_flip_up = t249 + t250
-    t251 = area_elbow_right_flip_up / sum_elbow_right_flip_up
-    s3_right_flip_up = np.where(no_link_elbow, 0.0, t251)
-    c3_right_flip_up = np.where(no_link_elbow, 1.0, -((t249 - t250) / sum_elbow_right_flip_up))
-    t252 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t253 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t254 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
-    t255 = c3_right_flip_up * t253 - s3_right_flip_up * t254
-    t256 = c3_right_flip_up * t254 + s3_right_flip_up * t253
-    t257 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
-    t258 = _runtime.wrap(-np.arctan2(t257, M_33_right_noflip_up))
-    t259 = t258 + t236
-    t260 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
-    t261 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
-    t262 = _runtime.wrap(-np.arctan2(t260, t261)) + t236
-    s2_right_flip_down = np.where(folded_elbow_right_flip_up, 0.0, t241 - t244)
-    c2_right_flip_down = np.where(folded_elbow_right_flip_up, 1.0, -(t247 + t246))
-    t263 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t264 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t265 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
-    t266 = c3_right_flip_up * t264 + s3_right_flip_up * t265
-    t267 = c3_right_flip_up * t265 - s3_right_flip_up * t264
-    t268 = free1 | aligned_wrist | no_link_elbow
-    t269 = _runtime.status(invalid, unreachable, t268 | folded_elbow)
-    t270 = _runtime.status(invalid, unreachable_2, t268 | folded_elbow_left_flip_up)
-    t271 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
-    t272 = _runtime.status(invalid, unreachable_3, t271 | folded_elbow_right_noflip_up)
-    t273 = _runtime.status(invalid, unreachable_4, t271 | folded_elbow_right_flip_up)
+    B_elbow_right_flip_up = np.maximum(t237, 0.0)
+    t243 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    width_elbow_right_flip_up = t242 + t243
+    c_base_elbow_right_flip_up = np.where(no_link_elbow, 1.0, -((t242 - t243) / width_elbow_right_flip_up))
+    t244 = ey_right_flip_up * c_base_elbow_right_flip_up
+    t245 = t244 / r_elbow_right_flip_up
+    t246 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
+    area_elbow_right_flip_up = t246 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    t247 = area_elbow_right_flip_up / width_elbow_right_flip_up
+    s_base_elbow_right_flip_up = np.where(no_link_elbow, 0.0, t247)
+    t248 = t233 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
+    s2_right_flip_up = np.where(folded_elbow_right_flip_up, 0.0, t245 + t248)
+    t249 = ey_right_flip_up * s_base_elbow_right_flip_up
+    t250 = t249 / r_elbow_right_flip_up
+    t251 = t233 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
+    c2_right_flip_up = np.where(folded_elbow_right_flip_up, 1.0, t250 - t251)
+    t252 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t253 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t254 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    sum_elbow_right_flip_up = t253 + t254
+    t255 = area_elbow_right_flip_up / sum_elbow_right_flip_up
+    s3_right_flip_up = np.where(no_link_elbow, 0.0, t255)
+    c3_right_flip_up = np.where(no_link_elbow, 1.0, -((t253 - t254) / sum_elbow_right_flip_up))
+    t256 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t257 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t258 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    t259 = c3_right_flip_up * t257 - s3_right_flip_up * t258
+    t260 = c3_right_flip_up * t258 + s3_right_flip_up * t257
+    t261 = _runtime.wrap_cut(np.arctan2(t259, t260)) + t240
+    t262 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t263 = _runtime.wrap_cut(-np.arctan2(t262, M_33_right_noflip_up))
+    t264 = t263 + t240
+    t265 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
+    t266 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
+    t267 = _runtime.wrap_cut(-np.arctan2(t265, t266)) + t240
+    s2_right_flip_down = np.where(folded_elbow_right_flip_up, 0.0, t245 - t248)
+    c2_right_flip_down = np.where(folded_elbow_right_flip_up, 1.0, -(t251 + t250))
+    t268 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t269 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t270 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t271 = c3_right_flip_up * t269 + s3_right_flip_up * t270
+    t272 = c3_right_flip_up * t270 - s3_right_flip_up * t269
+    t273 = _runtime.wrap_cut(np.arctan2(t271, t272)) + t240
+    t274 = free1 | aligned_wrist | no_link_elbow
+    t275 = _runtime.status(invalid, unreachable, t274 | folded_elbow)
+    t276 = _runtime.status(invalid, unreachable_2, t274 | folded_elbow_left_flip_up)
+    t277 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t278 = _runtime.status(invalid, unreachable_3, t277 | folded_elbow_right_noflip_up)
+    t279 = _runtime.status(invalid, unreachable_4, t277 | folded_elbow_right_flip_up)
     return (
         t62,
-        _runtime.wrap(np.arctan2(s2, c2)) + t61,
-        _runtime.wrap(t72) + t61,
-        _runtime.wrap(t75) + t61,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t61,
+        _runtime.wrap_cut(t72) + t61,
+        _runtime.wrap_cut(t75) + t61,
         t77,
         t79,
         t62,
-        _runtime.wrap(t80) + t61,
-        _runtime.wrap(-t72) + t61,
-        _runtime.wrap(t83) + t61,
+        _runtime.wrap_cut(t80) + t61,
+        _runtime.wrap_cut(-t72) + t61,
+        _runtime.wrap_cut(t83) + t61,
         t77,
         t79,
         t107,
         t116 + t106,
-        _runtime.wrap(t120) + t106,
-        _runtime.wrap(np.arctan2(t123, t124)) + t106,
-        t126,
-        t129,
+        _runtime.wrap_cut(t120) + t106,
+        t125,
+        t127,
+        t130,
         t107,
-        _runtime.wrap(t130) + t106,
-        _runtime.wrap(-t120) + t106,
-        _runtime.wrap(np.arctan2(t133, t134)) + t106,
-        t126,
-        t129,
-        t179,
-        _runtime.wrap(t191) + t178,
-        _runtime.wrap(t195) + t178,
-        _runtime.wrap(np.arctan2(t198, t199)) + t178,
+        _runtime.wrap_cut(t131) + t106,
+        _runtime.wrap_cut(-t120) + t106,
+        t136,
+        t127,
+        t130,
+        t181,
+        _runtime.wrap_cut(t193) + t180,
+        _runtime.wrap_cut(t197) + t180,
         t202,
         t205,
-        t179,
-        _runtime.wrap(t206) + t178,
-        _runtime.wrap(-t195) + t178,
-        _runtime.wrap(np.arctan2(t209, t210)) + t178,
-        t202,
+        t208,
+        t181,
+        _runtime.wrap_cut(t209) + t180,
+        _runtime.wrap_cut(-t197) + t180,
+        t214,
         t205,
-        t237,
-        _runtime.wrap(t248) + t236,
-        _runtime.wrap(t252) + t236,
-        _runtime.wrap(np.arctan2(t255, t256)) + t236,
-        t259,
-        t262,
-        t237,
-        _runtime.wrap(t263) + t236,
-        _runtime.wrap(-t252) + t236,
-        _runtime.wrap(np.arctan2(t266, t267)) + t236,
-        t259,
-        t262,
-        t269,
-        t269,
-        t270,
-        t270,
-        t272,
-        t272,
+        t208,
+        t241,
+        _runtime.wrap_cut(t252) + t240,
+        _runtime.wrap_cut(t256) + t240,
+        t261,
+        t264,
+        t267,
+        t241,
+        _runtime.wrap_cut(t268) + t240,
+        _runtime.wrap_cut(-t256) + t240,
         t273,
-        t273,
+        t264,
+        t267,
+        t275,
+        t275,
+        t276,
+        t276,
+        t278,
+        t278,
+        t279,
+        t279,
     )
 
 

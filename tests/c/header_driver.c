@@ -3,10 +3,14 @@
 
 size_t real_size(void);
 void sincos_block(size_t n, const real_t *x, real_t *s, real_t *c);
-void sincos_eights(size_t n, const real_t *x, real_t *s, real_t *c);
+void sincos_lanes(size_t n, const real_t *x, real_t *s, real_t *c);
 void sincos_plain(size_t n, const real_t *x, real_t *s, real_t *c);
 void atan2_all(size_t n, const real_t *y, const real_t *x, real_t *angle);
+void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c, real_t *angle);
 void wrap_all(size_t n, const real_t *angle, real_t *wrapped);
+void wrap_cut_all(size_t n, const real_t *angle, real_t *wrapped);
+void wrap_down_all(size_t n, const real_t *angle, real_t *wrapped);
+void wrap_up_all(size_t n, const real_t *angle, real_t *wrapped);
 void is_finite_all(size_t n, const real_t *x, real_t *yes);
 void max_min_all(size_t n, const real_t *a, const real_t *b, real_t *larger, real_t *smaller);
 void constants(real_t *out);
@@ -18,9 +22,9 @@ CLOSEDFORM_DISPATCHED void sincos_block(size_t n, const real_t *x, real_t *s, re
     cf_sincos_block(n, x, s, c);
 }
 
-void sincos_eights(size_t n, const real_t *x, real_t *s, real_t *c)
+void sincos_lanes(size_t n, const real_t *x, real_t *s, real_t *c)
 {
-    for (size_t i = 0; i + 8 <= n; i += 8) cf_sincos_block(8, x + i, s + i, c + i);
+    for (size_t i = 0; i + 8 <= n; i += 8) cf_sincos_lanes(8, x + i, s + i, c + i);
 }
 
 CLOSEDFORM_DISPATCHED void sincos_plain(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
@@ -35,11 +39,34 @@ CLOSEDFORM_DISPATCHED void atan2_all(size_t n, const real_t *CF_RESTRICT y, cons
     for (size_t i = 0; i < n; ++i) angle[i] = cf_atan2(y[i], x[i]);
 }
 
-CLOSEDFORM_DISPATCHED void wrap_all(size_t n, const real_t *CF_RESTRICT angle,
-                               real_t *CF_RESTRICT wrapped)
+/* Twenty-four numbers by lanes of 1, 1, 2, 4 and 16: sin y, cos y; from the third on atan2(y, x). */
+void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c, real_t *angle)
 {
-    for (size_t i = 0; i < n; ++i) wrapped[i] = cf_wrap(angle[i]);
+    for (size_t i = 0; i + 24 <= n; i += 24) {
+        cf_sincos_lanes(1, y + i, s + i, c + i);
+        cf_sincos_lanes(1, y + i + 1, s + i + 1, c + i + 1);
+        cf_sincos_lanes(2, y + i + 2, s + i + 2, c + i + 2);
+        cf_sincos_lanes(4, y + i + 4, s + i + 4, c + i + 4);
+        cf_sincos_lanes(16, y + i + 8, s + i + 8, c + i + 8);
+        angle[i] = cf_atan2(y[i], x[i]);
+        angle[i + 1] = cf_atan2(y[i + 1], x[i + 1]);
+        cf_atan2_lanes(2, y + i + 2, x + i + 2, angle + i + 2);
+        cf_atan2_lanes(4, y + i + 4, x + i + 4, angle + i + 4);
+        cf_atan2_lanes(16, y + i + 8, x + i + 8, angle + i + 8);
+    }
 }
+
+#define WRAP(name)                                                                             \
+    CLOSEDFORM_DISPATCHED void name##_all(size_t n, const real_t *CF_RESTRICT angle,           \
+                                          real_t *CF_RESTRICT wrapped)                         \
+    {                                                                                          \
+        for (size_t i = 0; i < n; ++i) wrapped[i] = cf_##name(angle[i]);                       \
+    }
+
+WRAP(wrap)
+WRAP(wrap_cut)
+WRAP(wrap_down)
+WRAP(wrap_up)
 
 CLOSEDFORM_DISPATCHED void is_finite_all(size_t n, const real_t *CF_RESTRICT x,
                                     real_t *CF_RESTRICT yes)

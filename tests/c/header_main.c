@@ -30,11 +30,19 @@ int main(void)
         signed_values[2 * i + 1] = -values[i];
     }
     for (size_t n = 0; n <= 2 * COUNT; ++n) cf_sincos_block(n, signed_values, s, c);
-    for (size_t i = 0; i + 8 <= 2 * COUNT; ++i) cf_sincos_block(8, signed_values + i, s + i, c + i);
+    for (size_t i = 0; i + 8 <= 2 * COUNT; ++i) {
+        cf_sincos_lanes(1, signed_values + i, s + i, c + i);
+        cf_sincos_lanes(2, signed_values + i, s + i, c + i);
+        cf_sincos_lanes(4, signed_values + i, s + i, c + i);
+        cf_sincos_lanes(8, signed_values + i, s + i, c + i);
+        cf_atan2_lanes(2, signed_values + i, s + i, c + i);
+        cf_atan2_lanes(4, signed_values + i, s + i, c + i);
+    }
+    cf_atan2_lanes(24, signed_values, s, c);
     for (size_t i = 0; i < 2 * COUNT; ++i) {
         const real_t a = signed_values[i];
         cf_sincos(a, &s[i], &c[i]);
-        sink = sink + cf_sqrt(a) + cf_wrap(a) + (cf_is_finite(a) ? s[i] : c[i]);
+        sink = sink + cf_sqrt(a) + cf_wrap(a) + cf_wrap_up(a) + (cf_is_finite(a) ? s[i] : c[i]);
         for (size_t j = 0; j < 2 * COUNT; ++j, ++calls) {
             const real_t b = signed_values[j];
             sink = sink + cf_atan2(a, b) + cf_max(a, b) + cf_min(a, b);

@@ -12,6 +12,8 @@ from setuptools.modified import newer_group
 FOLDERS = (Path("closedform/extension"), Path("generated/c"))
 SOURCES = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.c"))
 HEADERS = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.h"))
+# For AVX-512, AVX2 and the baseline; with CLOSEDFORM_DISPATCH=0 for the baseline alone.
+DISPATCH = [("CLOSEDFORM_DISPATCH", None)] * (os.environ.get("CLOSEDFORM_DISPATCH") != "0")
 
 
 def read_by(source):
@@ -58,10 +60,7 @@ setup(
             sources=SOURCES,
             depends=[*HEADERS, "setup.py"],
             include_dirs=[*map(str, FOLDERS), numpy.get_include()],
-            define_macros=[
-                ("NPY_NO_DEPRECATED_API", "NPY_2_0_API_VERSION"),
-                ("CLOSEDFORM_DISPATCH", None),
-            ],
+            define_macros=[("NPY_NO_DEPRECATED_API", "NPY_2_0_API_VERSION"), *DISPATCH],
             # errno of sqrt and floating-point traps are not used; without these two flags no loop
             # with a square root or a comparison becomes vector code. Fused multiply-adds, which
             # -std=c99 switches off, take a tenth to a third off a batch. Python's own flags bring

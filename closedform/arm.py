@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import sympy as sp
-from sympy.polys.matrices import DomainMatrix
 
-from closedform.algebra import normal
+from closedform.algebra import determinant
 from closedform.derivation import Derivation
 from closedform.frames import (
     denavit_hartenberg,
@@ -471,15 +470,9 @@ def _exact(value: Any, where: str) -> sp.Expr:
 
 def _determinant(J: sp.Matrix) -> sp.Expr:
     """Over the polynomials in sines and cosines, reduced on their circles, factored."""
-    det = _polynomial_determinant(J)
-    reduced = normal(det)
+    reduced = determinant(J)
     found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
     return found
-
-
-def _polynomial_determinant(J: sp.Matrix) -> sp.Expr:
-    matrix = DomainMatrix.from_Matrix(J.applyfunc(sp.expand))
-    return matrix.domain.to_sympy(matrix.charpoly()[-1]) * (-1) ** J.rows
 
 
 __all__ = [

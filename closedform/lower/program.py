@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import sympy as sp
 
@@ -13,6 +14,7 @@ from closedform.functions import Array, Bound, Function, Let, Match, Require, Va
 from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.graph import Graph, Node, reachable
 from closedform.lower.share import share
+from closedform.lower.turns import Turns
 
 LEAVES = frozenset({"const", "input", "nan", "tolerance", "true", "false", "sin", "cos"})
 
@@ -70,11 +72,14 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
     graph = Graph()
     parameters = [p.symbol for p in derivation.parameters]
     leaves = {s: graph.input(s.name) for s in (*function.symbols, *parameters)}
-    divisors = angle_divisors(_expressions(function))
+    turns = Turns.of(function, derivation)
+    entries = turns.entries()
+    divisors = angle_divisors([*_expressions(function), *entries])
     names: dict[int, str] = {}
     rows = []
     for label, signs in function.cases():
-        rows.append(_Branch(function, derivation, graph, leaves, divisors, signs).run(names, label))
+        branch = _Branch(function, derivation, graph, leaves, divisors, signs, turns, entries)
+        rows.append(branch.run(names, label))
     results = []
     for k, output in enumerate(function.outputs):
         nodes = tuple(n for row in rows for n in row[0][k])
@@ -137,6 +142,8 @@ class _Branch:
     leaves: Mapping[sp.Basic, Node]
     divisors: Mapping[sp.Basic, int]
     signs: Mapping[sp.Symbol, int]
+    turns: Turns
+    entries: Sequence[sp.Expr]
 
     def run(self, names: dict[int, str], label: str) -> tuple[list[list[Node]], Node]:
         graph = self.graph
@@ -185,10 +192,8 @@ class _Branch:
             (failed, "failed"),
         ):
             names.setdefault(node.id, name)
-        outputs = [
-            [self._output(build, failed, e) for e in output.entries]
-            for output in self.function.outputs
-        ]
+        nodes = iter([self._output(build, failed, k, e) for k, e in enumerate(self.entries)])
+        outputs = [list(islice(nodes, output.size)) for output in self.function.outputs]
         return outputs, self._status(bad_input, out_of_reach, graph.any(singular))
 
     @property
@@ -198,12 +203,12 @@ class _Branch:
             isinstance(s, (Bound, Match)) for s in self.function.body
         )
 
-    def _output(self, build: Builder, failed: Node, entry: sp.Basic) -> Node:
+    def _output(self, build: Builder, failed: Node, k: int, entry: sp.Expr) -> Node:
         """The value of an entry; adding NaN to a failed one is one selection for all entries."""
         node = build(entry)
         if self.function.boolean:
             return self.graph.every([self.graph.negate(failed), node])
-        if entry.has(sp.atan2):
+        for _ in range(self.turns.wraps(k, entry, self.signs)):
             node = self.graph.node("wrap", node)
         if failed.op == "false":
             return node

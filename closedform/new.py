@@ -16,7 +16,7 @@ import csv
 import keyword
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -31,7 +31,12 @@ from closedform.propose import NoChainError, propose, source
 
 COLUMNS = ("a", "alpha", "d", "theta")
 PARAMETER = re.compile(r"#\s*([A-Za-z_]\w*)\s*=\s*([-+\d./eE]+)\s*([^:]*?)\s*(?::\s*(.*))?$")
-IMPORTED = ("cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
+IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
+CHAIN = ("Reaching", "polar", "remainder", "slide", "turn", "turned", "two_links", "zyz")
+SCRIPT = {"Chain", "Derivation", "Paper", "Pair", "arm", "d", "forward", "from_dh", "from_screws"}
+LINES = {"M", "ahead", "ik", "p", "q", "reaching", "turn1", "wx", "wy", "x", "y", "yaw", "z", "rho"}
+TAKEN = SCRIPT | LINES | {*IMPORTED, *CHAIN}
+"""What the written script calls its own."""
 
 
 class TableError(ValueError):
@@ -55,7 +60,21 @@ def new(name: str, kind: str, path: Path, *, modified: bool = False) -> str:
     if not name.isidentifier() or keyword.iskeyword(name):
         raise TableError(f"{name!r} is no name of a module: letters, digits and _ only")
     table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
+    for symbol in (*table.parameters, *table.joints):
+        _check_name(symbol, path.name)
     return skeleton(name, table, path.name)
+
+
+def _check_name(name: str, where: str) -> None:
+    """A joint or a parameter becomes a variable of the script, which has some of its own."""
+    taken = name in TAKEN or re.fullmatch(r"(alpha|link)\d+_?", name)
+    if not name.isidentifier():
+        raise TableError(f"{where}: {name!r} is no name: letters, digits and _ only")
+    if taken or keyword.iskeyword(name):
+        raise TableError(
+            f"{where}: the name {name} has a meaning of its own in the script that is written; "
+            f"choose another, such as {name}_0"
+        )
 
 
 def read_dh(path: Path, *, modified: bool = False) -> Table:
@@ -83,7 +102,7 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
             raise TableError(f"{where}: {len(cells)} entries in {len(header)} columns")
         cell = dict(zip(header, (c.strip() for c in cells), strict=True))
         entries = {c: _expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
-        joint, variable = _joint(cell.get("joint", ""), entries, where)
+        joint, variable = _joint(cell.get("joint", ""), entries, where, table.parameters)
         if joint in table.joints:
             raise TableError(f"{where}: two joints have the name {joint}")
         table.joints[joint] = variable
@@ -92,17 +111,25 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
     return table
 
 
-def _joint(given: str, entries: Mapping[str, Any], where: str) -> tuple[str, str]:
-    """The joint of a row and its kind."""
+def _joint(
+    given: str, entries: Mapping[str, Any], where: str, parameters: Container[str]
+) -> tuple[str, str]:
+    """The joint of a row and its kind; a symbol that has a value is a parameter."""
     for column, kind in (("theta", "revolute"), ("d", "prismatic")):
-        names = sorted(map(str, entries[column].free_symbols))
-        if given in names or (not given and len(names) == 1):
+        held = sorted(map(str, entries[column].free_symbols))
+        names = [n for n in held if n not in parameters]
+        if given in held or (not given and len(names) == 1):
             return given or names[0], kind
         if names and not given:
             raise TableError(
-                f"{where}: {', '.join(names)} stand in {column}; name the joint in a column joint"
+                f"{where}: {', '.join(names)} stand in {column}, and only one can be the joint: "
+                f"give the others their values in lines '# {names[-1]} = 0.1 m: what it is', or "
+                f"add a column joint with the name of the joint"
             )
-    raise TableError(f"{where}: no joint: neither theta nor d holds {given or 'a symbol'}")
+    raise TableError(
+        f"{where}: no joint: neither theta nor d holds {given or 'a symbol without a value'}; a "
+        f"revolute joint is a symbol in theta, such as theta1, a slide one in d"
+    )
 
 
 def read_screws(path: Path) -> Table:
@@ -149,6 +176,8 @@ def _expression(text: Any, where: str) -> Any:
         r"(?<![\w.])\d*\.\d+(?:[eE][-+]?\d+)?", lambda m: f"({Fraction(m[0])})", str(text)
     )
     names = {n: real(n) for n in re.findall(r"[A-Za-z_]\w*", exact) if n not in IMPORTED}
+    for name in names:
+        _check_name(name, where)
     try:
         value = sp.sympify(exact, names, rational=True)
     except (sp.SympifyError, SyntaxError, TypeError) as error:
@@ -283,18 +312,7 @@ def _imports(text: str) -> str:
         "closedform.arm": used(["from_dh", "from_screws"]),
         "closedform.chain": used(["Chain"]),
         "closedform.derivation": ["Derivation", "Paper"],
-        "closedform.linklemmas": used(
-            [
-                "Reaching",
-                "polar",
-                "remainder",
-                "slide",
-                "turn",
-                "turned",
-                "two_links",
-                "zyz",
-            ]
-        ),
+        "closedform.linklemmas": used(CHAIN),
         "closedform.pairs": used(["Pair"]),
     }
     lines = [

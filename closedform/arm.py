@@ -239,6 +239,13 @@ def from_dh(
                 f"{d.name}: row {i} of the Denavit-Hartenberg table: the {joints[here[0]]} joint "
                 f"{here[0]} must stand in the column {kind}"
             )
+        others = [e for e in entries if e is not place]
+        if place.diff(here[0]) != 1 or any(e.has(here[0]) for e in others):
+            raise RowError(
+                f"{d.name}: row {i} of the Denavit-Hartenberg table: the joint {here[0]} must "
+                f"stand in the column {kind} alone, as it is or with a constant added to it, not "
+                f"as {place if place.diff(here[0]) != 1 else tuple(entries)}"
+            )
         motions.append((here[0], joints[here[0]]))
     exact = [tuple(map(sp.sympify, row)) for row in rows]
     moves = [

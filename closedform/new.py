@@ -62,6 +62,8 @@ def new(name: str, kind: str, path: Path, *, modified: bool = False) -> str:
     table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
     for symbol in (*table.parameters, *table.joints):
         _check_name(symbol, path.name)
+    for symbol, given in table.parameters.items():
+        _check_value(symbol, given.get("value", "1"), path.name)
     return skeleton(name, table, path.name)
 
 
@@ -77,10 +79,26 @@ def _check_name(name: str, where: str) -> None:
         )
 
 
+def _check_value(name: str, value: str, where: str) -> None:
+    try:
+        Fraction(value)
+    except (ValueError, ZeroDivisionError) as error:
+        raise TableError(
+            f"{where}: the value of {name} is {value!r}; it must be a number such as 0.45 or 9/20"
+        ) from error
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise TableError(f"{path.name} is no text in UTF-8: save it as plain text") from error
+
+
 def read_dh(path: Path, *, modified: bool = False) -> Table:
     """A Denavit-Hartenberg table from CSV."""
     table = Table(modified=modified)
-    lines = path.read_text("utf-8").splitlines()
+    lines = _text(path).splitlines()
     numbered = []
     for number, line in enumerate(lines, 1):
         if found := PARAMETER.match(line.strip()):
@@ -94,14 +112,23 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
     if missing := [c for c in COLUMNS if c not in header]:
         raise TableError(
             f"{path.name}, line {numbered[0][0]}: the column {missing[0]} is missing; the first "
-            f"line must name the columns {', '.join(COLUMNS)}"
+            f"line must name the columns {', '.join(COLUMNS)}, with commas between them"
         )
+    if unknown := [c for c in header if c not in (*COLUMNS, "joint")]:
+        raise TableError(
+            f"{path.name}, line {numbered[0][0]}: the column {unknown[0]} is unknown; there are "
+            f"{', '.join(COLUMNS)} and, if wanted, joint"
+        )
+    if len(numbered) == 1:
+        raise TableError(f"{path.name}: the table has no rows, only the names of its columns")
     for number, cells in numbered[1:]:
         where = f"{path.name}, line {number}"
         if len(cells) != len(header):
             raise TableError(f"{where}: {len(cells)} entries in {len(header)} columns")
         cell = dict(zip(header, (c.strip() for c in cells), strict=True))
         entries = {c: _expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
+        for column in ("alpha", "theta"):
+            _check_angle(entries[column], cell[column], f"{where}, column {column}")
         joint, variable = _joint(cell.get("joint", ""), entries, where, table.parameters)
         if joint in table.joints:
             raise TableError(f"{where}: two joints have the name {joint}")
@@ -109,6 +136,23 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
         table.rows.append(tuple(entries[c] for c in COLUMNS))
     _other_symbols(table, [e for row in table.rows for e in row])
     return table
+
+
+def _check_angle(angle: Any, text: str, where: str) -> None:
+    """Angles are multiples of pi: a decimal is not exact, a whole number is in degrees."""
+    number = angle.as_coeff_Add()[0]
+    if not number.is_Rational or number == 0:
+        return
+    turns = {sp.Rational(k, 12) * sp.pi for k in range(-24, 25)}
+    degrees = number * sp.pi / 180
+    near = [t for t in turns if t == degrees or abs(t - number) < sp.Rational(1, 500)]
+    hint = "a symbol, with its value in a line '# name = value rad: what it is'"
+    if near:
+        hint = source(angle - number + near[0])
+    raise TableError(
+        f"{where}: angles are in radians and exact, as multiples of pi: write {hint} instead of "
+        f"{text}"
+    )
 
 
 def _joint(
@@ -135,7 +179,7 @@ def _joint(
 def read_screws(path: Path) -> Table:
     """Axes and the pose at home from TOML."""
     try:
-        data = tomllib.loads(path.read_text("utf-8"), parse_float=str)
+        data = tomllib.loads(_text(path), parse_float=str)
     except tomllib.TOMLDecodeError as error:
         raise TableError(f"{path.name}: {error}") from error
     table = Table()
@@ -178,11 +222,16 @@ def _expression(text: Any, where: str) -> Any:
     names = {n: real(n) for n in re.findall(r"[A-Za-z_]\w*", exact) if n not in IMPORTED}
     for name in names:
         _check_name(name, where)
+    called = [n for n in re.findall(r"([A-Za-z_]\w*)\s*\(", exact) if n not in IMPORTED]
+    if called or not re.fullmatch(r"[\w\s.,+\-*/()]+", exact):
+        raise TableError(
+            f"{where}: cannot read {text!r}; a formula has symbols, numbers and + - * /"
+        )
     try:
         value = sp.sympify(exact, names, rational=True)
     except (sp.SympifyError, SyntaxError, TypeError) as error:
         raise TableError(f"{where}: cannot read {text!r}") from error
-    if not isinstance(value, sp.Expr):
+    if not isinstance(value, sp.Expr) or value.has(sp.nan, sp.zoo, sp.oo):
         raise TableError(f"{where}: {text!r} is no number or formula")
     return value
 

@@ -129,7 +129,7 @@ def test_a_missing_branch() -> None:
     with pytest.raises(ProofError) as error:
         prove(d)
     message = str(error.value)
-    assert "2 solutions (counted from a Groebner basis), but 1 branches are given" in message
+    assert "2 solutions (counted from a Groebner basis), but 1 branch is given" in message
     assert (
         "The posture (theta1 = " in message and "is not covered: for its image up gives" in message
     )

@@ -62,7 +62,8 @@ class Chain:
 
     def __post_init__(self) -> None:
         self.joints = self.d.actuated
-        sized = [p.symbol for p in self.d.parameters if p.nonnegative]
+        lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
+        sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
         self.size = sp.Add(*sized)
         self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
         if self.is_pose:

@@ -185,7 +185,7 @@ def test_a_forearm_without_extent_and_a_negative_link(
     arm = importlib.import_module("out_fore.numpy.fore")
     q = np.random.default_rng(3).uniform(-3, 3, (40, 6))
     turn, quarter = dh, np.pi / 2
-    for a3, d4 in ((0.03, 0.42), (0.0, 0.42), (0.03, 0.0)):
+    for a3, d4 in ((0.03, 0.42), (0.0, 0.42), (0.03, 0.0), (0.0, 0.0)):
         params = arm.Parameters(a3=a3, d4=d4)
         for row in q:
             T = turn(0.1, -quarter, 0.3, row[0]) @ turn(-0.4, 0, 0, row[1])

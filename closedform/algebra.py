@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations
 
 import sympy as sp
 
@@ -30,6 +31,7 @@ __all__ = [
     "Undecided",
     "ZeroResult",
     "decide",
+    "determinant",
     "equal",
     "is_zero",
     "normal",
@@ -101,6 +103,32 @@ def normal(e: Expr, nonnegative: Iterable[Expr] = ()) -> Expr:
     scale = content(value.den)
     num, den = value.num / scale, value.den / scale
     return tower.expression(num) / tower.expression(den)
+
+
+def determinant(J: sp.MatrixBase) -> Expr:
+    """The normal form of a determinant without denominators, expanded by minors.
+
+    Every minor of the first columns is reduced at once, which keeps twists of general axes short;
+    the sparsest columns come first.
+    """
+    tower, entries = converted(J, ())
+    n = J.rows
+    columns = [entries[j::n] for j in range(n)]
+    order = sorted(range(n), key=lambda j: sum(len(e.num) for e in columns[j]))
+    swaps = sum(order[a] > order[b] for a, b in combinations(range(n), 2))
+    minors: dict[tuple[int, ...], Fraction] = {(): tower.one}
+    for k, j in enumerate(order):
+        longer: dict[tuple[int, ...], Fraction] = {}
+        for rows, minor in minors.items():
+            for i, entry in enumerate(columns[j]):
+                if i in rows or entry.num.is_zero():
+                    continue
+                chosen = tuple(sorted((*rows, i)))
+                term = tower.product(minor, entry, (-1) ** (k - chosen.index(i)))
+                longer[chosen] = tower.sum(longer[chosen], term) if chosen in longer else term
+        minors = longer
+    (value,) = minors.values() or (tower.zero,)
+    return (-1) ** swaps * tower.expression(value.num) / tower.expression(value.den)
 
 
 def positive_form(expr: Expr, slack: Sequence[tuple[sp.Symbol, Expr]]) -> Expr:

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import sympy as sp
-from sympy.polys.matrices import DomainMatrix
 
-from closedform.algebra import normal
+from closedform.algebra import determinant
 from closedform.derivation import Derivation
 from closedform.frames import (
     denavit_hartenberg,
@@ -239,6 +238,13 @@ def from_dh(
             raise RowError(
                 f"{d.name}: row {i} of the Denavit-Hartenberg table: the {joints[here[0]]} joint "
                 f"{here[0]} must stand in the column {kind}"
+            )
+        others = [e for e in entries if e is not place]
+        if place.diff(here[0]) != 1 or any(e.has(here[0]) for e in others):
+            raise RowError(
+                f"{d.name}: row {i} of the Denavit-Hartenberg table: the joint {here[0]} must "
+                f"stand in the column {kind} alone, as it is or with a constant added to it, not "
+                f"as {place if place.diff(here[0]) != 1 else tuple(entries)}"
             )
         motions.append((here[0], joints[here[0]]))
     exact = [tuple(map(sp.sympify, row)) for row in rows]
@@ -471,15 +477,9 @@ def _exact(value: Any, where: str) -> sp.Expr:
 
 def _determinant(J: sp.Matrix) -> sp.Expr:
     """Over the polynomials in sines and cosines, reduced on their circles, factored."""
-    det = _polynomial_determinant(J)
-    reduced = normal(det)
+    reduced = determinant(J)
     found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
     return found
-
-
-def _polynomial_determinant(J: sp.Matrix) -> sp.Expr:
-    matrix = DomainMatrix.from_Matrix(J.applyfunc(sp.expand))
-    return matrix.domain.to_sympy(matrix.charpoly()[-1]) * (-1) ** J.rows
 
 
 __all__ = [

@@ -20,7 +20,16 @@ from typing import Any
 import sympy as sp
 
 from closedform.derivation import Derivation, Inverse, Link, Solved
-from closedform.functions import SINGLE, Let, Program, Statement, branches, real, substitute
+from closedform.functions import (
+    SINGLE,
+    Let,
+    Program,
+    Statement,
+    branches,
+    choose,
+    real,
+    substitute,
+)
 from closedform.lemmas import Lemma
 from closedform.linklemmas import Applied
 from closedform.pairs import Pair
@@ -53,7 +62,8 @@ class Chain:
 
     def __post_init__(self) -> None:
         self.joints = self.d.actuated
-        sized = [p.symbol for p in self.d.parameters if p.nonnegative]
+        lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
+        sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
         self.size = sp.Add(*sized)
         self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
         if self.is_pose:
@@ -97,6 +107,16 @@ class Chain:
                 for j in range(value.cols)
             ],
         )
+
+    def direction(self, name: str, x: sp.Expr, y: sp.Expr) -> Pair:
+        """The pair of ``atan2(y, x)`` for a vector of parameters; where both are 0, that of 0."""
+        p = self.program
+        length = p.let(f"size_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
+        nothing = p.vanishes(f"no_{name}", length, 0, "it has no direction")
+        pair = Pair(choose(nothing, 0, y / length), choose(nothing, 1, x / length))
+        named = pair.known_as(p, f"_{name}")
+        self.meaning |= {named.s: y / sp.sqrt(x**2 + y**2), named.c: x / sp.sqrt(x**2 + y**2)}
+        return named
 
     def angle(self, name: str, value: sp.Expr) -> sp.Symbol:
         """An auxiliary angle: a sum of joints with integer coefficients, and a constant."""

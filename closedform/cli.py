@@ -283,15 +283,12 @@ def _errata() -> str:
 
 def _errata_of(options: argparse.Namespace) -> str:
     _require_extra()
-    from closedform.emit.render import shared_files
-
     derivations = {source: pipeline.load(source) for source in pipeline.sources()}
     papers = sorted({d.paper.key for d in derivations.values()})
     chosen = {s: d for s, d in derivations.items() if d.paper.key == options.paper}
     if not chosen:
         raise CommandError(_unknown("paper", options.paper, papers), 2)
-    proofs = [robot.proof for robot in _run(options, list(chosen), (), list(chosen)).robots]
-    return shared_files(list(chosen.values()), proofs, ("latex",))[Path("errata.md")]
+    return _run(options, list(chosen), ("latex",), list(chosen)).shared[Path("errata.md")]
 
 
 def _require_extra() -> None:

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import product
+from itertools import islice, product
 from typing import Any, TypeAlias
 
 import sympy as sp
@@ -267,10 +267,36 @@ class Function:
         return tuple(substitute(e, known) for e in exprs), tuple(bounds)
 
 
+SIMPLE = 50
+"""Nodes of an argument up to which SymPy may look for relations between it and the others."""
+
+
 def substitute(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
     """Replace symbols all at once; only what occurs is passed to SymPy, which is much faster."""
     occurring = {s: known[s] for s in expr.free_symbols if s in known}
-    return expr.xreplace(occurring) if occurring else expr
+    if not occurring:
+        return expr
+    return _rebuilt(expr, occurring) if expr.has(sp.Max, sp.Min) else expr.xreplace(occurring)
+
+
+def _rebuilt(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
+    """The same for an expression with ``Max`` or ``Min``.
+
+    SymPy factors the arguments of these, and expands that of ``Abs``, whenever they are made anew;
+    of large ones that takes a minute and finds nothing.
+    """
+    if expr in known:
+        return known[expr]
+    if not expr.free_symbols & known.keys():
+        return expr
+    args = [_rebuilt(a, known) for a in expr.args]
+    if isinstance(expr, sp.Max | sp.Min | sp.Abs) and not all(map(_is_simple, args)):
+        return expr.func(*args, evaluate=False)
+    return expr.func(*args)
+
+
+def _is_simple(expr: sp.Basic) -> bool:
+    return sum(1 for _ in islice(sp.preorder_traversal(expr), SIMPLE + 1)) <= SIMPLE
 
 
 @dataclass

@@ -16,7 +16,7 @@ import csv
 import keyword
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -31,7 +31,12 @@ from closedform.propose import NoChainError, propose, source
 
 COLUMNS = ("a", "alpha", "d", "theta")
 PARAMETER = re.compile(r"#\s*([A-Za-z_]\w*)\s*=\s*([-+\d./eE]+)\s*([^:]*?)\s*(?::\s*(.*))?$")
-IMPORTED = ("cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
+IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
+CHAIN = ("Reaching", "polar", "remainder", "slide", "turn", "turned", "two_links", "zyz")
+SCRIPT = {"Chain", "Derivation", "Paper", "Pair", "arm", "d", "forward", "from_dh", "from_screws"}
+LINES = {"M", "ahead", "ik", "p", "q", "reaching", "turn1", "wx", "wy", "x", "y", "yaw", "z", "rho"}
+TAKEN = SCRIPT | LINES | {*IMPORTED, *CHAIN}
+"""What the written script calls its own."""
 
 
 class TableError(ValueError):
@@ -55,13 +60,45 @@ def new(name: str, kind: str, path: Path, *, modified: bool = False) -> str:
     if not name.isidentifier() or keyword.iskeyword(name):
         raise TableError(f"{name!r} is no name of a module: letters, digits and _ only")
     table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
+    for symbol in (*table.parameters, *table.joints):
+        _check_name(symbol, path.name)
+    for symbol, given in table.parameters.items():
+        _check_value(symbol, given.get("value", "1"), path.name)
     return skeleton(name, table, path.name)
+
+
+def _check_name(name: str, where: str) -> None:
+    """A joint or a parameter becomes a variable of the script, which has some of its own."""
+    taken = name in TAKEN or re.fullmatch(r"(alpha|link)\d+_?", name)
+    if not name.isidentifier():
+        raise TableError(f"{where}: {name!r} is no name: letters, digits and _ only")
+    if taken or keyword.iskeyword(name):
+        raise TableError(
+            f"{where}: the name {name} has a meaning of its own in the script that is written; "
+            f"choose another, such as {name}_0"
+        )
+
+
+def _check_value(name: str, value: str, where: str) -> None:
+    try:
+        Fraction(value)
+    except (ValueError, ZeroDivisionError) as error:
+        raise TableError(
+            f"{where}: the value of {name} is {value!r}; it must be a number such as 0.45 or 9/20"
+        ) from error
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise TableError(f"{path.name} is no text in UTF-8: save it as plain text") from error
 
 
 def read_dh(path: Path, *, modified: bool = False) -> Table:
     """A Denavit-Hartenberg table from CSV."""
     table = Table(modified=modified)
-    lines = path.read_text("utf-8").splitlines()
+    lines = _text(path).splitlines()
     numbered = []
     for number, line in enumerate(lines, 1):
         if found := PARAMETER.match(line.strip()):
@@ -75,15 +112,24 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
     if missing := [c for c in COLUMNS if c not in header]:
         raise TableError(
             f"{path.name}, line {numbered[0][0]}: the column {missing[0]} is missing; the first "
-            f"line must name the columns {', '.join(COLUMNS)}"
+            f"line must name the columns {', '.join(COLUMNS)}, with commas between them"
         )
+    if unknown := [c for c in header if c not in (*COLUMNS, "joint")]:
+        raise TableError(
+            f"{path.name}, line {numbered[0][0]}: the column {unknown[0]} is unknown; there are "
+            f"{', '.join(COLUMNS)} and, if wanted, joint"
+        )
+    if len(numbered) == 1:
+        raise TableError(f"{path.name}: the table has no rows, only the names of its columns")
     for number, cells in numbered[1:]:
         where = f"{path.name}, line {number}"
         if len(cells) != len(header):
             raise TableError(f"{where}: {len(cells)} entries in {len(header)} columns")
         cell = dict(zip(header, (c.strip() for c in cells), strict=True))
         entries = {c: _expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
-        joint, variable = _joint(cell.get("joint", ""), entries, where)
+        for column in ("alpha", "theta"):
+            _check_angle(entries[column], cell[column], f"{where}, column {column}")
+        joint, variable = _joint(cell.get("joint", ""), entries, where, table.parameters)
         if joint in table.joints:
             raise TableError(f"{where}: two joints have the name {joint}")
         table.joints[joint] = variable
@@ -92,23 +138,48 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
     return table
 
 
-def _joint(given: str, entries: Mapping[str, Any], where: str) -> tuple[str, str]:
-    """The joint of a row and its kind."""
+def _check_angle(angle: Any, text: str, where: str) -> None:
+    """Angles are multiples of pi: a decimal is not exact, a whole number is in degrees."""
+    number = angle.as_coeff_Add()[0]
+    if not number.is_Rational or number == 0:
+        return
+    turns = {sp.Rational(k, 12) * sp.pi for k in range(-24, 25)}
+    degrees = number * sp.pi / 180
+    near = [t for t in turns if t == degrees or abs(t - number) < sp.Rational(1, 500)]
+    hint = "a symbol, with its value in a line '# name = value rad: what it is'"
+    if near:
+        hint = source(angle - number + near[0])
+    raise TableError(
+        f"{where}: angles are in radians and exact, as multiples of pi: write {hint} instead of "
+        f"{text}"
+    )
+
+
+def _joint(
+    given: str, entries: Mapping[str, Any], where: str, parameters: Container[str]
+) -> tuple[str, str]:
+    """The joint of a row and its kind; a symbol that has a value is a parameter."""
     for column, kind in (("theta", "revolute"), ("d", "prismatic")):
-        names = sorted(map(str, entries[column].free_symbols))
-        if given in names or (not given and len(names) == 1):
+        held = sorted(map(str, entries[column].free_symbols))
+        names = [n for n in held if n not in parameters]
+        if given in held or (not given and len(names) == 1):
             return given or names[0], kind
         if names and not given:
             raise TableError(
-                f"{where}: {', '.join(names)} stand in {column}; name the joint in a column joint"
+                f"{where}: {', '.join(names)} stand in {column}, and only one can be the joint: "
+                f"give the others their values in lines '# {names[-1]} = 0.1 m: what it is', or "
+                f"add a column joint with the name of the joint"
             )
-    raise TableError(f"{where}: no joint: neither theta nor d holds {given or 'a symbol'}")
+    raise TableError(
+        f"{where}: no joint: neither theta nor d holds {given or 'a symbol without a value'}; a "
+        f"revolute joint is a symbol in theta, such as theta1, a slide one in d"
+    )
 
 
 def read_screws(path: Path) -> Table:
     """Axes and the pose at home from TOML."""
     try:
-        data = tomllib.loads(path.read_text("utf-8"), parse_float=str)
+        data = tomllib.loads(_text(path), parse_float=str)
     except tomllib.TOMLDecodeError as error:
         raise TableError(f"{path.name}: {error}") from error
     table = Table()
@@ -149,11 +220,18 @@ def _expression(text: Any, where: str) -> Any:
         r"(?<![\w.])\d*\.\d+(?:[eE][-+]?\d+)?", lambda m: f"({Fraction(m[0])})", str(text)
     )
     names = {n: real(n) for n in re.findall(r"[A-Za-z_]\w*", exact) if n not in IMPORTED}
+    for name in names:
+        _check_name(name, where)
+    called = [n for n in re.findall(r"([A-Za-z_]\w*)\s*\(", exact) if n not in IMPORTED]
+    if called or not re.fullmatch(r"[\w\s.,+\-*/()]+", exact):
+        raise TableError(
+            f"{where}: cannot read {text!r}; a formula has symbols, numbers and + - * /"
+        )
     try:
         value = sp.sympify(exact, names, rational=True)
     except (sp.SympifyError, SyntaxError, TypeError) as error:
         raise TableError(f"{where}: cannot read {text!r}") from error
-    if not isinstance(value, sp.Expr):
+    if not isinstance(value, sp.Expr) or value.has(sp.nan, sp.zoo, sp.oo):
         raise TableError(f"{where}: {text!r} is no number or formula")
     return value
 
@@ -283,18 +361,7 @@ def _imports(text: str) -> str:
         "closedform.arm": used(["from_dh", "from_screws"]),
         "closedform.chain": used(["Chain"]),
         "closedform.derivation": ["Derivation", "Paper"],
-        "closedform.linklemmas": used(
-            [
-                "Reaching",
-                "polar",
-                "remainder",
-                "slide",
-                "turn",
-                "turned",
-                "two_links",
-                "zyz",
-            ]
-        ),
+        "closedform.linklemmas": used(CHAIN),
         "closedform.pairs": used(["Pair"]),
     }
     lines = [

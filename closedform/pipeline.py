@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from closedform.derivation import Derivation
+    from closedform.emit.render import Share
     from closedform.prove import Proof
 
 BACKENDS = ("numpy", "c", "latex", "data")
@@ -76,6 +77,7 @@ class Printed:
     seconds: float
     stored: bool
     files: Files
+    share: Share
 
     def line(self, width: int = 0) -> str:
         taken = f"{self.seconds:.1f} s{' (unchanged)' if self.stored else ''}"
@@ -192,6 +194,9 @@ def load(source: Source) -> Derivation:
 def _module(source: Source) -> Any:
     if source.module:
         return importlib.import_module(source.module)
+    mark = _digest(_with_imports(source.path))
+    if (known := _modules.get(source.path)) and known[0] == mark:
+        return known[1]
     folder = str(source.path.parent)
     if folder not in sys.path:
         sys.path.append(folder)
@@ -200,7 +205,12 @@ def _module(source: Source) -> Any:
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
+    _modules[source.path] = mark, module
     return module
+
+
+_modules: dict[Path, tuple[str, Any]] = {}
+"""Scripts outside the package that were run, each with a digest of what it was run from."""
 
 
 def _located(error: Exception, path: Path) -> str:
@@ -274,12 +284,18 @@ def default_store() -> Store:
 
 def digest(source: Source) -> str:
     """A digest of the script, what it imports from beside it, the toolkit and its algebra."""
+    algebra = [f"{package} {version(package)}\n" for package in ("sympy", "python-flint")]
+    return _digest([*_with_imports(source.path), *_toolkit()], algebra)
+
+
+def _digest(paths: Iterable[Path], lines: Iterable[str] = ()) -> str:
     total = hashlib.sha256()
-    for path in [*_with_imports(source.path), *_toolkit()]:
-        total.update(f"{path.name} {len(path.read_bytes())}\n".encode())
-        total.update(path.read_bytes())
-    for package in ("sympy", "python-flint"):
-        total.update(f"{package} {version(package)}\n".encode())
+    for path in paths:
+        content = path.read_bytes()
+        total.update(f"{path.name} {len(content)}\n".encode())
+        total.update(content)
+    for line in lines:
+        total.update(line.encode())
     return total.hexdigest()
 
 
@@ -334,7 +350,7 @@ def print_robot(
     source: Source, backends: Sequence[str], store: Store, fresh: bool, report: Report
 ) -> Printed:
     """Prove one robot, unless a kept proof still holds, and print its files."""
-    from closedform.emit.render import robot_files
+    from closedform.emit.render import pages
 
     report(source.name, "derivation")
     start = time.perf_counter()
@@ -349,10 +365,10 @@ def print_robot(
         store.put(source, mark, proof, seconds)
     report(source.name, "printing")
     try:
-        printed = robot_files(derivation, proof, backends)
+        printed = pages(derivation, proof, backends)
     except (ValueError, TypeError, KeyError, NotImplementedError) as error:
         raise DerivationError(source.name, f"not printed: {error}") from error
-    return Printed(source.name, proof, seconds, kept is not None, printed)
+    return Printed(source.name, proof, seconds, kept is not None, printed.files, printed.share)
 
 
 def run(
@@ -376,10 +392,8 @@ def run(
     shared: Files = {}
     if not failures:
         report("", "shared files")
-        proofs = {robot.name: robot.proof for robot in robots}
-        shared = shared_files(
-            [load(s) for s in together], [proofs[s.name] for s in together], backends
-        )
+        shares = {robot.name: robot.share for robot in robots}
+        shared = shared_files([shares[s.name] for s in together], backends)
     names = {source.name for source in chosen}
     return Result(
         tuple(r for r in robots if r.name in names),
@@ -401,6 +415,7 @@ def _each(
                 outcomes[source.name] = job(source, report=report)
             except DerivationError as error:
                 outcomes[source.name] = error
+            report(source.name, "")
     ordered = [outcomes[source.name] for source in chosen]
     return (
         [o for o in ordered if isinstance(o, Printed)],

@@ -26,7 +26,7 @@ from closedform.frames import rotation
 from closedform.pairs import Pair
 
 Z = sp.Matrix([0, 0, 1])
-NAMES = ("Matrix", "Rational", "atan", "atan2", "cos", "pi", "sin", "sqrt")
+NAMES = ("Abs", "Matrix", "Rational", "atan", "atan2", "cos", "pi", "sin", "sqrt")
 """What the lines use of SymPy."""
 
 
@@ -295,6 +295,9 @@ class _Maker:
         c, s = v[0] / length, v[1] / length
         if s == 0 and c == 1:
             return pair
+        if c.free_symbols | s.free_symbols:
+            self.add(f"ahead = ik.direction('ahead', {source(v[0])}, {source(v[1])})")
+            return f"({pair} - ahead)"
         return f"({pair} + Pair({source(-s)}, {source(c)}))"
 
     def _turret(self, groups: Sequence[Group], kinds: Sequence[str]) -> tuple[str, list[str]]:

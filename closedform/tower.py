@@ -194,6 +194,12 @@ class Tower:
             return self._power(self._sqrt(self.convert(base)), int(exponent.p))
         raise Undecided(f"{e} is neither an integer power nor a square root: rewrite it as such")
 
+    def sum(self, a: Fraction, b: Fraction) -> Fraction:
+        return self._add(a, b)
+
+    def product(self, a: Fraction, b: Fraction, factor: int = 1) -> Fraction:
+        return self._mul(self._mul(a, b), self._constant(factor))
+
     # Generators
 
     def _generator(self, meaning: Expr, sign: int) -> fmpq_mpoly:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sympy import Abs, Rational, acos, asin, atan, atan2, cos, pi, sin, sqrt, tan
 from sympy.simplify.fu import TR8
 
-from closedform.algebra import Undecided, decide, equal, is_zero, normal
+from closedform.algebra import Undecided, decide, determinant, equal, is_zero, normal
 from closedform.tower import InexactNumberError
 
 x, y, theta, phi = sp.symbols("x y theta phi", real=True)
@@ -283,3 +283,19 @@ def test_a_guard_that_vanishes_licenses_nothing() -> None:
     assert not is_zero(
         sqrt(x**2) - x, nonnegative=[y - y, sp.sin(theta) ** 2 + sp.cos(theta) ** 2 - 1]
     )
+
+
+def test_determinant_by_minors() -> None:
+    """Against SymPy's own, with angles that add up; and zero where rows depend on each other."""
+    a, b = sp.symbols("a b", real=True)
+    J = sp.Matrix(
+        [
+            [sp.cos(a), sp.sin(a + b), 0, 1],
+            [sp.sin(a), a, sp.sqrt(2), 0],
+            [0, sp.cos(b), b, sp.sin(a)],
+            [1, 0, 0, sp.sin(b) ** 2],
+        ]
+    )
+    assert equal(determinant(J), J.det(method="berkowitz"))
+    J[3, :] = J[0, :] * 2
+    assert determinant(J) == 0

@@ -39,7 +39,10 @@ def run(program: Lowered, values: dict[str, float]) -> list[float]:
         "cos": math.cos,
         "abs": abs,
         "atan2": math.atan2,
-        "wrap": lambda a: math.remainder(a, 2 * math.pi),
+        "wrap": lambda a: a - math.tau * (a > math.pi) + math.tau * (a <= -math.pi),
+        "wrap_down": lambda a: a - math.tau * (a > math.pi),
+        "wrap_up": lambda a: a + math.tau * (a <= -math.pi),
+        "wrap_cut": lambda a: math.pi if a <= -math.pi else a,
     }
     for node in program.schedule():
         if node.op == "const":
@@ -182,3 +185,24 @@ def test_long_chains_stay_linear() -> None:
     first, second = operations[1] - operations[0], operations[2] - operations[1]
     assert first == second
     assert second <= 6 * 180
+
+
+def test_an_angle_behind_a_name_is_wrapped() -> None:
+    """What is added to an arctangent that has a name needs the wrap as much as the name's value."""
+    d = Derivation("test", "", Paper("", "", ()), "")
+    p = Program()
+    a, b = p.let("a", sp.atan2(y, x)), p.let("b", sp.atan2(z, x))
+    entries = [a + b, a - b, a + 2 * b, 2 * a + 3 * b, sp.sin(a), x * a, a + z]
+    program = lower(d.function("f", "", {"q": SYMBOLS}, {"y": entries}, program=p), d)
+    for values in ((-1.0, 0.1, 0.2), (-1.0, -0.1, -0.2), (-2.0, 1e-9, 1e-9), (-1.0, 0.3, -9.0)):
+        got = run(program, dict(zip("xyz", values, strict=True)))
+        u, v, w = values
+        t, s = math.atan2(v, u), math.atan2(w, u)
+        wanted = [t + s, t - s, t + 2 * s, 2 * t + 3 * s, math.sin(t), u * t, t + w]
+        for k, (found, exact) in enumerate(zip(got, wanted, strict=True)):
+            if k in (4, 5):
+                assert found == pytest.approx(exact)
+            else:
+                assert -math.pi < found <= math.pi * (1 + 1e-15)
+                assert math.sin(found - exact) == pytest.approx(0, abs=1e-12)
+                assert math.cos(found - exact) == pytest.approx(1)

@@ -128,6 +128,19 @@ def test_screws(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         ("dh", "a, alpha, d, theta\n(, 0, 0, t\n", "line 2, column a: cannot read '('"),
         ("dh", "# L = 1 m: x\na, alpha, d, theta\n0, 0, 0, t\n", "the parameter L stands nowhere"),
         ("dh", "", "the table is empty"),
+        ("dh", "a, alpha, d, theta\n", "the table has no rows"),
+        ("dh", "a; alpha; d; theta\n", "with commas between them"),
+        ("dh", "a, alpha, d, theta, m\n0, 0, 0, t, 1\n", "line 1: the column m is unknown"),
+        ("dh", "a, alpha, d, theta\n1, 90, 0, t\n", "column alpha: angles are in radians and"),
+        ("dh", "a, alpha, d, theta\n1, 1.5708, 0, t\n", "write pi/2 instead of 1.5708"),
+        ("dh", "a, alpha, d, theta\n1, 0, 0, t + 90\n", "write t + pi/2 instead of t + 90"),
+        ("dh", "a, alpha, d, theta\n1, 0.3, 0, t\n", "write a symbol, with its value in a line"),
+        ("dh", "a, alpha, d, theta\n1, 0, 0, 2*t\n", "as it is or with a constant added"),
+        ("dh", "a, alpha, d, theta\n1/0, 0, 0, t\n", "column a: '1/0' is no number or formula"),
+        ("dh", "a, alpha, d, theta\n1, 0, 0, foo(t)\n", "column theta: cannot read 'foo(t)'"),
+        ("dh", "a, alpha, d, theta\nlambda, 0, 0, t\n", "the name lambda has a meaning"),
+        ("dh", "a, alpha, d, theta\nx, 0, 0, t\n", "the name x has a meaning"),
+        ("dh", "# L = 1/0 m: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is '1/0'"),
         ("screws", "axes = 3 4", "table: "),
         ("screws", "[parameters]\n", "there are no [[axes]]"),
         ("screws", '[[axes]]\njoint = "t"\n', "axis 1: direction is missing"),
@@ -142,6 +155,47 @@ def test_a_table_that_cannot_be_read(
     assert main(["new", "arm", "--from", kind, str(table), "-o", str(tmp_path)]) == 1
     assert message in capsys.readouterr().err
     assert not (tmp_path / "arm.py").exists()
+
+
+def test_a_table_that_is_no_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = tmp_path / "table.csv"
+    table.write_bytes(b"\xff\xfe\x00a")
+    assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
+    assert "is no text in UTF-8" in capsys.readouterr().err
+    table.write_bytes(b"\xef\xbb\xbf" + ELBOW.encode())
+    assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 0
+
+
+def test_a_forearm_without_extent_and_a_negative_link(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The angle between a3 and d4 has a convention where both vanish; lengths may be negative."""
+    table = tmp_path / "t.csv"
+    table.write_text(
+        "# a2 = -0.4 m: upper arm\n# a3 = 0.03 m: offset\n# d4 = 0.42 m: forearm\n"
+        "a, alpha, d, theta\n0.1, -pi/2, 0.3, theta1\na2, 0, 0, theta2\na3, -pi/2, 0, theta3\n"
+        "0, pi/2, d4, theta4\n0, -pi/2, 0, theta5\n0, 0, 0.08, theta6\n",
+        "utf-8",
+    )
+    assert main(["new", "fore", "--from", "dh", str(table), "-o", str(tmp_path)]) == 0
+    script, out = str(tmp_path / "fore.py"), str(tmp_path / "out_fore")
+    assert main(["derive", script, "-o", out, "--backend", "numpy", "--no-crosscheck"]) == 0
+    monkeypatch.syspath_prepend(str(tmp_path))
+    importlib.invalidate_caches()
+    arm = importlib.import_module("out_fore.numpy.fore")
+    q = np.random.default_rng(3).uniform(-3, 3, (40, 6))
+    turn, quarter = dh, np.pi / 2
+    for a3, d4 in ((0.03, 0.42), (0.0, 0.42), (0.03, 0.0), (0.0, 0.0)):
+        params = arm.Parameters(a3=a3, d4=d4)
+        for row in q:
+            T = turn(0.1, -quarter, 0.3, row[0]) @ turn(-0.4, 0, 0, row[1])
+            T = T @ turn(a3, -quarter, 0, row[2]) @ turn(0, quarter, d4, row[3])
+            T = T @ turn(0, -quarter, 0, row[4]) @ turn(0, 0, 0.08, row[5])
+            solutions, status = arm.ik(T, params)
+            found = np.isin(status, (0, 2))
+            assert found.any()
+            reached = arm.pose(solutions[found], params)
+            np.testing.assert_allclose(reached, np.broadcast_to(T, reached.shape), atol=1e-12)
 
 
 def test_new_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,7 +11,7 @@ from closedform.generated.numpy import _runtime
 from closedform.functions import real
 from closedform.lower.build import Builder
 from closedform.lower.graph import Graph
-from closedform.lower.ranges import Ranges
+from closedform.lower.ranges import Ranges, UnboundedError
 
 x, y, length = real("x"), real("y"), real("length", nonnegative=True)
 norm = sp.sqrt(x**2 + y**2)
@@ -34,8 +34,8 @@ ANGLES = {
     "of a difference": (sp.atan2(norm - length, x), "wrap_cut"),
     "of a root that may be a negative zero": (sp.atan2(sp.sqrt(length), x), "wrap_cut"),
     "of a square": (sp.atan2(x**2, y), None),
-    "an input": (x, "wrap"),
-    "an unknown multiple": (3 * free, "wrap"),
+    "times a sign": (sp.Piecewise((1, x >= 0), (-1, True)) * upper, "wrap_cut"),
+    "more than a turn": (3 * upper, "wrap_cut"),  # of a wrap
 }
 
 
@@ -53,13 +53,19 @@ def test_the_cheapest_wrap_that_does(name: str) -> None:
     assert wrapped.op == wrap if wrap else wrapped is node
 
 
-@pytest.mark.parametrize("name", [n for n in ANGLES if n not in ("an input", "beside zero")])
+@pytest.mark.parametrize("unknown", [x, x + free, y * free, sp.sin(free)])
+def test_no_range_is_made_up(unknown: sp.Expr) -> None:
+    graph, node = lowered(unknown)
+    with pytest.raises(UnboundedError):
+        Ranges().wrapped(graph, node)
+
+
+@pytest.mark.parametrize("name", [n for n in ANGLES if n != "beside zero"])
 def test_values_lie_in_the_range(name: str) -> None:
     """At random points and where coordinates are zeros of either sign."""
     angle, _ = ANGLES[name]
     found = Ranges(["length"]).of(lowered(angle)[1])
-    if found is None:
-        return
+    assert found is not None
     values = [0.0, -0.0, 1.0, -1.0, *np.random.default_rng(0).uniform(-2, 2, 12)]
     points = np.array([(a, b, abs(c)) for a in values for b in values for c in (0.0, 0.5)]).T
     points = np.hstack([points, [[-1.0], [0.0], [-0.0]]])

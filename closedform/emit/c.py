@@ -20,7 +20,7 @@ from closedform.derivation import Derivation
 from closedform.emit.code import WRAPS, Printer, Text
 from closedform.emit.text import WIDTH, banner, describe, interface
 from closedform.functions import Function
-from closedform.lower import Lowered, lower
+from closedform.lower import Lowered
 from closedform.lower.graph import Node
 from closedform.tolerances import DOUBLE, FLOAT
 
@@ -218,10 +218,10 @@ def robot(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, A
     }
 
 
-def shared(derivations: Sequence[Derivation]) -> dict[str, Any]:
-    """The context of the files that all robots share."""
+def shared(robots: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """The context of the files that all robots share, from those of the robots."""
     return {
-        "robots": [robot(d, {f.name: lower(f, d) for f in d.functions}) for d in derivations],
+        "robots": robots,
         "tolerances": [
             (name.upper(), repr(getattr(DOUBLE, name)), repr(getattr(FLOAT, name)))
             for name in ("feasibility", "vanishing", "rotation")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from closedform.claims import PROVED, VERDICTS
@@ -13,31 +14,54 @@ from closedform.emit.prose import Prose
 from closedform.prove import ClaimResult, Proof
 
 
-def errata(derivations: Sequence[Derivation], proofs: Sequence[Proof]) -> dict[str, Any]:
+@dataclass(frozen=True)
+class Part:
+    """What one mechanism adds to the errata, in plain strings."""
+
+    paper: dict[str, str]
+    mechanism: dict[str, Any]
+    counts: Counter[str]
+
+
+def part(derivation: Derivation, proof: Proof) -> Part | None:
+    """The part of a mechanism; None where its paper claims nothing."""
+    if not proof.claims:
+        return None
+    prose = Prose(derivation)
+    claims = [_entry(claim, prose) for claim in proof.claims if claim.kind != PROVED]
+    paper = derivation.paper
+    return Part(
+        {
+            "key": paper.key,
+            "title": paper.title,
+            "authors": ", ".join(paper.authors),
+            "reference": paper.reference,
+        },
+        {"title": derivation.title, "claims": claims},
+        Counter(c.kind for c in proof.claims),
+    )
+
+
+def together(parts: Iterable[Part | None]) -> dict[str, Any]:
     """The context of ``errata.md.jinja``: per paper, what is not simply proved."""
     papers: dict[str, dict[str, Any]] = {}
     counts: dict[str, Counter[str]] = {}
-    for derivation, proof in zip(derivations, proofs, strict=True):
-        if not proof.claims:
+    for found in parts:
+        if found is None:
             continue
-        key = derivation.paper.key
-        paper = papers.setdefault(
-            key,
-            {
-                "title": derivation.paper.title,
-                "authors": ", ".join(derivation.paper.authors),
-                "reference": derivation.paper.reference,
-                "mechanisms": [],
-            },
-        )
-        prose = Prose(derivation)
-        claims = [_entry(claim, prose) for claim in proof.claims if claim.kind != PROVED]
-        paper["mechanisms"].append({"title": derivation.title, "claims": claims})
-        counts.setdefault(key, Counter()).update(c.kind for c in proof.claims)
+        key = found.paper["key"]
+        paper = papers.setdefault(key, {**found.paper, "mechanisms": []})
+        paper["mechanisms"].append(found.mechanism)
+        counts.setdefault(key, Counter()).update(found.counts)
     for key, paper in papers.items():
         paper["counts"] = [(kind, counts[key][kind]) for kind in VERDICTS]
         paper["total"] = sum(counts[key].values())
     return {"papers": list(papers.values())}
+
+
+def errata(derivations: Sequence[Derivation], proofs: Sequence[Proof]) -> dict[str, Any]:
+    """The same context from derivations and their proofs."""
+    return together(map(part, derivations, proofs))
 
 
 def _entry(claim: ClaimResult, prose: Prose) -> dict[str, str]:

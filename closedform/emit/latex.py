@@ -251,7 +251,7 @@ class Page:
         symbols = {s.name: s for f in self.derivation.functions for s in f.symbols}
         symbols |= {p.name: p.symbol for p in self.derivation.parameters}
         known = self.derivation[result.function]
-        named = self.named_bounds(known) if result.assumptions else {}
+        named = self.named_bounds(known, result.assumptions)
         assumed = dict.fromkeys(
             self.math(named.get(a) or sp.sympify(a, symbols)) for a in result.assumptions
         )
@@ -268,13 +268,28 @@ class Page:
             "continua": result.continua,
         }
 
-    def named_bounds(self, function: Function) -> dict[str, sp.Symbol]:
-        """The name of each bound by its explicit form, in whichever branch."""
-        names = [s.symbol for s in function.body if isinstance(s, Bound)]
+    def named_bounds(self, function: Function, assumed: Sequence[str]) -> dict[str, sp.Symbol]:
+        """The name of each bound by its explicit form, in whichever branch.
+
+        Only of bounds that rest on what some assumption holds: the others cannot be one, and may
+        be very long.
+        """
+        held = [set(re.findall(r"\w+", text)) for text in assumed]
+        rests: dict[sp.Basic, set[str]] = {}
+        names = []
+        for statement in function.body:
+            if isinstance(statement, Let | Bound):
+                free = statement.value.free_symbols
+                rests[statement.symbol] = {n for s in free for n in rests.get(s, {str(s)})}
+                if isinstance(statement, Bound):
+                    names.append(statement.symbol)
+        signs = {str(s) for _, chosen in function.cases() for s in chosen}
+        flags = {str(s.symbol) for s in function.body if isinstance(s, Vanishes)}
+        names = [n for n in names if any(rests[n] - signs - flags <= h for h in held)]
         return {
-            str(explicit): name
-            for _, signs in function.cases()
-            for explicit, name in zip(function.bounds(signs), names, strict=True)
+            str(function.explicit([name], chosen)[1][-1]): name
+            for _, chosen in function.cases()
+            for name in names
         }
 
     def claims(self) -> list[dict[str, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -12,7 +13,7 @@ import jinja2
 
 from closedform.derivation import Derivation
 from closedform.emit import c, latex, numpy
-from closedform.emit.errata import errata
+from closedform.emit.errata import Part, part, together
 from closedform.emit.table import csv
 from closedform.lower import lower
 from closedform.prove import Proof
@@ -35,44 +36,67 @@ def render(template: str, context: Mapping[str, Any]) -> str:
     return environment().get_template(template).render(context)
 
 
-def robot_files(
-    derivation: Derivation, proof: Proof, backends: Sequence[str] = BACKENDS
-) -> dict[Path, str]:
-    """Every file of one mechanism: the path below ``generated/`` and the contents."""
+@dataclass(frozen=True)
+class Share:
+    """What one mechanism adds to the files that all share: plain strings, cheap to hand on."""
+
+    c: Mapping[str, Any] | None = None
+    errata: Part | None = None
+
+
+@dataclass(frozen=True)
+class Pages:
+    """The files of one mechanism, by their path below ``generated/``, and its share of others."""
+
+    files: dict[Path, str]
+    share: Share
+
+
+def pages(derivation: Derivation, proof: Proof, backends: Sequence[str] = BACKENDS) -> Pages:
+    """Print one mechanism."""
     name = derivation.name
-    lowered = {f.name: lower(f, derivation) for f in derivation.functions}
     printed: dict[Path, str] = {}
+    robot = None
+    lowered = (
+        {f.name: lower(f, derivation) for f in derivation.functions}
+        if {"numpy", "c"} & set(backends)
+        else {}
+    )
     if "numpy" in backends:
         context = numpy.module(derivation, lowered)
         printed[Path("numpy", f"{name}.py")] = render("numpy/module.py.jinja", context)
     if "c" in backends:
-        context = c.robot(derivation, lowered)
-        printed[Path("c", f"{name}.h")] = render("c/robot.h.jinja", context)
-        printed[Path("c", f"{name}.c")] = render("c/robot.c.jinja", context)
-        printed[Path("c", f"{name}.py")] = render("c/module.py.jinja", context)
+        robot = c.robot(derivation, lowered)
+        printed[Path("c", f"{name}.h")] = render("c/robot.h.jinja", robot)
+        printed[Path("c", f"{name}.c")] = render("c/robot.c.jinja", robot)
+        printed[Path("c", f"{name}.py")] = render("c/module.py.jinja", robot)
     if "latex" in backends:
         context = latex.document(derivation, proof)
         printed[Path("latex", f"{name}.tex")] = render("latex/robot.tex.jinja", context)
     if "data" in backends:
         for table in derivation.tables:
             printed[Path("data", f"{table.name}.csv")] = csv(derivation, table)
-    return printed
+    return Pages(printed, Share(robot, part(derivation, proof) if "latex" in backends else None))
 
 
-def shared_files(
-    derivations: Sequence[Derivation],
-    proofs: Sequence[Proof],
-    backends: Sequence[str] = BACKENDS,
+def robot_files(
+    derivation: Derivation, proof: Proof, backends: Sequence[str] = BACKENDS
 ) -> dict[Path, str]:
-    """The files that all mechanisms share."""
+    """Every file of one mechanism: the path below ``generated/`` and the contents."""
+    return pages(derivation, proof, backends).files
+
+
+def shared_files(shares: Sequence[Share], backends: Sequence[str] = BACKENDS) -> dict[Path, str]:
+    """The files that all mechanisms share, from what each of them reported."""
     printed: dict[Path, str] = {}
     if "numpy" in backends:
         context = numpy.runtime()
         printed[Path("numpy", "_runtime.py")] = render("numpy/_runtime.py.jinja", context)
     if "c" in backends:
-        context = c.shared(derivations)
+        context = c.shared([share.c for share in shares if share.c is not None])
         for name in ("closedform.h", "extension.c", "CMakeLists.txt", "closedform-config.cmake.in"):
             printed[Path("c", name)] = render(f"c/{name}.jinja", context)
     if "latex" in backends:
-        printed[Path("errata.md")] = render("errata.md.jinja", errata(derivations, proofs))
+        context = together(share.errata for share in shares)
+        printed[Path("errata.md")] = render("errata.md.jinja", context)
     return printed

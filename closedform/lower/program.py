@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import sympy as sp
 
@@ -12,8 +13,9 @@ from closedform.derivation import Derivation
 from closedform.functions import Array, Bound, Function, Let, Match, Require, Vanishes
 from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.graph import Graph, Node, reachable
-from closedform.lower.ranges import Ranges
+from closedform.lower.ranges import Ranges, UnboundedError
 from closedform.lower.share import share
+from closedform.lower.turns import Turns
 
 LEAVES = frozenset({"const", "input", "nan", "tolerance", "true", "false", "sin", "cos"})
 
@@ -71,11 +73,13 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
     graph = Graph()
     parameters = [p.symbol for p in derivation.parameters]
     leaves = {s: graph.input(s.name) for s in (*function.symbols, *parameters)}
-    divisors = angle_divisors(_expressions(function))
+    entries = Turns.of(function, derivation).entries()
+    divisors = angle_divisors([*_expressions(function), *(e for e, _ in entries)])
     names: dict[int, str] = {}
     rows = []
     for label, signs in function.cases():
-        rows.append(_Branch(function, derivation, graph, leaves, divisors, signs).run(names, label))
+        branch = _Branch(function, derivation, graph, leaves, divisors, signs, entries)
+        rows.append(branch.run(names, label))
     results = []
     for k, output in enumerate(function.outputs):
         nodes = tuple(n for row in rows for n in row[0][k])
@@ -138,6 +142,7 @@ class _Branch:
     leaves: Mapping[sp.Basic, Node]
     divisors: Mapping[sp.Basic, int]
     signs: Mapping[sp.Symbol, int]
+    entries: Sequence[tuple[sp.Expr, bool]]
 
     def run(self, names: dict[int, str], label: str) -> tuple[list[list[Node]], Node]:
         graph = self.graph
@@ -186,10 +191,8 @@ class _Branch:
             (failed, "failed"),
         ):
             names.setdefault(node.id, name)
-        outputs = [
-            [self._output(build, failed, e) for e in output.entries]
-            for output in self.function.outputs
-        ]
+        nodes = iter([self._output(build, failed, e, angle) for e, angle in self.entries])
+        outputs = [list(islice(nodes, output.size)) for output in self.function.outputs]
         return outputs, self._status(bad_input, out_of_reach, graph.any(singular))
 
     @property
@@ -205,13 +208,19 @@ class _Branch:
         marked = self._guarded
         return Ranges([p.name for p in self.derivation.parameters if marked and p.nonnegative])
 
-    def _output(self, build: Builder, failed: Node, entry: sp.Basic) -> Node:
+    def _output(self, build: Builder, failed: Node, entry: sp.Expr, angle: bool) -> Node:
         """The value of an entry; adding NaN to a failed one is one selection for all entries."""
         node = build(entry)
         if self.function.boolean:
             return self.graph.every([self.graph.negate(failed), node])
-        if entry.has(sp.atan2):
-            node = self._ranges.wrapped(self.graph, node)
+        if angle:
+            try:
+                node = self._ranges.wrapped(self.graph, node)
+            except UnboundedError:
+                raise TypeError(
+                    f"{self.function.name}: the size of the angle {entry} is not known, so that it "
+                    f"cannot be brought into (-pi, pi]; write it as atan2(sin, cos)"
+                ) from None
         if failed.op == "false":
             return node
         return self.graph.node("add", node, self.graph.node("poison", failed))

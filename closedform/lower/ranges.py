@@ -13,9 +13,13 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from closedform.lower.graph import BOOLEAN, Graph, Node, constant_of, is_const
+from closedform.lower.graph import Graph, Node, constant_of, is_const
 
 Range: TypeAlias = "tuple[Fraction, Fraction]"
+
+
+class UnboundedError(ValueError):
+    """Nothing is known of the size of an angle."""
 
 
 class Ranges:
@@ -25,8 +29,14 @@ class Ranges:
         self.lengths = frozenset(lengths)
 
     def wrapped(self, graph: Graph, angle: Node) -> Node:
-        """The angle in (-pi, pi], by the cheapest of the wraps that its range allows."""
-        low, high = self.of(angle) or (Fraction(-2), Fraction(2))
+        """The angle in (-pi, pi], by the cheapest of the wraps that its range allows.
+
+        Raises :class:`UnboundedError` where no range is known.
+        """
+        found = self.of(angle)
+        if found is None:
+            raise UnboundedError
+        low, high = found
         while low < -2 or high > 2:
             angle = graph.node("wrap", angle)
             low, high = min(low + 2, Fraction(-1)), max(high - 2, Fraction(1))
@@ -40,26 +50,40 @@ class Ranges:
         value = constant_of(node)
         if value is not None:
             multiple = 2 * sp.sympify(value) / sp.pi
-            half_turns = Fraction(int(multiple), 2) if multiple.is_Integer else None
-            return None if half_turns is None else (half_turns, half_turns)
+            return _point(Fraction(int(multiple), 2)) if multiple.is_Integer else None
         if node.op == "atan2":
             y, x = node.args
             high = Fraction(1, 2) if self.positive(x) else Fraction(1)
             return (Fraction(0) if self.positive(y) else -high), high
-        parts = [self.of(a) for a in node.args if a.op not in BOOLEAN]
+        if node.op == "product":
+            return self._product(node)
+        parts = [self.of(a) for a in (node.args[1:] if node.op == "select" else node.args)]
         known = [p for p in parts if p is not None]
-        if node.op == "neg" and known:
-            return -known[0][1], -known[0][0]
-        if node.op == "sum" and len(known) == len(parts):
-            zero = Fraction(0)
-            return sum((p[0] for p in known), zero), sum((p[1] for p in known), zero)
-        if node.op == "select" and len(known) == 2:
-            return min(p[0] for p in known), max(p[1] for p in known)
-        if node.op == "product" and len(node.args) == 2 and len(known) == 1:
-            factor = next((v for a in node.args if (v := constant_of(a)) is not None), None)
-            if factor is not None and factor == 2:
-                return 2 * known[0][0], 2 * known[0][1]
+        if not known or len(known) < len(parts):
+            return None
+        lows, highs = zip(*known, strict=True)
+        match node.op:
+            case "neg":
+                return -highs[0], -lows[0]
+            case "sum":
+                return sum(lows, Fraction(0)), sum(highs, Fraction(0))
+            case "select" | "max" | "min":
+                return min(lows), max(highs)
+            case "abs":
+                return Fraction(0), max(-lows[0], highs[0])
         return None
+
+    def _product(self, node: Node) -> Range | None:
+        """Of one angle and whole numbers, be they signs that were computed."""
+        factors = [_whole_numbers(a) for a in node.args]
+        others = [a for a, f in zip(node.args, factors, strict=True) if f is None]
+        found = self.of(others[0]) if len(others) == 1 else None
+        if found is None:
+            return None
+        for numbers in (f for f in factors if f is not None):
+            ends = [bound * n for bound in found for n in numbers]
+            found = min(ends), max(ends)
+        return found
 
     def positive(self, node: Node) -> bool:
         """Whether a value is never below zero and never the negative zero (it may be NaN)."""
@@ -77,3 +101,18 @@ class Ranges:
 
     def _not_negative(self, node: Node) -> bool:
         return self.positive(node) or (node.op == "input" and node.payload in self.lengths)
+
+
+def _point(value: Fraction) -> Range:
+    return value, value
+
+
+def _whole_numbers(node: Node) -> list[int] | None:
+    """The values of a node that is a whole number, or a choice of such."""
+    value = constant_of(node)
+    if value is not None:
+        return [int(value)] if value.is_Integer else None
+    if node.op != "select":
+        return None
+    either = [_whole_numbers(a) for a in node.args[1:]]
+    return [n for numbers in either for n in numbers or []] if None not in either else None

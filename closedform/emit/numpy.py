@@ -21,7 +21,7 @@ CALLS = {
     "abs": "np.abs",
     "max": "np.maximum",
     "min": "np.minimum",
-    "select": "np.where",
+    "select": "_runtime.select",
     "not": "np.logical_not",
     "finite": "np.isfinite",
     **{op: f"_runtime.{op}" for op in WRAPS},

@@ -11,7 +11,7 @@
  *   jacobian: 214 add, 77 compare and select, 52 divide, 299 multiply, 6 sincos, 9 sqrt
  *   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
  *   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
- *   ik: 264 add, 285 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+ *   ik: 264 add, 289 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
  *   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -2009,7 +2009,7 @@ CF_INLINE void h6ar_loop_closed_ik_kernel(const int vector, const h6ar_loop_clos
     const real_t t280 = cf_select(folded_right, angles[2], angles[3]);
     const real_t t281 = cf_wrap_cut(t280) + t78;
     const real_t t282 = cf_select(short_right, CLOSEDFORM_C(0.0), t82 * angles[5]);
-    const real_t t283 = cf_wrap(angles[4] + t282) + t78;
+    const real_t t283 = cf_wrap_cut(cf_wrap(angles[4] + t282)) + t78;
     const real_t t284 = cf_wrap_cut(cf_select(folded_left, angles[2], angles[6]));
     const real_t t285 = cf_select(short_right, CLOSEDFORM_C(0.0), t82 * angles[7]);
     const real_t t286 = cf_wrap_cut(angles[8]);
@@ -2019,7 +2019,7 @@ CF_INLINE void h6ar_loop_closed_ik_kernel(const int vector, const h6ar_loop_clos
     const real_t t290 = cf_select(folded_right_front_elbow_down_alike, angles[10], angles[11]);
     const real_t t291 = cf_wrap_cut(t290) + t123;
     const real_t t292 = cf_select(short_right, CLOSEDFORM_C(0.0), t126 * angles[12]);
-    const real_t t293 = cf_wrap(angles[4] + t292) + t123;
+    const real_t t293 = cf_wrap_cut(cf_wrap(angles[4] + t292)) + t123;
     const real_t t294 = cf_select(folded_left_front_elbow_down_alike, angles[10], angles[13]);
     const real_t t295 = cf_select(short_right, CLOSEDFORM_C(0.0), t126 * angles[14]);
     const real_t t296 = t286 + t123;
@@ -2030,7 +2030,7 @@ CF_INLINE void h6ar_loop_closed_ik_kernel(const int vector, const h6ar_loop_clos
     const real_t t301 = cf_select(folded_right_rear_elbow_up_alike, angles[16], angles[17]);
     const real_t t302 = cf_wrap_cut(t301) + t199;
     const real_t t303 = cf_select(short_right, CLOSEDFORM_C(0.0), t202 * angles[18]);
-    const real_t t304 = cf_wrap(angles[4] + t303) + t199;
+    const real_t t304 = cf_wrap_cut(cf_wrap(angles[4] + t303)) + t199;
     const real_t t305 = cf_select(folded_left_rear_elbow_up_alike, angles[16], angles[19]);
     const real_t t306 = cf_select(short_right, CLOSEDFORM_C(0.0), t202 * angles[20]);
     const real_t t307 = t286 + t199;
@@ -2039,7 +2039,7 @@ CF_INLINE void h6ar_loop_closed_ik_kernel(const int vector, const h6ar_loop_clos
     const real_t t310 = cf_select(folded_right_rear_elbow_down_alike, angles[22], angles[23]);
     const real_t t311 = cf_wrap_cut(t310) + t248;
     const real_t t312 = cf_select(short_right, CLOSEDFORM_C(0.0), t251 * angles[24]);
-    const real_t t313 = cf_wrap(angles[4] + t312) + t248;
+    const real_t t313 = cf_wrap_cut(cf_wrap(angles[4] + t312)) + t248;
     const real_t t314 = cf_select(folded_left_rear_elbow_down_alike, angles[22], angles[25]);
     const real_t t315 = cf_select(short_right, CLOSEDFORM_C(0.0), t251 * angles[26]);
     const real_t t316 = t286 + t248;

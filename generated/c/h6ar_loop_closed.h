@@ -11,7 +11,7 @@
  *   jacobian: 214 add, 77 compare and select, 52 divide, 299 multiply, 6 sincos, 9 sqrt
  *   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
  *   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
- *   ik: 264 add, 285 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+ *   ik: 264 add, 289 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
  *   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt

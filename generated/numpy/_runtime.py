@@ -97,12 +97,17 @@ def wrap_up(angle: Any) -> Any:
 
 def wrap_cut(angle: Any) -> Any:
     """The same for an angle of [-pi, pi], the range of ``atan2``."""
-    return np.where(angle <= -np.pi, np.pi, angle)
+    return select(angle <= -np.pi, np.pi, angle)
+
+
+def select(rare: Any, a: Any, b: Any) -> Any:
+    """``a`` where a condition holds that hardly ever does, else ``b``."""
+    return np.where(rare, a, b) if rare.any() else b
 
 
 def poison(failed: Any) -> Any:
     """NaN where ``failed``, else zero: added to an answer, it is one selection for all entries."""
-    return 0.0 / np.logical_not(failed)
+    return 0.0 / np.logical_not(failed) if failed.any() else 0.0
 
 
 def status(invalid: Any, unreachable: Any, singular: Any) -> Any:

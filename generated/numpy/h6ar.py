@@ -103,7 +103,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     s, c = _runtime.sincos(theta)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
-    side2A = np.where(0.0 <= t1 + t2, 1.0, -1.0)
+    side2A = _runtime.select(0.0 <= t1 + t2, 1.0, -1.0)
     t3 = t1 - t2
     t4 = c3L_half * c3R_half
     t5 = s3L_half * s3R_half
@@ -113,7 +113,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t9 = t7 - t8
     t10 = c2R_half * t6 + s2R_half * t9
     t11 = s2R_half * t6 - c2R_half * t9
-    side23A = np.where(0.0 <= c2L_half * t10 + s2L_half * t11, 1.0, -1.0)
+    side23A = _runtime.select(0.0 <= c2L_half * t10 + s2L_half * t11, 1.0, -1.0)
     t12 = t4 - t5
     t13 = t7 + t8
     t14 = c2R_half * t12 - s2R_half * t13
@@ -211,7 +211,7 @@ def _pose(
     t6 = t4 - t5
     t7 = c2R_half * t3 + s2R_half * t6
     t8 = s2R_half * t3 - c2R_half * t6
-    side23A = np.where(0.0 <= c2L_half * t7 + s2L_half * t8, 1.0, -1.0)
+    side23A = _runtime.select(0.0 <= c2L_half * t7 + s2L_half * t8, 1.0, -1.0)
     t9 = t1 - t2
     t10 = t4 + t5
     t11 = c2R_half * t9 - s2R_half * t10
@@ -266,7 +266,7 @@ def _pose(
     t49 = c * t30 - s * t28
     hand_33 = c * cpsi
     t50 = t14 * hand_13 + s1 * t49 + t32 * hand_33 + t47
-    side2A = np.where(0.0 <= t18 + t19, 1.0, -1.0)
+    side2A = _runtime.select(0.0 <= t18 + t19, 1.0, -1.0)
     t51 = lp * s
     wrist = np.sqrt(np.maximum(t46, 0.0)) * np.sqrt(np.maximum(t45, 0.0))
     t52 = loff + lp * c + wrist
@@ -375,7 +375,7 @@ def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2,
     s1, c1 = _runtime.sincos(theta1)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
-    side2A = np.where(0.0 <= t1 + t2, 1.0, -1.0)
+    side2A = _runtime.select(0.0 <= t1 + t2, 1.0, -1.0)
     t3 = c3L_half * c3R_half
     t4 = s3L_half * s3R_half
     t5 = t3 + t4
@@ -383,7 +383,7 @@ def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2,
     t7 = c3L_half * s3R_half
     t8 = t6 - t7
     t9 = c2L_half * (c2R_half * t5 + s2R_half * t8) + s2L_half * (s2R_half * t5 - c2R_half * t8)
-    side23A = np.where(0.0 <= t9, 1.0, -1.0)
+    side23A = _runtime.select(0.0 <= t9, 1.0, -1.0)
     t10 = t3 - t4
     t11 = t6 + t7
     t12 = c2R_half * t10 - s2R_half * t11
@@ -477,10 +477,10 @@ def _jacobian(
     t42 = loff + t38 + wrist
     t43 = t1 * t29 - t37 * t42
     t44 = t19 + t20
-    side2A = np.where(0.0 <= t44, 1.0, -1.0)
+    side2A = _runtime.select(0.0 <= t44, 1.0, -1.0)
     outer_32 = L1 * (side2A * t21)
     t45 = c2L_half * t8 + s2L_half * t9
-    side23A = np.where(0.0 <= t45, 1.0, -1.0)
+    side23A = _runtime.select(0.0 <= t45, 1.0, -1.0)
     c23A = side23A * t16
     t46 = t36 * t29
     t47 = t1 * cphi + t46 * t42
@@ -638,7 +638,7 @@ def _determinant(
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
     t3 = t1 + t2
-    side2A = np.where(0.0 <= t3, 1.0, -1.0)
+    side2A = _runtime.select(0.0 <= t3, 1.0, -1.0)
     t4 = c3L_half * c3R_half
     t5 = s3L_half * s3R_half
     t6 = t4 + t5
@@ -648,7 +648,7 @@ def _determinant(
     t10 = c2R_half * t6 + s2R_half * t9
     t11 = s2R_half * t6 - c2R_half * t9
     t12 = c2L_half * t10 + s2L_half * t11
-    side23A = np.where(0.0 <= t12, 1.0, -1.0)
+    side23A = _runtime.select(0.0 <= t12, 1.0, -1.0)
     t13 = t1 - t2
     c2A = side2A * t13
     t14 = t4 - t5
@@ -731,7 +731,7 @@ def _singularities(
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
     t3 = t1 + t2
-    side2A = np.where(0.0 <= t3, 1.0, -1.0)
+    side2A = _runtime.select(0.0 <= t3, 1.0, -1.0)
     t4 = t1 - t2
     c2A = side2A * t4
     t5 = c3L_half * c3R_half
@@ -743,7 +743,7 @@ def _singularities(
     t11 = c2R_half * t7 + s2R_half * t10
     t12 = s2R_half * t7 - c2R_half * t10
     t13 = c2L_half * t11 + s2L_half * t12
-    side23A = np.where(0.0 <= t13, 1.0, -1.0)
+    side23A = _runtime.select(0.0 <= t13, 1.0, -1.0)
     t14 = t5 - t6
     t15 = t8 + t9
     t16 = c2R_half * t14 - s2R_half * t15
@@ -836,7 +836,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     above = np.maximum(t12, 0.0)
     t13 = np.sqrt(above)
     t14 = 2.0 * np.arctan2(t11, t13)
-    t15 = _runtime.wrap(-np.where(nowhere, 0.0, t2 - t14))
+    t15 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t14))
     t16 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
     t17 = t16 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
     t18 = t17 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
@@ -862,359 +862,361 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t33 = y * t32
     s_turn = 2.0 * t11 * t13 / total
     t34 = x * s_turn
-    t35 = x * np.where(nowhere, 1.0, -((t33 - t34) / h))
-    t36 = x * t32
-    t37 = y * s_turn
-    outward = t35 + y * np.where(nowhere, 0.0, (t36 + t37) / h)
+    c1 = _runtime.select(nowhere, 1.0, -((t33 - t34) / h))
+    t35 = x * t32
+    t36 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, (t35 + t36) / h)
+    outward = x * c1 + y * s1
     reach = np.sqrt(t31 + outward * outward)
-    t38 = t28 - reach
-    t39 = L1 - fore
-    t40 = reach + t39
-    t41 = reach - t39
-    t42 = t27 & (t29 <= t38) & (t29 <= t40) & (t29 <= t41)
-    t43 = _runtime.VANISHING * t28
-    folded = reach <= t43
-    s_sight = np.where(folded, 0.0, t30 / reach)
+    t37 = t28 - reach
+    t38 = L1 - fore
+    t39 = reach + t38
+    t40 = reach - t38
+    t41 = t27 & (t29 <= t37) & (t29 <= t39) & (t29 <= t40)
+    t42 = _runtime.VANISHING * t28
+    folded = reach <= t42
+    s_sight = _runtime.select(folded, 0.0, t30 / reach)
     short = L1 * fore <= _runtime.VANISHING * (t28 * t28)
-    t44 = folded | short
-    A = np.maximum(t38, 0.0)
-    C = np.maximum(t41, 0.0)
-    t45 = A * C
+    t43 = folded | short
+    A = np.maximum(t37, 0.0)
+    C = np.maximum(t40, 0.0)
+    t44 = A * C
     S = t28 + reach
-    B = np.maximum(t40, 0.0)
-    t46 = S * B
-    at_base = t45 + t46
-    c_base = np.where(t44, 1.0, -((t45 - t46) / at_base))
-    t47 = s_sight * c_base
-    c_sight = np.where(folded, 1.0, outward / reach)
+    B = np.maximum(t39, 0.0)
+    t45 = S * B
+    at_base = t44 + t45
+    c_base = _runtime.select(t43, 1.0, -((t44 - t45) / at_base))
+    t46 = s_sight * c_base
+    c_sight = _runtime.select(folded, 1.0, outward / reach)
     rB = np.sqrt(B)
     rC = np.sqrt(C)
-    t48 = rB * rC
+    t47 = rB * rC
     rS = np.sqrt(S)
     rA = np.sqrt(A)
-    t49 = rS * rA
-    area_front_elbow_down = 2.0 * t48 * t49
-    s_base_front_elbow_down = np.where(t44, 0.0, area_front_elbow_down / at_base)
-    t50 = c_sight * s_base_front_elbow_down
-    stheta2A = t47 + t50
-    t51 = L1 * stheta2A
-    t52 = c_sight * c_base
-    t53 = s_sight * s_base_front_elbow_down
-    ctheta2A = t52 - t53
+    t48 = rS * rA
+    area_front_elbow_down = 2.0 * t47 * t48
+    s_base_front_elbow_down = _runtime.select(t43, 0.0, area_front_elbow_down / at_base)
+    t49 = c_sight * s_base_front_elbow_down
+    stheta2A = t46 + t49
+    t50 = L1 * stheta2A
+    t51 = c_sight * c_base
+    t52 = s_sight * s_base_front_elbow_down
+    ctheta2A = t51 - t52
     u2 = L1 * ctheta2A
-    size_u = np.sqrt(t51 * t51 + u2 * u2)
-    t54 = -(_runtime.FEASIBILITY * (d * size_u))
-    bare = fore <= t43
-    c_lag = np.where(bare, 1.0, a_3W / fore)
-    t55 = A * S
-    t56 = C * B
-    at_elbow = t55 + t56
-    c_bend = np.where(short, 1.0, -((t55 - t56) / at_elbow))
-    t57 = c_lag * c_bend
-    s_lag = np.where(bare, 0.0, L_2W / fore)
-    s_bend_front_elbow_down = np.where(short, 0.0, area_front_elbow_down / at_elbow)
-    t58 = s_lag * s_bend_front_elbow_down
-    c_relative = t57 + t58
-    t59 = s_lag * c_bend
-    t60 = c_lag * s_bend_front_elbow_down
-    s_relative = t59 - t60
+    size_u = np.sqrt(t50 * t50 + u2 * u2)
+    t53 = -(_runtime.FEASIBILITY * (d * size_u))
+    bare = fore <= t42
+    c_lag = _runtime.select(bare, 1.0, a_3W / fore)
+    t54 = A * S
+    t55 = C * B
+    at_elbow = t54 + t55
+    c_bend = _runtime.select(short, 1.0, -((t54 - t55) / at_elbow))
+    t56 = c_lag * c_bend
+    s_lag = _runtime.select(bare, 0.0, L_2W / fore)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, area_front_elbow_down / at_elbow)
+    t57 = s_lag * s_bend_front_elbow_down
+    c_relative = t56 + t57
+    t58 = s_lag * c_bend
+    t59 = c_lag * s_bend_front_elbow_down
+    s_relative = t58 - t59
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     v2 = L2 * stheta23A + a3 * ctheta23A
     v1 = L2 * ctheta23A - a3 * stheta23A
-    t61 = t51 * v2 + u2 * v1
-    sigma_uv = np.where(0.0 <= -t61, 1.0, -1.0)
+    t60 = t50 * v2 + u2 * v1
+    sigma_uv = _runtime.select(0.0 <= -t60, 1.0, -1.0)
     ahead = d * s_psi / c_psi
     higher = d * s_phi / c_phi
-    t62 = sigma_uv * (ahead * u2 + higher * t51)
-    t63 = t61 * sigma_uv
-    t64 = t62 - t63
-    t65 = -(t63 + t62)
-    t66 = -(d * _runtime.FEASIBILITY)
-    t67 = _runtime.VANISHING * (64.0 * size_u * np.sqrt(v1 * v1 + v2 * v2))
-    parallel = -t63 <= t67
-    t68 = d * 16.0
-    t69 = _runtime.VANISHING * (_runtime.VANISHING * (t68 * size_u))
-    below_beta = np.maximum(t64, t69)
-    above_beta = np.maximum(t65, t69)
+    t61 = sigma_uv * (ahead * u2 + higher * t50)
+    t62 = t60 * sigma_uv
+    t63 = t61 - t62
+    t64 = -(t62 + t61)
+    t65 = -(d * _runtime.FEASIBILITY)
+    t66 = _runtime.VANISHING * (64.0 * size_u * np.sqrt(v1 * v1 + v2 * v2))
+    parallel = -t62 <= t66
+    t67 = d * 16.0
+    t68 = _runtime.VANISHING * (_runtime.VANISHING * (t67 * size_u))
+    below_beta = np.maximum(t63, t68)
+    above_beta = np.maximum(t64, t68)
     total_beta = below_beta + above_beta
-    t70 = np.where(parallel, 0.0, (below_beta - above_beta) / total_beta)
-    t71 = t51 * (ahead + v1 * t70) - u2 * (higher + v2 * t70)
-    t72 = t71 / size_u
-    t73 = size_u + t72
-    t74 = t42 & (t54 <= t64) & (t54 <= t65) & (t66 <= t73)
-    t75 = size_u - t72
-    unreachable = np.logical_not(t74 & (t66 <= t75))
-    t76 = _runtime.poison(invalid | unreachable)
-    t77 = np.where(folded, 0.0, np.arctan2(t30, outward))
-    t78 = np.where(t44, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
-    t79 = t77 + t78
-    t80 = _runtime.VANISHING * (_runtime.VANISHING * t68)
-    below_alpha = np.maximum(t73, t80)
-    above_alpha = np.maximum(t75, t80)
+    t69 = _runtime.select(parallel, 0.0, (below_beta - above_beta) / total_beta)
+    t70 = t50 * (ahead + v1 * t69) - u2 * (higher + v2 * t69)
+    t71 = t70 / size_u
+    t72 = size_u + t71
+    t73 = t41 & (t53 <= t63) & (t53 <= t64) & (t65 <= t72)
+    t74 = size_u - t71
+    unreachable = np.logical_not(t73 & (t65 <= t74))
+    t75 = _runtime.poison(invalid | unreachable)
+    t76 = _runtime.select(folded, 0.0, np.arctan2(t30, outward))
+    t77 = _runtime.select(t43, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
+    t78 = t76 + t77
+    t79 = _runtime.VANISHING * (_runtime.VANISHING * t67)
+    below_alpha = np.maximum(t72, t79)
+    above_alpha = np.maximum(t74, t79)
     total_alpha = below_alpha + above_alpha
-    t81 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t82 = np.arctan2((below_alpha - above_alpha) / total_alpha, t81 / total_alpha)
-    t83 = _runtime.wrap_cut(_runtime.wrap(t79 - t82)) + t76
-    t84 = np.arctan2(s_lag, c_lag)
-    t85 = np.where(short, 0.0, 2.0 * np.arctan2(t49, t48))
-    t86 = t84 - t85
-    t87 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    t88 = np.arctan2(t70, np.where(parallel, 1.0, t87 / total_beta))
-    t89 = t82 - t88
-    t90 = _runtime.wrap_up(_runtime.wrap(t86 + t89)) + t76
-    t91 = _runtime.wrap_cut(_runtime.wrap(t79 + t82)) + t76
-    t92 = _runtime.wrap_up(_runtime.wrap(t86 - t89)) + t76
-    t93 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    stheta2A_front_elbow_down = t47 - t50
-    t94 = L1 * stheta2A_front_elbow_down
-    ctheta2A_front_elbow_down = t52 + t53
+    t80 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t81 = np.arctan2((below_alpha - above_alpha) / total_alpha, t80 / total_alpha)
+    t82 = _runtime.wrap_cut(_runtime.wrap(t78 - t81)) + t75
+    t83 = np.arctan2(s_lag, c_lag)
+    t84 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t48, t47))
+    t85 = t83 - t84
+    t86 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    cbeta = _runtime.select(parallel, 1.0, t86 / total_beta)
+    t87 = t81 - np.arctan2(t69, cbeta)
+    t88 = _runtime.wrap_up(_runtime.wrap(t85 + t87)) + t75
+    t89 = _runtime.wrap_cut(_runtime.wrap(t78 + t81)) + t75
+    t90 = _runtime.wrap_up(_runtime.wrap(t85 - t87)) + t75
+    t91 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    stheta2A_front_elbow_down = t46 - t49
+    t92 = L1 * stheta2A_front_elbow_down
+    ctheta2A_front_elbow_down = t51 + t52
     u2_front_elbow_down = L1 * ctheta2A_front_elbow_down
-    t95 = t94 * t94 + u2_front_elbow_down * u2_front_elbow_down
-    size_u_front_elbow_down = np.sqrt(t95)
-    t96 = _runtime.FEASIBILITY * (d * size_u_front_elbow_down)
-    c_relative_front_elbow_down = t57 - t58
-    t97 = stheta2A_front_elbow_down * c_relative_front_elbow_down
-    s_relative_front_elbow_down = t59 + t60
-    t98 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
-    stheta23A_front_elbow_down = t97 + t98
-    t99 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
-    t100 = stheta2A_front_elbow_down * s_relative_front_elbow_down
-    ctheta23A_front_elbow_down = t99 - t100
+    t93 = t92 * t92 + u2_front_elbow_down * u2_front_elbow_down
+    size_u_front_elbow_down = np.sqrt(t93)
+    t94 = _runtime.FEASIBILITY * (d * size_u_front_elbow_down)
+    c_relative_front_elbow_down = t56 - t57
+    t95 = stheta2A_front_elbow_down * c_relative_front_elbow_down
+    s_relative_front_elbow_down = t58 + t59
+    t96 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
+    stheta23A_front_elbow_down = t95 + t96
+    t97 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
+    t98 = stheta2A_front_elbow_down * s_relative_front_elbow_down
+    ctheta23A_front_elbow_down = t97 - t98
     v2_front_elbow_down = L2 * stheta23A_front_elbow_down + a3 * ctheta23A_front_elbow_down
     v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down
-    t101 = t94 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
-    sigma_uv_front_elbow_down = np.where(0.0 <= -t101, 1.0, -1.0)
-    t102 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t94)
-    t103 = t101 * sigma_uv_front_elbow_down
-    t104 = t102 - t103
-    t105 = -(t103 + t102)
-    t106 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
-    t107 = 64.0 * size_u_front_elbow_down * np.sqrt(t106)
-    parallel_front_elbow_down = -t103 <= _runtime.VANISHING * t107
-    t108 = _runtime.VANISHING * (t68 * size_u_front_elbow_down)
-    t109 = _runtime.VANISHING * t108
-    below_beta_front_elbow_down = np.maximum(t104, t109)
-    above_beta_front_elbow_down = np.maximum(t105, t109)
-    t110 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t99 = t92 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
+    sigma_uv_front_elbow_down = _runtime.select(0.0 <= -t99, 1.0, -1.0)
+    t100 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t92)
+    t101 = t99 * sigma_uv_front_elbow_down
+    t102 = t100 - t101
+    t103 = -(t101 + t100)
+    t104 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
+    t105 = 64.0 * size_u_front_elbow_down * np.sqrt(t104)
+    parallel_front_elbow_down = -t101 <= _runtime.VANISHING * t105
+    t106 = _runtime.VANISHING * (t67 * size_u_front_elbow_down)
+    t107 = _runtime.VANISHING * t106
+    below_beta_front_elbow_down = np.maximum(t102, t107)
+    above_beta_front_elbow_down = np.maximum(t103, t107)
+    t108 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t111 = np.where(parallel_front_elbow_down, 0.0, t110 / total_beta_front_elbow_down)
-    t112 = u2_front_elbow_down * (higher + v2_front_elbow_down * t111)
-    t113 = t94 * (ahead + v1_front_elbow_down * t111) - t112
-    t114 = t113 / size_u_front_elbow_down
-    t115 = size_u_front_elbow_down + t114
-    t116 = t42 & (-t96 <= t104) & (-t96 <= t105) & (t66 <= t115)
-    t117 = size_u_front_elbow_down - t114
-    unreachable_2 = np.logical_not(t116 & (t66 <= t117))
-    t118 = _runtime.poison(invalid | unreachable_2)
-    t119 = t77 - t78
-    below_alpha_front_elbow_down = np.maximum(t115, t80)
-    above_alpha_front_elbow_down = np.maximum(t117, t80)
-    t120 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t109 = _runtime.select(parallel_front_elbow_down, 0.0, t108 / total_beta_front_elbow_down)
+    t110 = u2_front_elbow_down * (higher + v2_front_elbow_down * t109)
+    t111 = t92 * (ahead + v1_front_elbow_down * t109) - t110
+    t112 = t111 / size_u_front_elbow_down
+    t113 = size_u_front_elbow_down + t112
+    t114 = t41 & (-t94 <= t102) & (-t94 <= t103) & (t65 <= t113)
+    t115 = size_u_front_elbow_down - t112
+    unreachable_2 = np.logical_not(t114 & (t65 <= t115))
+    t116 = _runtime.poison(invalid | unreachable_2)
+    t117 = t76 - t77
+    below_alpha_front_elbow_down = np.maximum(t113, t79)
+    above_alpha_front_elbow_down = np.maximum(t115, t79)
+    t118 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t121 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
-    t122 = np.arctan2(t120 / total_alpha_front_elbow_down, t121 / total_alpha_front_elbow_down)
-    t123 = _runtime.wrap_cut(_runtime.wrap(t119 - t122))
-    t124 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    cbeta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t124 / total_beta_front_elbow_down)
-    t125 = t122 - np.arctan2(t111, cbeta_front_elbow_down)
-    t126 = t84 + t85
-    t127 = _runtime.wrap(_runtime.wrap(t125 + t126)) + t118
-    t128 = _runtime.wrap_cut(_runtime.wrap(t119 + t122))
-    t129 = _runtime.wrap(_runtime.wrap(t126 - t125)) + t118
-    t130 = _runtime.wrap_up(-np.where(nowhere, 0.0, t2 + t14))
-    t131 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
-    outward_rear_elbow_up = t131 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
-    t132 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t31 + t132)
-    t133 = t28 - reach_rear_elbow_up
-    t134 = reach_rear_elbow_up + t39
-    t135 = reach_rear_elbow_up - t39
-    t136 = t27 & (t29 <= t133) & (t29 <= t134) & (t29 <= t135)
-    folded_rear_elbow_up = reach_rear_elbow_up <= t43
-    s_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 0.0, t30 / reach_rear_elbow_up)
-    t137 = folded_rear_elbow_up | short
-    A_rear_elbow_up = np.maximum(t133, 0.0)
-    C_rear_elbow_up = np.maximum(t135, 0.0)
-    t138 = A_rear_elbow_up * C_rear_elbow_up
+    t119 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t120 = np.arctan2(t118 / total_alpha_front_elbow_down, t119 / total_alpha_front_elbow_down)
+    t121 = _runtime.wrap_cut(_runtime.wrap(t117 - t120))
+    t122 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    cbeta_front_elbow_down = _runtime.select(parallel_front_elbow_down, 1.0, t122 / total_beta_front_elbow_down)
+    t123 = t120 - np.arctan2(t109, cbeta_front_elbow_down)
+    t124 = t83 + t84
+    t125 = _runtime.wrap(_runtime.wrap(t123 + t124)) + t116
+    t126 = _runtime.wrap_cut(_runtime.wrap(t117 + t120))
+    t127 = _runtime.wrap(_runtime.wrap(t124 - t123)) + t116
+    t128 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
+    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t33 + t34) / h))
+    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t35 - t36) / h)
+    outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
+    t129 = outward_rear_elbow_up * outward_rear_elbow_up
+    reach_rear_elbow_up = np.sqrt(t31 + t129)
+    t130 = t28 - reach_rear_elbow_up
+    t131 = reach_rear_elbow_up + t38
+    t132 = reach_rear_elbow_up - t38
+    t133 = t27 & (t29 <= t130) & (t29 <= t131) & (t29 <= t132)
+    folded_rear_elbow_up = reach_rear_elbow_up <= t42
+    s_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 0.0, t30 / reach_rear_elbow_up)
+    t134 = folded_rear_elbow_up | short
+    A_rear_elbow_up = np.maximum(t130, 0.0)
+    C_rear_elbow_up = np.maximum(t132, 0.0)
+    t135 = A_rear_elbow_up * C_rear_elbow_up
     S_rear_elbow_up = t28 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t134, 0.0)
-    t139 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t138 + t139
-    c_base_rear_elbow_up = np.where(t137, 1.0, -((t138 - t139) / at_base_rear_elbow_up))
-    t140 = s_sight_rear_elbow_up * c_base_rear_elbow_up
-    c_sight_rear_elbow_up = np.where(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
+    B_rear_elbow_up = np.maximum(t131, 0.0)
+    t136 = S_rear_elbow_up * B_rear_elbow_up
+    at_base_rear_elbow_up = t135 + t136
+    c_base_rear_elbow_up = _runtime.select(t134, 1.0, -((t135 - t136) / at_base_rear_elbow_up))
+    t137 = s_sight_rear_elbow_up * c_base_rear_elbow_up
+    c_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
     rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
     rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t141 = rB_rear_elbow_up * rC_rear_elbow_up
+    t138 = rB_rear_elbow_up * rC_rear_elbow_up
     rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
     rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t142 = rS_rear_elbow_up * rA_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t141 * t142
-    s_base_rear_elbow_up = np.where(t137, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t143 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t140 - t143
-    t144 = L1 * stheta2A_rear_elbow_up
-    t145 = c_sight_rear_elbow_up * c_base_rear_elbow_up
-    t146 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t145 + t146
+    t139 = rS_rear_elbow_up * rA_rear_elbow_up
+    area_rear_elbow_up = 2.0 * t138 * t139
+    s_base_rear_elbow_up = _runtime.select(t134, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
+    t140 = c_sight_rear_elbow_up * s_base_rear_elbow_up
+    stheta2A_rear_elbow_up = t137 - t140
+    t141 = L1 * stheta2A_rear_elbow_up
+    t142 = c_sight_rear_elbow_up * c_base_rear_elbow_up
+    t143 = s_sight_rear_elbow_up * s_base_rear_elbow_up
+    ctheta2A_rear_elbow_up = t142 + t143
     u2_rear_elbow_up = L1 * ctheta2A_rear_elbow_up
-    t147 = t144 * t144 + u2_rear_elbow_up * u2_rear_elbow_up
-    size_u_rear_elbow_up = np.sqrt(t147)
-    t148 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_up)
-    t149 = A_rear_elbow_up * S_rear_elbow_up
-    t150 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t149 + t150
-    c_bend_rear_elbow_up = np.where(short, 1.0, -((t149 - t150) / at_elbow_rear_elbow_up))
-    t151 = c_lag * c_bend_rear_elbow_up
-    s_bend_rear_elbow_up = np.where(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t152 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t151 - t152
-    t153 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t154 = s_lag * c_bend_rear_elbow_up
-    t155 = c_lag * s_bend_rear_elbow_up
-    s_relative_rear_elbow_up = t154 + t155
-    t156 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    stheta23A_rear_elbow_up = t153 + t156
-    t157 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t158 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    ctheta23A_rear_elbow_up = t157 - t158
+    t144 = t141 * t141 + u2_rear_elbow_up * u2_rear_elbow_up
+    size_u_rear_elbow_up = np.sqrt(t144)
+    t145 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_up)
+    t146 = A_rear_elbow_up * S_rear_elbow_up
+    t147 = C_rear_elbow_up * B_rear_elbow_up
+    at_elbow_rear_elbow_up = t146 + t147
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t146 - t147) / at_elbow_rear_elbow_up))
+    t148 = c_lag * c_bend_rear_elbow_up
+    s_bend_rear_elbow_up = _runtime.select(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
+    t149 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t148 - t149
+    t150 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t151 = s_lag * c_bend_rear_elbow_up
+    t152 = c_lag * s_bend_rear_elbow_up
+    s_relative_rear_elbow_up = t151 + t152
+    t153 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    stheta23A_rear_elbow_up = t150 + t153
+    t154 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t155 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    ctheta23A_rear_elbow_up = t154 - t155
     v2_rear_elbow_up = L2 * stheta23A_rear_elbow_up + a3 * ctheta23A_rear_elbow_up
     v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up
-    t159 = t144 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
-    sigma_uv_rear_elbow_up = np.where(0.0 <= -t159, 1.0, -1.0)
-    t160 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t144)
-    t161 = t159 * sigma_uv_rear_elbow_up
-    t162 = t160 - t161
-    t163 = -(t161 + t160)
-    t164 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
-    t165 = _runtime.VANISHING * (64.0 * size_u_rear_elbow_up * np.sqrt(t164))
-    parallel_rear_elbow_up = -t161 <= t165
-    t166 = _runtime.VANISHING * (t68 * size_u_rear_elbow_up)
-    t167 = _runtime.VANISHING * t166
-    below_beta_rear_elbow_up = np.maximum(t162, t167)
-    above_beta_rear_elbow_up = np.maximum(t163, t167)
-    t168 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t156 = t141 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
+    sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -t156, 1.0, -1.0)
+    t157 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t141)
+    t158 = t156 * sigma_uv_rear_elbow_up
+    t159 = t157 - t158
+    t160 = -(t158 + t157)
+    t161 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
+    t162 = _runtime.VANISHING * (64.0 * size_u_rear_elbow_up * np.sqrt(t161))
+    parallel_rear_elbow_up = -t158 <= t162
+    t163 = _runtime.VANISHING * (t67 * size_u_rear_elbow_up)
+    t164 = _runtime.VANISHING * t163
+    below_beta_rear_elbow_up = np.maximum(t159, t164)
+    above_beta_rear_elbow_up = np.maximum(t160, t164)
+    t165 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t169 = np.where(parallel_rear_elbow_up, 0.0, t168 / total_beta_rear_elbow_up)
-    t170 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t169)
-    t171 = t144 * (ahead + v1_rear_elbow_up * t169) - t170
-    t172 = t171 / size_u_rear_elbow_up
-    t173 = size_u_rear_elbow_up + t172
-    t174 = t136 & (-t148 <= t162) & (-t148 <= t163) & (t66 <= t173)
-    t175 = size_u_rear_elbow_up - t172
-    unreachable_3 = np.logical_not(t174 & (t66 <= t175))
-    t176 = _runtime.poison(invalid | unreachable_3)
-    t177 = np.where(folded_rear_elbow_up, 0.0, np.arctan2(t30, outward_rear_elbow_up))
-    t178 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
-    t179 = np.where(t137, 0.0, 2.0 * t178)
-    t180 = t177 - t179
-    below_alpha_rear_elbow_up = np.maximum(t173, t80)
-    above_alpha_rear_elbow_up = np.maximum(t175, t80)
-    t181 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t166 = _runtime.select(parallel_rear_elbow_up, 0.0, t165 / total_beta_rear_elbow_up)
+    t167 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t166)
+    t168 = t141 * (ahead + v1_rear_elbow_up * t166) - t167
+    t169 = t168 / size_u_rear_elbow_up
+    t170 = size_u_rear_elbow_up + t169
+    t171 = t133 & (-t145 <= t159) & (-t145 <= t160) & (t65 <= t170)
+    t172 = size_u_rear_elbow_up - t169
+    unreachable_3 = np.logical_not(t171 & (t65 <= t172))
+    t173 = _runtime.poison(invalid | unreachable_3)
+    t174 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t30, outward_rear_elbow_up))
+    t175 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
+    t176 = _runtime.select(t134, 0.0, 2.0 * t175)
+    t177 = t174 - t176
+    below_alpha_rear_elbow_up = np.maximum(t170, t79)
+    above_alpha_rear_elbow_up = np.maximum(t172, t79)
+    t178 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t182 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    t183 = np.arctan2(t181 / total_alpha_rear_elbow_up, t182 / total_alpha_rear_elbow_up)
-    t184 = _runtime.wrap_cut(_runtime.wrap(t180 - t183))
-    t185 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    cbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, t185 / total_beta_rear_elbow_up)
-    t186 = t183 - np.arctan2(t169, cbeta_rear_elbow_up)
-    t187 = np.where(short, 0.0, 2.0 * np.arctan2(t142, t141))
-    t188 = t84 + t187
-    t189 = _runtime.wrap(_runtime.wrap(t186 + t188)) + t176
-    t190 = _runtime.wrap_cut(_runtime.wrap(t180 + t183))
-    t191 = _runtime.wrap(_runtime.wrap(t188 - t186)) + t176
-    stheta2A_rear_elbow_down = t140 + t143
-    t192 = L1 * stheta2A_rear_elbow_down
-    ctheta2A_rear_elbow_down = t145 - t146
+    t179 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t180 = np.arctan2(t178 / total_alpha_rear_elbow_up, t179 / total_alpha_rear_elbow_up)
+    t181 = _runtime.wrap_cut(_runtime.wrap(t177 - t180))
+    t182 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    cbeta_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, 1.0, t182 / total_beta_rear_elbow_up)
+    t183 = t180 - np.arctan2(t166, cbeta_rear_elbow_up)
+    t184 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t139, t138))
+    t185 = t83 + t184
+    t186 = _runtime.wrap(_runtime.wrap(t183 + t185)) + t173
+    t187 = _runtime.wrap_cut(_runtime.wrap(t177 + t180))
+    t188 = _runtime.wrap(_runtime.wrap(t185 - t183)) + t173
+    stheta2A_rear_elbow_down = t137 + t140
+    t189 = L1 * stheta2A_rear_elbow_down
+    ctheta2A_rear_elbow_down = t142 - t143
     u2_rear_elbow_down = L1 * ctheta2A_rear_elbow_down
-    t193 = t192 * t192 + u2_rear_elbow_down * u2_rear_elbow_down
-    size_u_rear_elbow_down = np.sqrt(t193)
-    t194 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_down)
-    c_relative_rear_elbow_down = t151 + t152
-    t195 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    s_relative_rear_elbow_down = t154 - t155
-    t196 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    stheta23A_rear_elbow_down = t195 + t196
-    t197 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    t198 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    ctheta23A_rear_elbow_down = t197 - t198
+    t190 = t189 * t189 + u2_rear_elbow_down * u2_rear_elbow_down
+    size_u_rear_elbow_down = np.sqrt(t190)
+    t191 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_down)
+    c_relative_rear_elbow_down = t148 + t149
+    t192 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    s_relative_rear_elbow_down = t151 - t152
+    t193 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    stheta23A_rear_elbow_down = t192 + t193
+    t194 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    t195 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    ctheta23A_rear_elbow_down = t194 - t195
     v2_rear_elbow_down = L2 * stheta23A_rear_elbow_down + a3 * ctheta23A_rear_elbow_down
     v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down
-    t199 = t192 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
-    sigma_uv_rear_elbow_down = np.where(0.0 <= -t199, 1.0, -1.0)
-    t200 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t192)
-    t201 = t199 * sigma_uv_rear_elbow_down
-    t202 = t200 - t201
-    t203 = -(t201 + t200)
-    t204 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
-    t205 = 64.0 * size_u_rear_elbow_down * np.sqrt(t204)
-    parallel_rear_elbow_down = -t201 <= _runtime.VANISHING * t205
-    t206 = _runtime.VANISHING * (t68 * size_u_rear_elbow_down)
-    t207 = _runtime.VANISHING * t206
-    below_beta_rear_elbow_down = np.maximum(t202, t207)
-    above_beta_rear_elbow_down = np.maximum(t203, t207)
-    t208 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t196 = t189 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
+    sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -t196, 1.0, -1.0)
+    t197 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t189)
+    t198 = t196 * sigma_uv_rear_elbow_down
+    t199 = t197 - t198
+    t200 = -(t198 + t197)
+    t201 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
+    t202 = 64.0 * size_u_rear_elbow_down * np.sqrt(t201)
+    parallel_rear_elbow_down = -t198 <= _runtime.VANISHING * t202
+    t203 = _runtime.VANISHING * (t67 * size_u_rear_elbow_down)
+    t204 = _runtime.VANISHING * t203
+    below_beta_rear_elbow_down = np.maximum(t199, t204)
+    above_beta_rear_elbow_down = np.maximum(t200, t204)
+    t205 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t209 = np.where(parallel_rear_elbow_down, 0.0, t208 / total_beta_rear_elbow_down)
-    t210 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t209)
-    t211 = t192 * (ahead + v1_rear_elbow_down * t209) - t210
-    t212 = t211 / size_u_rear_elbow_down
-    t213 = size_u_rear_elbow_down + t212
-    t214 = t136 & (-t194 <= t202) & (-t194 <= t203) & (t66 <= t213)
-    t215 = size_u_rear_elbow_down - t212
-    unreachable_4 = np.logical_not(t214 & (t66 <= t215))
-    t216 = _runtime.poison(invalid | unreachable_4)
-    t217 = t177 + t179
-    below_alpha_rear_elbow_down = np.maximum(t213, t80)
-    above_alpha_rear_elbow_down = np.maximum(t215, t80)
-    t218 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t206 = _runtime.select(parallel_rear_elbow_down, 0.0, t205 / total_beta_rear_elbow_down)
+    t207 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t206)
+    t208 = t189 * (ahead + v1_rear_elbow_down * t206) - t207
+    t209 = t208 / size_u_rear_elbow_down
+    t210 = size_u_rear_elbow_down + t209
+    t211 = t133 & (-t191 <= t199) & (-t191 <= t200) & (t65 <= t210)
+    t212 = size_u_rear_elbow_down - t209
+    unreachable_4 = np.logical_not(t211 & (t65 <= t212))
+    t213 = _runtime.poison(invalid | unreachable_4)
+    t214 = t174 + t176
+    below_alpha_rear_elbow_down = np.maximum(t210, t79)
+    above_alpha_rear_elbow_down = np.maximum(t212, t79)
+    t215 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t219 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    t220 = np.arctan2(t218 / total_alpha_rear_elbow_down, t219 / total_alpha_rear_elbow_down)
-    t221 = _runtime.wrap_cut(_runtime.wrap(t217 - t220))
-    t222 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    cbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t222 / total_beta_rear_elbow_down)
-    t223 = t220 - np.arctan2(t209, cbeta_rear_elbow_down)
-    t224 = t84 - t187
-    t225 = _runtime.wrap_up(_runtime.wrap(t223 + t224)) + t216
-    t226 = _runtime.wrap_cut(_runtime.wrap(t217 + t220))
-    t227 = _runtime.wrap_up(_runtime.wrap(t224 - t223)) + t216
-    t228 = nowhere | folded | short
-    t229 = _runtime.status(invalid, unreachable, t228 | parallel)
-    t230 = _runtime.status(invalid, unreachable_2, t228 | parallel_front_elbow_down)
-    t231 = nowhere | folded_rear_elbow_up | short
-    t232 = _runtime.status(invalid, unreachable_3, t231 | parallel_rear_elbow_up)
-    t233 = _runtime.status(invalid, unreachable_4, t231 | parallel_rear_elbow_down)
+    t216 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t217 = np.arctan2(t215 / total_alpha_rear_elbow_down, t216 / total_alpha_rear_elbow_down)
+    t218 = _runtime.wrap_cut(_runtime.wrap(t214 - t217))
+    t219 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    cbeta_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, 1.0, t219 / total_beta_rear_elbow_down)
+    t220 = t217 - np.arctan2(t206, cbeta_rear_elbow_down)
+    t221 = t83 - t184
+    t222 = _runtime.wrap_up(_runtime.wrap(t220 + t221)) + t213
+    t223 = _runtime.wrap_cut(_runtime.wrap(t214 + t217))
+    t224 = _runtime.wrap_up(_runtime.wrap(t221 - t220)) + t213
+    t225 = nowhere | folded | short
+    t226 = _runtime.status(invalid, unreachable, t225 | parallel)
+    t227 = _runtime.status(invalid, unreachable_2, t225 | parallel_front_elbow_down)
+    t228 = nowhere | folded_rear_elbow_up | short
+    t229 = _runtime.status(invalid, unreachable_3, t228 | parallel_rear_elbow_up)
+    t230 = _runtime.status(invalid, unreachable_4, t228 | parallel_rear_elbow_down)
     return (
-        t15 + t76,
-        t83,
+        t15 + t75,
+        t82,
+        t88,
+        t89,
         t90,
-        t91,
-        t92,
-        t93 + t76,
-        t15 + t118,
-        t123 + t118,
+        t91 + t75,
+        t15 + t116,
+        t121 + t116,
+        t125,
+        t126 + t116,
         t127,
-        t128 + t118,
-        t129,
-        t93 + t118,
-        t130 + t176,
-        t184 + t176,
-        t189,
-        t190 + t176,
-        t191,
-        t93 + t176,
-        t130 + t216,
-        t221 + t216,
-        t225,
-        t226 + t216,
+        t91 + t116,
+        t128 + t173,
+        t181 + t173,
+        t186,
+        t187 + t173,
+        t188,
+        t91 + t173,
+        t128 + t213,
+        t218 + t213,
+        t222,
+        t223 + t213,
+        t224,
+        t91 + t213,
+        t226,
         t227,
-        t93 + t216,
         t229,
         t230,
-        t232,
-        t233,
     )
 
 

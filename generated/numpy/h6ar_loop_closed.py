@@ -10,7 +10,7 @@
 #   jacobian: 214 add, 77 compare and select, 52 divide, 299 multiply, 6 sincos, 9 sqrt
 #   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
 #   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
-#   ik: 264 add, 285 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+#   ik: 264 add, 289 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -128,7 +128,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t23 = L1 + fore
     t24 = t23 * _runtime.VANISHING
     bare_virtual = fore <= t24
-    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
     short_virtual = L1 * fore <= _runtime.VANISHING * (t23 * t23)
     t25 = L2 * t16 + a3 * t15
     t26 = c2L_half * c2R_half
@@ -142,89 +142,91 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     straight_left = L2 * t31 + a3 * t32
     t33 = 0.0 <= straight_left
     t34 = L2 * t32 - a3 * t31
-    large_left = fore + np.where(t33, straight_left, -straight_left)
+    t35 = _runtime.select(t33, straight_left, -straight_left)
+    large_left = fore + t35
     small_left = t34 * t34 / large_left
-    t35 = L1 * 2.0
-    t36 = np.where(t33, small_left, large_left) * t35 / 2.0
+    t36 = L1 * 2.0
+    N_left = _runtime.select(t33, small_left, large_left) * t36
     t37 = s3R_half * c3R_half
     t38 = t37 + t37
     t39 = c3R_half * c3R_half - s3R_half * s3R_half
     straight_right = L2 * t38 + a3 * t39
     t40 = 0.0 <= straight_right
     t41 = L2 * t39 - a3 * t38
-    t42 = np.where(t40, straight_right, -straight_right)
+    t42 = _runtime.select(t40, straight_right, -straight_right)
     large_right = fore + t42
     small_right = t41 * t41 / large_right
-    N_right = np.where(t40, small_right, large_right) * t35
-    t43 = gap + t36 + N_right / 2.0
-    N_virtual = np.maximum(t43, 0.0)
-    M_right = np.where(t40, large_right, small_right) * t35
-    t44 = np.where(t33, large_left, small_left) * t35 / 2.0
-    t45 = M_right / 2.0 - (gap - t44)
-    M_virtual = np.maximum(t45, 0.0)
+    t43 = _runtime.select(t40, small_right, large_right)
+    t44 = gap + N_left / 2.0 + t43 * t36 / 2.0
+    N_virtual = np.maximum(t44, 0.0)
+    t45 = _runtime.select(t40, large_right, small_right)
+    M_left = _runtime.select(t33, large_left, small_left) * t36
+    t46 = t45 * t36 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t46, 0.0)
     whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
-    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
-    t46 = 2.0 * np.where(0.0 <= -t41, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t46 * np.sqrt(M_virtual) / whole_virtual)
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
+    t47 = 2.0 * _runtime.select(0.0 <= -t41, 1.0, -1.0)
+    t48 = t47 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t48 / whole_virtual)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t47 = c2L_half * t8 + s2L_half * t9
-    t48 = L1 * (t26 + t27)
-    t49 = t47 * t17 - t20 * t48
-    r_I = t25 * t47 + t28 * t48
-    folded_virtual = np.sqrt(t49 * t49 + r_I * r_I) <= t24
+    t49 = c2L_half * t8 + s2L_half * t9
+    t50 = L1 * (t26 + t27)
+    t51 = t49 * t17 - t20 * t50
+    r_I = t25 * t49 + t28 * t50
+    folded_virtual = np.sqrt(t51 * t51 + r_I * r_I) <= t24
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t50 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t49 * t50
-    t51 = t49 * ahead_1_virtual + r_I * t50
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
-    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
-    t52 = s2R_half * c2R_half
-    stheta2A = np.where(folded_virtual, t52 + t52, -(t51 / norm_virtual))
+    t52 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t51 * t52
+    t53 = t51 * ahead_1_virtual + r_I * t52
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t53 * t53)
+    ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
+    t54 = s2R_half * c2R_half
+    stheta2A = _runtime.select(folded_virtual, t54 + t54, -(t53 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
-    t53 = t22 * ctheta23A + t29 * stheta23A
-    t54 = d * d
-    tilted = np.sqrt(t54 + t53 * t53)
-    t55 = t53 / tilted
+    t55 = t22 * ctheta23A + t29 * stheta23A
+    t56 = d * d
+    tilted = np.sqrt(t56 + t55 * t55)
+    t57 = t55 / tilted
     cphi = d / tilted
-    base = np.sqrt(t54 + gap)
-    t56 = (t22 * stheta23A - t29 * ctheta23A) / base
-    t57 = base - (gs - al)
-    t58 = gs + al
-    t59 = t58 - base
-    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
-    t60 = loff + lp * c + wrist
-    t61 = t56 * t60
-    t62 = t1 * t55 + cphi * t61
-    t63 = a3 + t1 * cphi - t55 * t61
+    base = np.sqrt(t56 + gap)
+    t58 = (t22 * stheta23A - t29 * ctheta23A) / base
+    t59 = base - (gs - al)
+    t60 = gs + al
+    t61 = t60 - base
+    wrist = np.sqrt(np.maximum(t59, 0.0)) * np.sqrt(np.maximum(t61, 0.0))
+    t62 = loff + lp * c + wrist
+    t63 = t58 * t62
+    t64 = t1 * t57 + cphi * t63
+    t65 = a3 + t1 * cphi - t57 * t63
     cpsi = tilted / base
-    t64 = L2 + t60 * cpsi
-    t65 = L1 * ctheta2A + ctheta23A * t63 + stheta23A * t64
-    t66 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t67 = t66 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t68 = t67 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t69 = t68 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t70 = t69 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t71 = t70 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t72 = t71 & np.isfinite(theta1) & np.isfinite(theta2R)
-    t73 = t72 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t74 = t73 & np.isfinite(theta3L) & np.isfinite(theta)
-    t75 = -(_runtime.FEASIBILITY * (d * t23))
-    t76 = -(_runtime.FEASIBILITY * t58)
-    t77 = (t75 <= t43) & (t75 <= t45) & (t76 <= t59) & (t76 <= t57)
-    t78 = _runtime.poison(np.logical_not(t74) | np.logical_not(t77))
-    t79 = d1 + L1 * stheta2A - ctheta23A * t64 + stheta23A * t63
-    t80 = _runtime.wrap_cut(np.arctan2(-t56, cpsi)) + t78
-    t81 = _runtime.wrap_cut(-np.arctan2(-t55, cphi)) + t78
+    t66 = L2 + t62 * cpsi
+    t67 = L1 * ctheta2A + ctheta23A * t65 + stheta23A * t66
+    t68 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t69 = t68 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t70 = t69 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t71 = t70 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t72 = t71 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t73 = t72 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t74 = t73 & np.isfinite(theta1) & np.isfinite(theta2R)
+    t75 = t74 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t76 = t75 & np.isfinite(theta3L) & np.isfinite(theta)
+    t77 = -(_runtime.FEASIBILITY * (d * t23))
+    t78 = -(_runtime.FEASIBILITY * t60)
+    t79 = (t77 <= t44) & (t77 <= t46) & (t78 <= t61) & (t78 <= t59)
+    t80 = _runtime.poison(np.logical_not(t76) | np.logical_not(t79))
+    t81 = d1 + L1 * stheta2A - ctheta23A * t66 + stheta23A * t65
+    t82 = _runtime.wrap_cut(np.arctan2(-t58, cpsi)) + t80
+    t83 = _runtime.wrap_cut(-np.arctan2(-t57, cphi)) + t80
     return (
-        s1 * t62 + c1 * t65 + t78,
-        s1 * t65 - c1 * t62 + t78,
-        t79 + t78,
-        t80,
-        t81,
-        _runtime.wrap_cut(np.arctan2(s, c)) + t78,
+        s1 * t64 + c1 * t67 + t80,
+        s1 * t67 - c1 * t64 + t80,
+        t81 + t80,
+        t82,
+        t83,
+        _runtime.wrap_cut(np.arctan2(s, c)) + t80,
     )
 
 
@@ -304,116 +306,118 @@ def _pose(
     straight_left = L2 * t33 + a3 * t34
     t35 = 0.0 <= straight_left
     t36 = L2 * t34 - a3 * t33
-    large_left = fore + np.where(t35, straight_left, -straight_left)
+    t37 = _runtime.select(t35, straight_left, -straight_left)
+    large_left = fore + t37
     small_left = t36 * t36 / large_left
-    t37 = L1 * 2.0
-    t38 = np.where(t35, small_left, large_left) * t37 / 2.0
+    t38 = L1 * 2.0
+    N_left = _runtime.select(t35, small_left, large_left) * t38
     t39 = s3R_half * c3R_half
     t40 = t39 + t39
     t41 = c3R_half * c3R_half - s3R_half * s3R_half
     straight_right = L2 * t40 + a3 * t41
     t42 = 0.0 <= straight_right
     t43 = L2 * t41 - a3 * t40
-    t44 = np.where(t42, straight_right, -straight_right)
+    t44 = _runtime.select(t42, straight_right, -straight_right)
     large_right = fore + t44
     small_right = t43 * t43 / large_right
-    N_right = np.where(t42, small_right, large_right) * t37
-    t45 = gap + t38 + N_right / 2.0
-    N_virtual = np.maximum(t45, 0.0)
-    M_right = np.where(t42, large_right, small_right) * t37
-    t46 = np.where(t35, large_left, small_left) * t37 / 2.0
-    t47 = M_right / 2.0 - (gap - t46)
-    M_virtual = np.maximum(t47, 0.0)
+    t45 = _runtime.select(t42, small_right, large_right)
+    t46 = gap + N_left / 2.0 + t45 * t38 / 2.0
+    N_virtual = np.maximum(t46, 0.0)
+    t47 = _runtime.select(t42, large_right, small_right)
+    M_left = _runtime.select(t35, large_left, small_left) * t38
+    t48 = t47 * t38 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t48, 0.0)
     whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t48 = 2.0 * np.where(0.0 <= -t43, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t48 * np.sqrt(M_virtual) / whole_virtual)
-    t49 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t23 * t49
-    t50 = t23 * ahead_1_virtual + r_I * t49
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t50 * t50)
-    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
+    t49 = 2.0 * _runtime.select(0.0 <= -t43, 1.0, -1.0)
+    t50 = t49 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t50 / whole_virtual)
+    t51 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t23 * t51
+    t52 = t23 * ahead_1_virtual + r_I * t51
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
+    ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
     bare_virtual = fore <= t27
-    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
-    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
+    c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
+    s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t51 = s2R_half * c2R_half
-    stheta2A = np.where(folded_virtual, t51 + t51, -(t50 / norm_virtual))
+    t53 = s2R_half * c2R_half
+    stheta2A = _runtime.select(folded_virtual, t53 + t53, -(t52 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t52 = c1 * ctheta23A
-    t53 = d * d
+    t54 = c1 * ctheta23A
+    t55 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t54 = t30 * ctheta23A + t31 * stheta23A
-    tilted = np.sqrt(t53 + t54 * t54)
+    t56 = t30 * ctheta23A + t31 * stheta23A
+    tilted = np.sqrt(t55 + t56 * t56)
     cphi = d / tilted
-    t55 = t54 / tilted
-    base = np.sqrt(t53 + gap)
-    t56 = (t30 * stheta23A - t31 * ctheta23A) / base
-    t57 = t55 * t56
-    hand_11 = c * cphi + s * t57
-    t58 = cphi * t56
-    hand_21 = c * t55 - s * t58
-    t59 = c1 * stheta23A
+    t57 = t56 / tilted
+    base = np.sqrt(t55 + gap)
+    t58 = (t30 * stheta23A - t31 * ctheta23A) / base
+    t59 = t57 * t58
+    hand_11 = c * cphi + s * t59
+    t60 = cphi * t58
+    hand_21 = c * t57 - s * t60
+    t61 = c1 * stheta23A
     cpsi = tilted / base
-    t60 = s * cpsi
-    t61 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t62 = t61 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t63 = t62 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t64 = t63 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t65 = t64 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t66 = t65 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t67 = t66 & np.isfinite(theta1) & np.isfinite(theta2R)
-    t68 = t67 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t69 = t68 & np.isfinite(theta3L) & np.isfinite(theta)
-    t70 = -(_runtime.FEASIBILITY * (d * t26))
-    t71 = gs + al
-    t72 = -(_runtime.FEASIBILITY * t71)
-    t73 = t71 - base
-    t74 = base - (gs - al)
-    t75 = (t70 <= t45) & (t70 <= t47) & (t72 <= t73) & (t72 <= t74)
-    t76 = _runtime.poison(np.logical_not(t69) | np.logical_not(t75))
-    t77 = t52 * hand_11 + s1 * hand_21 - t59 * t60 + t76
-    t78 = t55 * cpsi
+    t62 = s * cpsi
+    t63 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t64 = t63 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t65 = t64 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t66 = t65 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t67 = t66 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t68 = t67 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t69 = t68 & np.isfinite(theta1) & np.isfinite(theta2R)
+    t70 = t69 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t71 = t70 & np.isfinite(theta3L) & np.isfinite(theta)
+    t72 = -(_runtime.FEASIBILITY * (d * t26))
+    t73 = gs + al
+    t74 = -(_runtime.FEASIBILITY * t73)
+    t75 = t73 - base
+    t76 = base - (gs - al)
+    t77 = (t72 <= t46) & (t72 <= t48) & (t74 <= t75) & (t74 <= t76)
+    t78 = _runtime.poison(np.logical_not(t71) | np.logical_not(t77))
+    t79 = t54 * hand_11 + s1 * hand_21 - t61 * t62 + t78
+    t80 = t57 * cpsi
     hand_22 = cphi * cpsi
-    t79 = -(t52 * t78 - s1 * hand_22 + t59 * t56) + t76
-    hand_13 = s * cphi - c * t57
-    t80 = s * t55 + c * t58
+    t81 = -(t54 * t80 - s1 * hand_22 + t61 * t58) + t78
+    hand_13 = s * cphi - c * t59
+    t82 = s * t57 + c * t60
     hand_33 = c * cpsi
-    t81 = t52 * hand_13 + s1 * t80 + t59 * hand_33 + t76
-    t82 = lp * s
-    wrist = np.sqrt(np.maximum(t74, 0.0)) * np.sqrt(np.maximum(t73, 0.0))
-    t83 = loff + lp * c + wrist
-    t84 = t82 * t55 + t58 * t83
-    t85 = a3 + t82 * cphi - t57 * t83
-    t86 = L2 + cpsi * t83
-    t87 = L1 * ctheta2A + ctheta23A * t85 + stheta23A * t86
-    t88 = s1 * ctheta23A
-    t89 = s1 * stheta23A
-    t90 = t88 * hand_11 - c1 * hand_21 - t89 * t60 + t76
-    t91 = -(t88 * t78 + c1 * hand_22 + t89 * t56) + t76
-    t92 = t88 * hand_13 - c1 * t80 + t89 * hand_33 + t76
-    t93 = stheta23A * hand_13 - ctheta23A * hand_33 + t76
-    t94 = d1 + L1 * stheta2A - ctheta23A * t86 + stheta23A * t85
-    t95 = 0.0 + t76
+    t83 = t54 * hand_13 + s1 * t82 + t61 * hand_33 + t78
+    t84 = lp * s
+    wrist = np.sqrt(np.maximum(t76, 0.0)) * np.sqrt(np.maximum(t75, 0.0))
+    t85 = loff + lp * c + wrist
+    t86 = t84 * t57 + t60 * t85
+    t87 = a3 + t84 * cphi - t59 * t85
+    t88 = L2 + cpsi * t85
+    t89 = L1 * ctheta2A + ctheta23A * t87 + stheta23A * t88
+    t90 = s1 * ctheta23A
+    t91 = s1 * stheta23A
+    t92 = t90 * hand_11 - c1 * hand_21 - t91 * t62 + t78
+    t93 = -(t90 * t80 + c1 * hand_22 + t91 * t58) + t78
+    t94 = t90 * hand_13 - c1 * t82 + t91 * hand_33 + t78
+    t95 = stheta23A * hand_13 - ctheta23A * hand_33 + t78
+    t96 = d1 + L1 * stheta2A - ctheta23A * t88 + stheta23A * t87
+    t97 = 0.0 + t78
     return (
-        t77,
         t79,
         t81,
-        s1 * t84 + c1 * t87 + t76,
-        t90,
-        t91,
+        t83,
+        s1 * t86 + c1 * t89 + t78,
         t92,
-        s1 * t87 - c1 * t84 + t76,
-        ctheta23A * t60 + stheta23A * hand_11 + t76,
-        ctheta23A * t56 - stheta23A * t78 + t76,
         t93,
-        t94 + t76,
+        t94,
+        s1 * t89 - c1 * t86 + t78,
+        ctheta23A * t62 + stheta23A * hand_11 + t78,
+        ctheta23A * t58 - stheta23A * t80 + t78,
         t95,
-        t95,
-        t95,
-        1.0 + t76,
+        t96 + t78,
+        t97,
+        t97,
+        t97,
+        1.0 + t78,
     )
 
 
@@ -578,7 +582,7 @@ def _jacobian(
     t27 = L1 + fore
     t28 = t27 * _runtime.VANISHING
     bare_virtual = fore <= t28
-    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
     short_virtual = L1 * fore <= _runtime.VANISHING * (t27 * t27)
     t29 = L2 * t17
     t30 = a3 * t15
@@ -596,239 +600,241 @@ def _jacobian(
     straight_left = L2 * t39 + a3 * t40
     t41 = 0.0 <= straight_left
     t42 = L2 * t40 - a3 * t39
-    large_left = fore + np.where(t41, straight_left, -straight_left)
+    t43 = _runtime.select(t41, straight_left, -straight_left)
+    large_left = fore + t43
     small_left = t42 * t42 / large_left
-    t43 = L1 * 2.0
-    t44 = np.where(t41, small_left, large_left) * t43 / 2.0
+    t44 = L1 * 2.0
+    N_left = _runtime.select(t41, small_left, large_left) * t44
     t45 = s3R_half * c3R_half
     t46 = t45 + t45
     t47 = c3R_half * c3R_half - s3R_half * s3R_half
     straight_right = L2 * t46 + a3 * t47
     t48 = 0.0 <= straight_right
     t49 = L2 * t47 - a3 * t46
-    t50 = np.where(t48, straight_right, -straight_right)
+    t50 = _runtime.select(t48, straight_right, -straight_right)
     large_right = fore + t50
     small_right = t49 * t49 / large_right
-    N_right = np.where(t48, small_right, large_right) * t43
-    t51 = gap + t44 + N_right / 2.0
-    N_virtual = np.maximum(t51, 0.0)
-    M_right = np.where(t48, large_right, small_right) * t43
-    t52 = np.where(t41, large_left, small_left) * t43 / 2.0
-    t53 = M_right / 2.0 - (gap - t52)
-    M_virtual = np.maximum(t53, 0.0)
+    t51 = _runtime.select(t48, small_right, large_right)
+    t52 = gap + N_left / 2.0 + t51 * t44 / 2.0
+    N_virtual = np.maximum(t52, 0.0)
+    t53 = _runtime.select(t48, large_right, small_right)
+    M_left = _runtime.select(t41, large_left, small_left) * t44
+    t54 = t53 * t44 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t54, 0.0)
     whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
-    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
-    t54 = 2.0 * np.where(0.0 <= -t49, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t54 * np.sqrt(M_virtual) / whole_virtual)
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
+    t55 = 2.0 * _runtime.select(0.0 <= -t49, 1.0, -1.0)
+    t56 = t55 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t56 / whole_virtual)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t55 = c2L_half * t8 + s2L_half * t9
-    t56 = t55 * t19
-    t57 = L1 * (t33 + t34)
-    t58 = t23 * t57
-    t59 = t56 - t58
-    t60 = t31 * t55
-    t61 = t35 * t57
-    r_I = t60 + t61
-    folded_virtual = np.sqrt(t59 * t59 + r_I * r_I) <= t28
+    t57 = c2L_half * t8 + s2L_half * t9
+    t58 = t57 * t19
+    t59 = L1 * (t33 + t34)
+    t60 = t23 * t59
+    t61 = t58 - t60
+    t62 = t31 * t57
+    t63 = t35 * t59
+    r_I = t62 + t63
+    folded_virtual = np.sqrt(t61 * t61 + r_I * r_I) <= t28
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t62 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t59 * t62
-    t63 = t59 * ahead_1_virtual + r_I * t62
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t63 * t63)
-    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
-    t64 = s2R_half * c2R_half
-    stheta2A = np.where(folded_virtual, t64 + t64, -(t63 / norm_virtual))
+    t64 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t61 * t64
+    t65 = t61 * ahead_1_virtual + r_I * t64
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t65 * t65)
+    ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
+    t66 = s2R_half * c2R_half
+    stheta2A = _runtime.select(folded_virtual, t66 + t66, -(t65 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
-    t65 = t26 * ctheta23A + t37 * stheta23A
-    t66 = d * d
-    t67 = t65 * t65
-    tilted = np.sqrt(t66 + t67)
-    t68 = t65 / tilted
+    t67 = t26 * ctheta23A + t37 * stheta23A
+    t68 = d * d
+    t69 = t67 * t67
+    tilted = np.sqrt(t68 + t69)
+    t70 = t67 / tilted
     cphi = d / tilted
-    t69 = t26 * stheta23A - t37 * ctheta23A
-    base = np.sqrt(t66 + gap)
-    t70 = t69 / base
-    t71 = cphi * t70
-    t72 = lp * c
-    t73 = base - (gs - al)
-    t74 = gs + al
-    t75 = t74 - base
-    wrist = np.sqrt(np.maximum(t73, 0.0)) * np.sqrt(np.maximum(t75, 0.0))
-    t76 = loff + t72 + wrist
-    t77 = t1 * t68 + t71 * t76
+    t71 = t26 * stheta23A - t37 * ctheta23A
+    base = np.sqrt(t68 + gap)
+    t72 = t71 / base
+    t73 = cphi * t72
+    t74 = lp * c
+    t75 = base - (gs - al)
+    t76 = gs + al
+    t77 = t76 - base
+    wrist = np.sqrt(np.maximum(t75, 0.0)) * np.sqrt(np.maximum(t77, 0.0))
+    t78 = loff + t74 + wrist
+    t79 = t1 * t70 + t73 * t78
     outer_32 = L1 * ctheta2A
-    t78 = t68 * t70
-    t79 = t1 * cphi - t76 * t78
-    t80 = a3 + t79
+    t80 = t70 * t72
+    t81 = t1 * cphi - t78 * t80
+    t82 = a3 + t81
     cpsi = tilted / base
-    t81 = t76 * cpsi
-    t82 = L2 + t81
-    outer_33 = ctheta23A * t80 + stheta23A * t82
-    t83 = outer_32 + outer_33
-    t84 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t85 = t84 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t86 = t85 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t87 = t86 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t88 = t87 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t89 = t88 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t90 = t89 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t91 = t90 & np.isfinite(theta3L) & np.isfinite(theta)
-    t92 = -(_runtime.FEASIBILITY * (d * t27))
-    t93 = -(_runtime.FEASIBILITY * t74)
-    t94 = (t92 <= t51) & (t92 <= t53) & (t93 <= t75) & (t93 <= t73)
-    t95 = _runtime.poison(np.logical_not(t91) | np.logical_not(t94))
-    t96 = cphi * t81
-    t97 = t68 * t81
-    t98 = t70 * t76
-    t99 = ctheta23A * t97 + stheta23A * t98
-    t100 = d * (gs - d / (cphi * cpsi))
-    t101 = t70 * t100
-    t102 = stheta23A * cpsi
-    t103 = t102 - ctheta23A * t78
-    t104 = s1 * t71 + c1 * t103
-    t105 = cphi * wrist * (cpsi * cpsi)
-    t106 = s1 * t96 - c1 * t99 + t101 * t104 / t105
-    t107 = tilted * tilted
-    t108 = 1.0 + t69 * t69 / t107
-    t109 = t69 * t65 / (tilted * t107 * t108)
-    t110 = t29 / 2.0 + t30 / 2.0
-    t111 = t10 * t110
-    t112 = t56 / 2.0
-    gap_13 = t111 + t112
-    t113 = t36 / 2.0
+    t83 = t78 * cpsi
+    t84 = L2 + t83
+    outer_33 = ctheta23A * t82 + stheta23A * t84
+    t85 = outer_32 + outer_33
+    t86 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t87 = t86 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t88 = t87 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t89 = t88 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t90 = t89 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t91 = t90 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t92 = t91 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t93 = t92 & np.isfinite(theta3L) & np.isfinite(theta)
+    t94 = -(_runtime.FEASIBILITY * (d * t27))
+    t95 = -(_runtime.FEASIBILITY * t76)
+    t96 = (t94 <= t52) & (t94 <= t54) & (t95 <= t77) & (t95 <= t75)
+    t97 = _runtime.poison(np.logical_not(t93) | np.logical_not(t96))
+    t98 = cphi * t83
+    t99 = t70 * t83
+    t100 = t72 * t78
+    t101 = ctheta23A * t99 + stheta23A * t100
+    t102 = d * (gs - d / (cphi * cpsi))
+    t103 = t72 * t102
+    t104 = stheta23A * cpsi
+    t105 = t104 - ctheta23A * t80
+    t106 = s1 * t73 + c1 * t105
+    t107 = cphi * wrist * (cpsi * cpsi)
+    t108 = s1 * t98 - c1 * t101 + t103 * t106 / t107
+    t109 = tilted * tilted
+    t110 = 1.0 + t71 * t71 / t109
+    t111 = t71 * t67 / (tilted * t109 * t110)
+    t112 = t29 / 2.0 + t30 / 2.0
+    t113 = t10 * t112
     t114 = t58 / 2.0
-    t115 = t113 - t114
-    gap_12 = gap_13 + t115
+    gap_13 = t113 + t114
+    t115 = t36 / 2.0
     t116 = t60 / 2.0
-    t117 = t16 / 2.0 - t18 / 2.0
-    t118 = t10 * t117
-    gap_23 = t116 - t118
-    t119 = t25 / 2.0
-    t120 = t61 / 2.0
-    t121 = t119 + t120
-    gap_22 = gap_23 + t121
-    t122 = t32 / 2.0
-    t123 = t55 * t117
-    mid_13 = t122 + t123
-    mid_12 = mid_13 + t115
-    t124 = L1 * stheta2A
-    t125 = t55 * t110
-    t126 = t20 / 2.0
-    mid_23 = t125 - t126
-    mid_22 = mid_23 + t121
-    t127 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t128 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t129 = L1 * (t127 + t128)
-    rate_22 = (outer_32 * mid_12 + t124 * mid_22) / t129
-    line_12 = ctheta23A * gap_12 + stheta23A * gap_22 + t69 * rate_22
-    turn_12 = 1.0 / (tilted * t108)
-    t130 = ctheta23A * gap_22 - stheta23A * gap_12 + t65 * rate_22
-    t131 = t109 * line_12 + turn_12 * t130
-    t132 = ctheta23A * t77
-    t133 = t68 * t100
-    t134 = cphi * cphi * wrist * cpsi
-    t135 = c1 * t132 - s1 * t79 - t104 * t133 / t134
-    t136 = 1.0 / (d * (1.0 + t67 / t66))
-    t137 = t136 * line_12
-    t138 = c1 * t124
+    t117 = t115 - t116
+    gap_12 = gap_13 + t117
+    t118 = t62 / 2.0
+    t119 = t16 / 2.0 - t18 / 2.0
+    t120 = t10 * t119
+    gap_23 = t118 - t120
+    t121 = t25 / 2.0
+    t122 = t63 / 2.0
+    t123 = t121 + t122
+    gap_22 = gap_23 + t123
+    t124 = t32 / 2.0
+    t125 = t57 * t119
+    mid_13 = t124 + t125
+    mid_12 = mid_13 + t117
+    t126 = L1 * stheta2A
+    t127 = t57 * t112
+    t128 = t20 / 2.0
+    mid_23 = t127 - t128
+    mid_22 = mid_23 + t123
+    t129 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t130 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t131 = L1 * (t129 + t130)
+    rate_22 = (outer_32 * mid_12 + t126 * mid_22) / t131
+    line_12 = ctheta23A * gap_12 + stheta23A * gap_22 + t71 * rate_22
+    turn_12 = 1.0 / (tilted * t110)
+    t132 = ctheta23A * gap_22 - stheta23A * gap_12 + t67 * rate_22
+    t133 = t111 * line_12 + turn_12 * t132
+    t134 = ctheta23A * t79
+    t135 = t70 * t102
+    t136 = cphi * cphi * wrist * cpsi
+    t137 = c1 * t134 - s1 * t81 - t106 * t135 / t136
+    t138 = 1.0 / (d * (1.0 + t69 / t68))
+    t139 = t138 * line_12
+    t140 = c1 * t126
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t139 = L2 * ctheta23A - a3 * stheta23A
-    t140 = (virtual_11 * mid_12 - t139 * mid_22) / t129
-    t141 = ctheta23A * t82 - stheta23A * t80
-    outer_13 = c1 * t141
-    t142 = t106 * t131 + t135 * t137 + t138 * t140 + rate_22 * outer_13
-    t143 = (mid_13 * virtual_11 - mid_23 * t139) / t129
-    rate_23 = (mid_13 * outer_32 + mid_23 * t124) / t129
-    line_13 = gap_13 * ctheta23A + gap_23 * stheta23A + t69 * rate_23
-    t144 = gap_23 * ctheta23A - gap_13 * stheta23A + t65 * rate_23
-    t145 = t109 * line_13 + turn_12 * t144
-    t146 = t136 * line_13
-    t147 = t138 * t143 + t145 * t106 + t146 * t135 + rate_23 * outer_13
-    gap_15 = t111 - t112
-    t148 = t113 + t114
-    gap_14 = gap_15 + t148
-    t149 = t116 + t118
-    t150 = t119 - t120
-    t151 = t149 - t150
-    t152 = t122 - t123
-    t153 = t152 + t148
-    mid_25 = t125 + t126
-    t154 = mid_25 - t150
-    t155 = (outer_32 * t153 - t124 * t154) / t129
-    line_14 = ctheta23A * gap_14 - stheta23A * t151 - t69 * t155
-    t156 = ctheta23A * t151 + stheta23A * gap_14 + t65 * t155
-    t157 = t109 * line_14 - turn_12 * t156
-    t158 = t136 * line_14
-    rate_14 = (virtual_11 * t153 + t139 * t154) / t129
-    t159 = t106 * t157 + t135 * t158 - t138 * rate_14 - outer_13 * t155
-    rate_15 = (t152 * virtual_11 + mid_25 * t139) / t129
-    t160 = (t152 * outer_32 - mid_25 * t124) / t129
-    line_15 = gap_15 * ctheta23A - t149 * stheta23A - t69 * t160
-    line_25 = t149 * ctheta23A + gap_15 * stheta23A + t65 * t160
-    t161 = t109 * line_15 - turn_12 * line_25
-    t162 = t136 * line_15
-    t163 = t138 * rate_15 - t161 * t106 - t162 * t135 + t160 * outer_13
-    t164 = t72 * t68 - t1 * t71
-    t165 = t72 * cphi + t1 * t78
-    t166 = t1 * t102 - ctheta23A * t165
-    outer_23 = s1 * t141
-    t167 = c1 * t71 - s1 * t103
-    outer_24 = c1 * t96 + s1 * t99 + t101 * t167 / t105
-    t168 = s1 * t132 + c1 * t79 + t133 * t167 / t134
-    t169 = s1 * t124
-    t170 = rate_22 * outer_23 - (t131 * outer_24 - t137 * t168 - t169 * t140)
-    t171 = t143 * t169 - t145 * outer_24 + t146 * t168 + rate_23 * outer_23
-    t172 = t157 * outer_24 - t158 * t168 + t169 * rate_14
-    t173 = rate_15 * t169 + t161 * outer_24 - t162 * t168
-    t174 = 0.0 + t95
-    t175 = ctheta23A * cpsi
-    t176 = t175 + stheta23A * t78
-    t177 = stheta23A * t97 - ctheta23A * t98 + t101 * t176 / t105
-    t178 = stheta23A * t77 + t133 * t176 / t134
-    t179 = outer_33 * rate_22 - (t131 * t177 - t137 * t178 + outer_32 * t140)
-    t180 = rate_23 * outer_33 - (outer_32 * t143 + t145 * t177 - t146 * t178)
-    t181 = t157 * t177 - t158 * t178 - outer_32 * rate_14
-    t182 = outer_32 * rate_15 - t161 * t177 + t162 * t178
+    t141 = L2 * ctheta23A - a3 * stheta23A
+    t142 = (virtual_11 * mid_12 - t141 * mid_22) / t131
+    t143 = ctheta23A * t84 - stheta23A * t82
+    outer_13 = c1 * t143
+    t144 = t108 * t133 + t137 * t139 + t140 * t142 + rate_22 * outer_13
+    t145 = (mid_13 * virtual_11 - mid_23 * t141) / t131
+    rate_23 = (mid_13 * outer_32 + mid_23 * t126) / t131
+    line_13 = gap_13 * ctheta23A + gap_23 * stheta23A + t71 * rate_23
+    t146 = gap_23 * ctheta23A - gap_13 * stheta23A + t67 * rate_23
+    t147 = t111 * line_13 + turn_12 * t146
+    t148 = t138 * line_13
+    t149 = t140 * t145 + t147 * t108 + t148 * t137 + rate_23 * outer_13
+    gap_15 = t113 - t114
+    t150 = t115 + t116
+    gap_14 = gap_15 + t150
+    t151 = t118 + t120
+    t152 = t121 - t122
+    t153 = t151 - t152
+    t154 = t124 - t125
+    t155 = t154 + t150
+    mid_25 = t127 + t128
+    t156 = mid_25 - t152
+    t157 = (outer_32 * t155 - t126 * t156) / t131
+    line_14 = ctheta23A * gap_14 - stheta23A * t153 - t71 * t157
+    t158 = ctheta23A * t153 + stheta23A * gap_14 + t67 * t157
+    t159 = t111 * line_14 - turn_12 * t158
+    t160 = t138 * line_14
+    rate_14 = (virtual_11 * t155 + t141 * t156) / t131
+    t161 = t108 * t159 + t137 * t160 - t140 * rate_14 - outer_13 * t157
+    rate_15 = (t154 * virtual_11 + mid_25 * t141) / t131
+    t162 = (t154 * outer_32 - mid_25 * t126) / t131
+    line_15 = gap_15 * ctheta23A - t151 * stheta23A - t71 * t162
+    line_25 = t151 * ctheta23A + gap_15 * stheta23A + t67 * t162
+    t163 = t111 * line_15 - turn_12 * line_25
+    t164 = t138 * line_15
+    t165 = t140 * rate_15 - t163 * t108 - t164 * t137 + t162 * outer_13
+    t166 = t74 * t70 - t1 * t73
+    t167 = t74 * cphi + t1 * t80
+    t168 = t1 * t104 - ctheta23A * t167
+    outer_23 = s1 * t143
+    t169 = c1 * t73 - s1 * t105
+    outer_24 = c1 * t98 + s1 * t101 + t103 * t169 / t107
+    t170 = s1 * t134 + c1 * t81 + t135 * t169 / t136
+    t171 = s1 * t126
+    t172 = rate_22 * outer_23 - (t133 * outer_24 - t139 * t170 - t171 * t142)
+    t173 = t145 * t171 - t147 * outer_24 + t148 * t170 + rate_23 * outer_23
+    t174 = t159 * outer_24 - t160 * t170 + t171 * rate_14
+    t175 = rate_15 * t171 + t163 * outer_24 - t164 * t170
+    t176 = 0.0 + t97
+    t177 = ctheta23A * cpsi
+    t178 = t177 + stheta23A * t80
+    t179 = stheta23A * t99 - ctheta23A * t100 + t103 * t178 / t107
+    t180 = stheta23A * t79 + t135 * t178 / t136
+    t181 = outer_33 * rate_22 - (t133 * t179 - t139 * t180 + outer_32 * t142)
+    t182 = rate_23 * outer_33 - (outer_32 * t145 + t147 * t179 - t148 * t180)
+    t183 = t159 * t179 - t160 * t180 - outer_32 * rate_14
+    t184 = outer_32 * rate_15 - t163 * t179 + t164 * t180
     return (
-        c1 * t77 - s1 * t83 + t95,
-        t142 + t95,
-        t147 + t95,
-        t159 + t95,
-        -t163 + t95,
-        s1 * t164 - c1 * t166 + t95,
-        s1 * t77 + c1 * t83 + t95,
-        t170 + t95,
-        t171 + t95,
-        -(t172 + t155 * outer_23) + t95,
-        -(t173 + t160 * outer_23) + t95,
-        -(c1 * t164 + s1 * t166) + t95,
-        t174,
-        t179 + t95,
-        t180 + t95,
-        -(t181 + outer_33 * t155) + t95,
-        t182 - t160 * outer_33 + t95,
-        t1 * t175 + stheta23A * t165 + t95,
-        t174,
-        -t131 + t95,
-        -t145 + t95,
-        -t157 + t95,
-        -t161 + t95,
-        t174,
-        t174,
-        -t137 + t95,
-        -t146 + t95,
-        -t158 + t95,
-        -t162 + t95,
-        t174,
-        t174,
-        t174,
-        t174,
-        t174,
-        t174,
-        1.0 + t95,
+        c1 * t79 - s1 * t85 + t97,
+        t144 + t97,
+        t149 + t97,
+        t161 + t97,
+        -t165 + t97,
+        s1 * t166 - c1 * t168 + t97,
+        s1 * t79 + c1 * t85 + t97,
+        t172 + t97,
+        t173 + t97,
+        -(t174 + t157 * outer_23) + t97,
+        -(t175 + t162 * outer_23) + t97,
+        -(c1 * t166 + s1 * t168) + t97,
+        t176,
+        t181 + t97,
+        t182 + t97,
+        -(t183 + outer_33 * t157) + t97,
+        t184 - t162 * outer_33 + t97,
+        t1 * t177 + stheta23A * t167 + t97,
+        t176,
+        -t133 + t97,
+        -t147 + t97,
+        -t159 + t97,
+        -t163 + t97,
+        t176,
+        t176,
+        -t139 + t97,
+        -t148 + t97,
+        -t160 + t97,
+        -t164 + t97,
+        t176,
+        t176,
+        t176,
+        t176,
+        t176,
+        t176,
+        1.0 + t97,
     )
 
 
@@ -923,72 +929,74 @@ def _determinant(
     straight_left = L2 * t5 + a3 * t3
     t46 = 0.0 <= straight_left
     t47 = L2 * t3 - a3 * t5
-    large_left = fore + np.where(t46, straight_left, -straight_left)
+    t48 = _runtime.select(t46, straight_left, -straight_left)
+    large_left = fore + t48
     small_left = t47 * t47 / large_left
-    t48 = L1 * 2.0
-    t49 = np.where(t46, small_left, large_left) * t48 / 2.0
+    t49 = L1 * 2.0
+    N_left = _runtime.select(t46, small_left, large_left) * t49
     straight_right = L2 * t12 + a3 * t10
     t50 = 0.0 <= straight_right
     t51 = L2 * t10 - a3 * t12
-    t52 = np.where(t50, straight_right, -straight_right)
+    t52 = _runtime.select(t50, straight_right, -straight_right)
     large_right = fore + t52
     small_right = t51 * t51 / large_right
-    N_right = np.where(t50, small_right, large_right) * t48
-    t53 = gap + t49 + N_right / 2.0
-    N_virtual = np.maximum(t53, 0.0)
-    M_right = np.where(t50, large_right, small_right) * t48
-    t54 = np.where(t46, large_left, small_left) * t48 / 2.0
-    t55 = M_right / 2.0 - (gap - t54)
-    M_virtual = np.maximum(t55, 0.0)
+    t53 = _runtime.select(t50, small_right, large_right)
+    t54 = gap + N_left / 2.0 + t53 * t49 / 2.0
+    N_virtual = np.maximum(t54, 0.0)
+    t55 = _runtime.select(t50, large_right, small_right)
+    M_left = _runtime.select(t46, large_left, small_left) * t49
+    t56 = t55 * t49 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t56, 0.0)
     whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t56 = 2.0 * np.where(0.0 <= -t51, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t56 * np.sqrt(M_virtual) / whole_virtual)
-    t57 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t37 * t57
-    t58 = t37 * ahead_1_virtual + r_I * t57
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t58 * t58)
-    ctheta2A = np.where(folded_virtual, t13, out_virtual / norm_virtual)
+    t57 = 2.0 * _runtime.select(0.0 <= -t51, 1.0, -1.0)
+    t58 = t57 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t58 / whole_virtual)
+    t59 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t37 * t59
+    t60 = t37 * ahead_1_virtual + r_I * t59
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t60 * t60)
+    ctheta2A = _runtime.select(folded_virtual, t13, out_virtual / norm_virtual)
     bare_virtual = fore <= t41
-    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
-    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
+    c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
+    s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    stheta2A = np.where(folded_virtual, t9, -(t58 / norm_virtual))
+    stheta2A = _runtime.select(folded_virtual, t9, -(t60 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t59 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t60 = d * d
-    t61 = t44 * ctheta23A + t45 * stheta23A
-    tilted = np.sqrt(t60 + t61 * t61)
-    base = np.sqrt(t60 + gap)
-    t62 = base - (gs - al)
-    t63 = gs + al
-    t64 = t63 - base
-    wrist = np.sqrt(np.maximum(t62, 0.0)) * np.sqrt(np.maximum(t64, 0.0))
-    t65 = loff + lp * c + wrist
-    t66 = L2 + tilted / base * t65
-    t67 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    t68 = t61 / tilted * t65 * ((t44 * stheta23A - t45 * ctheta23A) / base)
-    t69 = a3 + lp * s * (d / tilted) - t68
-    t70 = d * (L1 * L1) * t7 * t14 * (t59 * t66 + t67 * t69)
-    t71 = L1 * ctheta2A + ctheta23A * t69 + stheta23A * t66
-    t72 = 4.0 * tilted * (L2 * t59 + a3 * t67) * (base * base)
-    t73 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t74 = t73 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t75 = t74 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t76 = t75 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t77 = t76 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t78 = t77 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t79 = t78 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t80 = t79 & np.isfinite(theta3L) & np.isfinite(theta)
-    t81 = -(_runtime.FEASIBILITY * (d * t40))
-    t82 = -(_runtime.FEASIBILITY * t63)
-    t83 = (t81 <= t53) & (t81 <= t55) & (t82 <= t64) & (t82 <= t62)
-    t84 = _runtime.poison(np.logical_not(t80) | np.logical_not(t83))
+    t61 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t62 = d * d
+    t63 = t44 * ctheta23A + t45 * stheta23A
+    tilted = np.sqrt(t62 + t63 * t63)
+    base = np.sqrt(t62 + gap)
+    t64 = base - (gs - al)
+    t65 = gs + al
+    t66 = t65 - base
+    wrist = np.sqrt(np.maximum(t64, 0.0)) * np.sqrt(np.maximum(t66, 0.0))
+    t67 = loff + lp * c + wrist
+    t68 = L2 + tilted / base * t67
+    t69 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t70 = t63 / tilted * t67 * ((t44 * stheta23A - t45 * ctheta23A) / base)
+    t71 = a3 + lp * s * (d / tilted) - t70
+    t72 = d * (L1 * L1) * t7 * t14 * (t61 * t68 + t69 * t71)
+    t73 = L1 * ctheta2A + ctheta23A * t71 + stheta23A * t68
+    t74 = 4.0 * tilted * (L2 * t61 + a3 * t69) * (base * base)
+    t75 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t76 = t75 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t77 = t76 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t78 = t77 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t79 = t78 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t80 = t79 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t81 = t80 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t82 = t81 & np.isfinite(theta3L) & np.isfinite(theta)
+    t83 = -(_runtime.FEASIBILITY * (d * t40))
+    t84 = -(_runtime.FEASIBILITY * t65)
+    t85 = (t83 <= t54) & (t83 <= t56) & (t84 <= t66) & (t84 <= t64)
+    t86 = _runtime.poison(np.logical_not(t82) | np.logical_not(t85))
     return (
-        t70 * t71 / t72 + t84,
+        t72 * t73 / t74 + t86,
     )
 
 
@@ -1067,89 +1075,91 @@ def _singularities(
     straight_left = L2 * t34 + a3 * t35
     t36 = 0.0 <= straight_left
     t37 = L2 * t35 - a3 * t34
-    large_left = fore + np.where(t36, straight_left, -straight_left)
+    t38 = _runtime.select(t36, straight_left, -straight_left)
+    large_left = fore + t38
     small_left = t37 * t37 / large_left
-    t38 = L1 * 2.0
-    t39 = np.where(t36, small_left, large_left) * t38 / 2.0
+    t39 = L1 * 2.0
+    N_left = _runtime.select(t36, small_left, large_left) * t39
     t40 = s3R_half * c3R_half
     t41 = t40 + t40
     t42 = c3R_half * c3R_half - s3R_half * s3R_half
     straight_right = L2 * t41 + a3 * t42
     t43 = 0.0 <= straight_right
     t44 = L2 * t42 - a3 * t41
-    t45 = np.where(t43, straight_right, -straight_right)
+    t45 = _runtime.select(t43, straight_right, -straight_right)
     large_right = fore + t45
     small_right = t44 * t44 / large_right
-    N_right = np.where(t43, small_right, large_right) * t38
-    t46 = gap + t39 + N_right / 2.0
-    N_virtual = np.maximum(t46, 0.0)
-    M_right = np.where(t43, large_right, small_right) * t38
-    t47 = np.where(t36, large_left, small_left) * t38 / 2.0
-    t48 = M_right / 2.0 - (gap - t47)
-    M_virtual = np.maximum(t48, 0.0)
+    t46 = _runtime.select(t43, small_right, large_right)
+    t47 = gap + N_left / 2.0 + t46 * t39 / 2.0
+    N_virtual = np.maximum(t47, 0.0)
+    t48 = _runtime.select(t43, large_right, small_right)
+    M_left = _runtime.select(t36, large_left, small_left) * t39
+    t49 = t48 * t39 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t49, 0.0)
     whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     ahead_1_virtual = L1 + fore * c_bend_virtual
-    t49 = 2.0 * np.where(0.0 <= -t44, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t49 * np.sqrt(M_virtual) / whole_virtual)
-    t50 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t23 * t50
-    t51 = t23 * ahead_1_virtual + r_I * t50
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
-    ctheta2A = np.where(folded_virtual, t28, out_virtual / norm_virtual)
+    t50 = 2.0 * _runtime.select(0.0 <= -t44, 1.0, -1.0)
+    t51 = t50 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t51 / whole_virtual)
+    t52 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t23 * t52
+    t53 = t23 * ahead_1_virtual + r_I * t52
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t53 * t53)
+    ctheta2A = _runtime.select(folded_virtual, t28, out_virtual / norm_virtual)
     bare_virtual = fore <= t27
-    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
-    s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
+    c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
+    s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t52 = s2R_half * c2R_half
-    t53 = t52 + t52
-    stheta2A = np.where(folded_virtual, t53, -(t51 / norm_virtual))
+    t54 = s2R_half * c2R_half
+    t55 = t54 + t54
+    stheta2A = _runtime.select(folded_virtual, t55, -(t53 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t54 = d * d
+    t56 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t55 = t31 * ctheta23A + t32 * stheta23A
-    tilted = np.sqrt(t54 + t55 * t55)
-    base = np.sqrt(t54 + gap)
-    t56 = t55 / tilted * ((t31 * stheta23A - t32 * ctheta23A) / base)
-    t57 = base - (gs - al)
-    t58 = gs + al
-    t59 = t58 - base
-    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
-    t60 = loff + lp * c + wrist
-    t61 = a3 + lp * s * (d / tilted) - t56 * t60
-    t62 = L2 + t60 * (tilted / base)
-    t63 = L1 * ctheta2A + ctheta23A * t61 + stheta23A * t62
-    t64 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t65 = t64 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t66 = t65 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t67 = t66 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t68 = t67 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t69 = t68 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t70 = t69 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t71 = t70 & np.isfinite(theta3L) & np.isfinite(theta)
-    t72 = -(_runtime.FEASIBILITY * (d * t26))
-    t73 = -(_runtime.FEASIBILITY * t58)
-    t74 = (t72 <= t46) & (t72 <= t48) & (t73 <= t59) & (t73 <= t57)
-    t75 = _runtime.poison(np.logical_not(t71) | np.logical_not(t74))
-    t76 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t77 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    s2R3R = t42 * t53 + t41 * t28
-    c2R3R = t42 * t28 - t41 * t53
-    t78 = L2 * (t53 * s2R3R + t28 * c2R3R) + a3 * (t53 * c2R3R - t28 * s2R3R)
-    t79 = s2L_half * c2L_half
-    t80 = t79 + t79
-    t81 = c2L_half * c2L_half - s2L_half * s2L_half
-    s2L3L = t35 * t80 + t34 * t81
-    c2L3L = t35 * t81 - t34 * t80
-    t82 = L2 * (t80 * s2L3L + t81 * c2L3L) + a3 * (t80 * c2L3L - t81 * s2L3L)
+    t57 = t31 * ctheta23A + t32 * stheta23A
+    tilted = np.sqrt(t56 + t57 * t57)
+    base = np.sqrt(t56 + gap)
+    t58 = t57 / tilted * ((t31 * stheta23A - t32 * ctheta23A) / base)
+    t59 = base - (gs - al)
+    t60 = gs + al
+    t61 = t60 - base
+    wrist = np.sqrt(np.maximum(t59, 0.0)) * np.sqrt(np.maximum(t61, 0.0))
+    t62 = loff + lp * c + wrist
+    t63 = a3 + lp * s * (d / tilted) - t58 * t62
+    t64 = L2 + t62 * (tilted / base)
+    t65 = L1 * ctheta2A + ctheta23A * t63 + stheta23A * t64
+    t66 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t67 = t66 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t68 = t67 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t69 = t68 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t70 = t69 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t71 = t70 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t72 = t71 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t73 = t72 & np.isfinite(theta3L) & np.isfinite(theta)
+    t74 = -(_runtime.FEASIBILITY * (d * t26))
+    t75 = -(_runtime.FEASIBILITY * t60)
+    t76 = (t74 <= t47) & (t74 <= t49) & (t75 <= t61) & (t75 <= t59)
+    t77 = _runtime.poison(np.logical_not(t73) | np.logical_not(t76))
+    t78 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t79 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    s2R3R = t42 * t55 + t41 * t28
+    c2R3R = t42 * t28 - t41 * t55
+    t80 = L2 * (t55 * s2R3R + t28 * c2R3R) + a3 * (t55 * c2R3R - t28 * s2R3R)
+    t81 = s2L_half * c2L_half
+    t82 = t81 + t81
+    t83 = c2L_half * c2L_half - s2L_half * s2L_half
+    s2L3L = t35 * t82 + t34 * t83
+    c2L3L = t35 * t83 - t34 * t82
+    t84 = L2 * (t82 * s2L3L + t83 * c2L3L) + a3 * (t82 * c2L3L - t83 * s2L3L)
     return (
-        t63 + t75,
-        t76 * t62 + t77 * t61 + t75,
-        t78 + t75,
-        t82 + t75,
-        L2 * t76 + a3 * t77 + t75,
-        wrist + t75,
+        t65 + t77,
+        t78 * t64 + t79 * t63 + t77,
+        t80 + t77,
+        t84 + t77,
+        L2 * t78 + a3 * t79 + t77,
+        wrist + t77,
     )
 
 
@@ -1200,7 +1210,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     above = np.maximum(t13, 0.0)
     t14 = np.sqrt(above)
     t15 = 2.0 * np.arctan2(t12, t14)
-    t16 = _runtime.wrap(-np.where(nowhere, 0.0, t2 - t15))
+    t16 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t15))
     t17 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
     t18 = t17 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
     t19 = t18 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
@@ -1226,523 +1236,527 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t34 = y * t33
     s_turn = 2.0 * t12 * t14 / total
     t35 = x * s_turn
-    t36 = x * np.where(nowhere, 1.0, -((t34 - t35) / h))
-    t37 = x * t33
-    t38 = y * s_turn
-    outward = t36 + y * np.where(nowhere, 0.0, (t37 + t38) / h)
+    c1 = _runtime.select(nowhere, 1.0, -((t34 - t35) / h))
+    t36 = x * t33
+    t37 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, (t36 + t37) / h)
+    outward = x * c1 + y * s1
     reach = np.sqrt(t32 + outward * outward)
-    t39 = t29 - reach
-    t40 = L1 - fore
-    t41 = reach + t40
-    t42 = reach - t40
-    t43 = t28 & (t30 <= t39) & (t30 <= t41) & (t30 <= t42)
+    t38 = t29 - reach
+    t39 = L1 - fore
+    t40 = reach + t39
+    t41 = reach - t39
+    t42 = t28 & (t30 <= t38) & (t30 <= t40) & (t30 <= t41)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
-    t44 = L1 + fore_arm
-    t45 = d * t44
-    t46 = -(_runtime.FEASIBILITY * t45)
-    t47 = L1 * 2.0
-    t48 = _runtime.VANISHING * t29
-    folded = reach <= t48
-    s_sight = np.where(folded, 0.0, t31 / reach)
+    t43 = L1 + fore_arm
+    t44 = d * t43
+    t45 = -(_runtime.FEASIBILITY * t44)
+    t46 = L1 * 2.0
+    t47 = _runtime.VANISHING * t29
+    folded = reach <= t47
+    s_sight = _runtime.select(folded, 0.0, t31 / reach)
     short = L1 * fore <= _runtime.VANISHING * (t29 * t29)
-    t49 = folded | short
-    A = np.maximum(t39, 0.0)
-    C = np.maximum(t42, 0.0)
-    t50 = A * C
+    t48 = folded | short
+    A = np.maximum(t38, 0.0)
+    C = np.maximum(t41, 0.0)
+    t49 = A * C
     S = t29 + reach
-    B = np.maximum(t41, 0.0)
-    t51 = S * B
-    at_base = t50 + t51
-    c_base = np.where(t49, 1.0, -((t50 - t51) / at_base))
-    t52 = s_sight * c_base
-    c_sight = np.where(folded, 1.0, outward / reach)
+    B = np.maximum(t40, 0.0)
+    t50 = S * B
+    at_base = t49 + t50
+    c_base = _runtime.select(t48, 1.0, -((t49 - t50) / at_base))
+    t51 = s_sight * c_base
+    c_sight = _runtime.select(folded, 1.0, outward / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = np.where(t49, 0.0, area_front_elbow_down_alike / at_base)
-    t53 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t52 + t53
-    t54 = c_sight * c_base
-    t55 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t54 - t55
-    bare = fore <= t48
-    c_lag = np.where(bare, 1.0, a_3W / fore)
-    t56 = A * S
-    t57 = C * B
-    at_elbow = t56 + t57
-    c_bend = np.where(short, 1.0, -((t56 - t57) / at_elbow))
-    t58 = c_lag * c_bend
-    s_lag = np.where(bare, 0.0, L_2W / fore)
-    s_bend_front_elbow_down_alike = np.where(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t59 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t58 + t59
-    t60 = s_lag * c_bend
-    t61 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t60 - t61
+    s_base_front_elbow_down_alike = _runtime.select(t48, 0.0, area_front_elbow_down_alike / at_base)
+    t52 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t51 + t52
+    t53 = c_sight * c_base
+    t54 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t53 - t54
+    bare = fore <= t47
+    c_lag = _runtime.select(bare, 1.0, a_3W / fore)
+    t55 = A * S
+    t56 = C * B
+    at_elbow = t55 + t56
+    c_bend = _runtime.select(short, 1.0, -((t55 - t56) / at_elbow))
+    t57 = c_lag * c_bend
+    s_lag = _runtime.select(bare, 0.0, L_2W / fore)
+    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, area_front_elbow_down_alike / at_elbow)
+    t58 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t57 + t58
+    t59 = s_lag * c_bend
+    t60 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t59 - t60
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    t62 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t61 = stheta2A * ctheta23A - ctheta2A * stheta23A
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t63 = L2 * t62 - a3 * c_elbow
-    t64 = 0.0 <= -t63
-    t65 = L2 * c_elbow + a3 * t62
-    large = fore_arm + np.where(t64, -t63, t63)
-    small = t65 * t65 / large
-    t66 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t67 = d * t66
-    t68 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t69 = d * t68
-    gap = t67 * t67 + t69 * t69
-    t70 = t47 * np.where(t64, small, large) - gap
+    t62 = L2 * t61 - a3 * c_elbow
+    t63 = 0.0 <= -t62
+    t64 = L2 * c_elbow + a3 * t61
+    large = fore_arm + _runtime.select(t63, -t62, t62)
+    small = t64 * t64 / large
+    t65 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t66 = d * t65
+    t67 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
+    t68 = d * t67
+    gap = t66 * t66 + t68 * t68
+    t69 = t46 * _runtime.select(t63, small, large) - gap
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t71 = 2.0 * t67 * point_11 + 2.0 * t69 * point_21
-    t72 = t70 + t71
-    t73 = gap + t47 * np.where(t64, large, small)
-    t74 = t73 - t71
-    t75 = t70 - t71
-    t76 = t43 & (t46 <= t72) & (t46 <= t74) & (t46 <= t75)
-    t77 = t71 + t73
-    unreachable = np.logical_not(t76 & (t46 <= t77))
-    t78 = _runtime.poison(invalid | unreachable)
-    t79 = t16 + t78
-    t80 = t69 - point_21
-    t81 = t67 - point_11
-    t82 = _runtime.VANISHING * t44
-    folded_right = np.sqrt(t80 * t80 + t81 * t81) <= t82
-    t83 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * (t44 * t44)
-    t84 = 2.0 * np.where(0.0 <= -t65, 1.0, -1.0)
-    t85 = _runtime.VANISHING * (_runtime.VANISHING * (t45 * 16.0))
-    N_right = np.maximum(t72, t85)
+    t70 = 2.0 * t66 * point_11 + 2.0 * t68 * point_21
+    t71 = t69 + t70
+    t72 = gap + t46 * _runtime.select(t63, large, small)
+    t73 = t72 - t70
+    t74 = t69 - t70
+    t75 = t42 & (t45 <= t71) & (t45 <= t73) & (t45 <= t74)
+    t76 = t70 + t72
+    unreachable = np.logical_not(t75 & (t45 <= t76))
+    t77 = _runtime.poison(invalid | unreachable)
+    t78 = t16 + t77
+    t79 = t68 - point_21
+    t80 = t66 - point_11
+    t81 = _runtime.VANISHING * t43
+    folded_right = np.sqrt(t79 * t79 + t80 * t80) <= t81
+    t82 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * (t43 * t43)
+    t83 = 2.0 * _runtime.select(0.0 <= -t64, 1.0, -1.0)
+    t84 = _runtime.VANISHING * (_runtime.VANISHING * (t44 * 16.0))
+    N_right = np.maximum(t71, t84)
     rN_right = np.sqrt(N_right)
-    M_right = np.maximum(t74, t85)
+    M_right = np.maximum(t73, t84)
     rM_right = np.sqrt(M_right)
     whole_right = N_right + M_right
-    s_bend_right = np.where(short_right, 0.0, t84 * rN_right * rM_right / whole_right)
-    t86 = fore_arm * s_bend_right
-    c_bend_right = np.where(short_right, 1.0, -((N_right - M_right) / whole_right))
+    s_bend_right = _runtime.select(short_right, 0.0, t83 * rN_right * rM_right / whole_right)
+    t85 = fore_arm * s_bend_right
+    c_bend_right = _runtime.select(short_right, 1.0, -((N_right - M_right) / whole_right))
     ahead_1_right = L1 + fore_arm * c_bend_right
-    t87 = np.arctan2(t81 * t86 - t80 * ahead_1_right, -(t81 * ahead_1_right + t80 * t86))
-    t88 = _runtime.wrap_cut(np.where(folded_right, t83, t87))
-    t89 = t88 + t78
-    bare_right = fore_arm <= t82
-    t90 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
-    t91 = np.where(short_right, 0.0, t84 * np.arctan2(rN_right, rM_right))
-    t92 = _runtime.wrap(t90 + t91) + t78
-    h_left = t69 + point_21
-    r_left = t67 + point_11
-    folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t82
-    N_left = np.maximum(t75, 0.0)
-    M_left = np.maximum(t77, 0.0)
+    t86 = np.arctan2(t80 * t85 - t79 * ahead_1_right, -(t80 * ahead_1_right + t79 * t85))
+    t87 = _runtime.wrap_cut(_runtime.select(folded_right, t82, t86))
+    t88 = t87 + t77
+    bare_right = fore_arm <= t81
+    s_lag_right = _runtime.select(bare_right, 0.0, L2 / fore_arm)
+    c_lag_right = _runtime.select(bare_right, 1.0, a3 / fore_arm)
+    t89 = np.arctan2(s_lag_right, c_lag_right)
+    t90 = _runtime.select(short_right, 0.0, t83 * np.arctan2(rN_right, rM_right))
+    t91 = _runtime.wrap_cut(_runtime.wrap(t89 + t90)) + t77
+    h_left = t68 + point_21
+    r_left = t66 + point_11
+    folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t81
+    N_left = np.maximum(t74, 0.0)
+    M_left = np.maximum(t76, 0.0)
     whole_left = N_left + M_left
-    c_bend_left = np.where(short_right, 1.0, -((N_left - M_left) / whole_left))
+    c_bend_left = _runtime.select(short_right, 1.0, -((N_left - M_left) / whole_left))
     ahead_1_left = L1 + fore_arm * c_bend_left
-    t93 = h_left * ahead_1_left
+    t92 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = np.where(short_right, 0.0, t84 * rN_left * rM_left / whole_left)
-    t94 = fore_arm * s_bend_left
-    t95 = r_left * t94
-    t96 = r_left * ahead_1_left
-    t97 = h_left * t94
-    t98 = np.where(folded_left, t83, np.arctan2(t93 - t95, t96 + t97))
-    t99 = np.where(short_right, 0.0, t84 * np.arctan2(rN_left, rM_left))
-    t100 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    t101 = t100 + t78
-    t102 = np.where(folded_left, t83, np.arctan2(t93 + t95, t96 - t97))
-    stheta2A_front_elbow_down_alike = t52 - t53
-    ctheta2A_front_elbow_down_alike = t54 + t55
-    c_relative_front_elbow_down_alike = t58 - t59
-    t103 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t60 + t61
-    t104 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t103 - t104
-    t105 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t106 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t107 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t106 + t107
-    t108 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t109 = t105 - t108
-    t110 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t111 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t110 + t111
-    t112 = L2 * t109 - a3 * c_elbow_front_elbow_down_alike
-    t113 = 0.0 <= -t112
-    t114 = L2 * c_elbow_front_elbow_down_alike + a3 * t109
-    large_front_elbow_down_alike = fore_arm + np.where(t113, -t112, t112)
-    small_front_elbow_down_alike = t114 * t114 / large_front_elbow_down_alike
-    t115 = np.where(t113, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    t116 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t117 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t118 = d * (t116 - t117)
-    t119 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t120 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t121 = d * (t119 + t120)
-    gap_front_elbow_down_alike = t118 * t118 + t121 * t121
-    t122 = t47 * t115 - gap_front_elbow_down_alike
-    t123 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t123 + a3 * ctheta23A_front_elbow_down_alike
-    t124 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t124 + a3 * stheta23A_front_elbow_down_alike
-    t125 = 2.0 * t118 * point_11_front_elbow_down_alike + 2.0 * t121 * point_21_front_elbow_down_alike
-    t126 = t122 + t125
-    t127 = np.where(t113, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    t128 = gap_front_elbow_down_alike + t47 * t127
-    t129 = t128 - t125
-    t130 = t122 - t125
-    t131 = t43 & (t46 <= t126) & (t46 <= t129) & (t46 <= t130)
-    t132 = t125 + t128
-    unreachable_2 = np.logical_not(t131 & (t46 <= t132))
-    t133 = _runtime.poison(invalid | unreachable_2)
-    t134 = t16 + t133
-    t135 = t121 - point_21_front_elbow_down_alike
-    t136 = t118 - point_11_front_elbow_down_alike
-    folded_right_front_elbow_down_alike = np.sqrt(t135 * t135 + t136 * t136) <= t82
-    t137 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    t138 = 2.0 * np.where(0.0 <= -t114, 1.0, -1.0)
-    N_right_front_elbow_down_alike = np.maximum(t126, t85)
+    s_bend_left = _runtime.select(short_right, 0.0, t83 * rN_left * rM_left / whole_left)
+    t93 = fore_arm * s_bend_left
+    t94 = r_left * t93
+    t95 = r_left * ahead_1_left
+    t96 = h_left * t93
+    t97 = _runtime.select(folded_left, t82, np.arctan2(t92 - t94, t95 + t96))
+    t98 = _runtime.select(short_right, 0.0, t83 * np.arctan2(rN_left, rM_left))
+    t99 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t100 = t99 + t77
+    t101 = _runtime.select(folded_left, t82, np.arctan2(t92 + t94, t95 - t96))
+    stheta2A_front_elbow_down_alike = t51 - t52
+    ctheta2A_front_elbow_down_alike = t53 + t54
+    c_relative_front_elbow_down_alike = t57 - t58
+    t102 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t59 + t60
+    t103 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t102 - t103
+    t104 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t105 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t106 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t105 + t106
+    t107 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t108 = t104 - t107
+    t109 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t110 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t109 + t110
+    t111 = L2 * t108 - a3 * c_elbow_front_elbow_down_alike
+    t112 = 0.0 <= -t111
+    t113 = L2 * c_elbow_front_elbow_down_alike + a3 * t108
+    large_front_elbow_down_alike = fore_arm + _runtime.select(t112, -t111, t111)
+    small_front_elbow_down_alike = t113 * t113 / large_front_elbow_down_alike
+    t114 = _runtime.select(t112, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    t115 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t116 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t117 = d * (t115 - t116)
+    t118 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t119 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t120 = d * (t118 + t119)
+    gap_front_elbow_down_alike = t117 * t117 + t120 * t120
+    t121 = t46 * t114 - gap_front_elbow_down_alike
+    t122 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t122 + a3 * ctheta23A_front_elbow_down_alike
+    t123 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t123 + a3 * stheta23A_front_elbow_down_alike
+    t124 = 2.0 * t117 * point_11_front_elbow_down_alike + 2.0 * t120 * point_21_front_elbow_down_alike
+    t125 = t121 + t124
+    t126 = _runtime.select(t112, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    t127 = gap_front_elbow_down_alike + t46 * t126
+    t128 = t127 - t124
+    t129 = t121 - t124
+    t130 = t42 & (t45 <= t125) & (t45 <= t128) & (t45 <= t129)
+    t131 = t124 + t127
+    unreachable_2 = np.logical_not(t130 & (t45 <= t131))
+    t132 = _runtime.poison(invalid | unreachable_2)
+    t133 = t16 + t132
+    t134 = t120 - point_21_front_elbow_down_alike
+    t135 = t117 - point_11_front_elbow_down_alike
+    folded_right_front_elbow_down_alike = np.sqrt(t134 * t134 + t135 * t135) <= t81
+    t136 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    t137 = 2.0 * _runtime.select(0.0 <= -t113, 1.0, -1.0)
+    N_right_front_elbow_down_alike = np.maximum(t125, t84)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(t129, t85)
+    M_right_front_elbow_down_alike = np.maximum(t128, t84)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t139 = t138 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    t138 = t137 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = N_right_front_elbow_down_alike + M_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t139 / whole_right_front_elbow_down_alike)
-    t140 = fore_arm * s_bend_right_front_elbow_down_alike
-    t141 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
-    c_bend_right_front_elbow_down_alike = np.where(short_right, 1.0, -(t141 / whole_right_front_elbow_down_alike))
-    t142 = fore_arm * c_bend_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = L1 + t142
-    up_right_front_elbow_down_alike = t136 * t140 - t135 * ahead_1_right_front_elbow_down_alike
-    t143 = t136 * ahead_1_right_front_elbow_down_alike + t135 * t140
-    t144 = np.arctan2(up_right_front_elbow_down_alike, -t143)
-    t145 = np.where(folded_right_front_elbow_down_alike, t137, t144)
-    t146 = _runtime.wrap_cut(t145) + t133
-    t147 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t148 = t90 + np.where(short_right, 0.0, t138 * t147)
-    t149 = _runtime.wrap(t148) + t133
-    h_left_front_elbow_down_alike = t121 + point_21_front_elbow_down_alike
-    t150 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = t118 + point_11_front_elbow_down_alike
-    t151 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    folded_left_front_elbow_down_alike = np.sqrt(t150 + t151) <= t82
-    N_left_front_elbow_down_alike = np.maximum(t130, 0.0)
-    M_left_front_elbow_down_alike = np.maximum(t132, 0.0)
-    t152 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t138 / whole_right_front_elbow_down_alike)
+    t139 = fore_arm * s_bend_right_front_elbow_down_alike
+    t140 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
+    c_bend_right_front_elbow_down_alike = _runtime.select(short_right, 1.0, -(t140 / whole_right_front_elbow_down_alike))
+    t141 = fore_arm * c_bend_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = L1 + t141
+    up_right_front_elbow_down_alike = t135 * t139 - t134 * ahead_1_right_front_elbow_down_alike
+    t142 = t135 * ahead_1_right_front_elbow_down_alike + t134 * t139
+    t143 = np.arctan2(up_right_front_elbow_down_alike, -t142)
+    t144 = _runtime.select(folded_right_front_elbow_down_alike, t136, t143)
+    t145 = _runtime.wrap_cut(t144) + t132
+    t146 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t147 = _runtime.select(short_right, 0.0, t137 * t146)
+    t148 = _runtime.wrap_cut(_runtime.wrap(t89 + t147)) + t132
+    h_left_front_elbow_down_alike = t120 + point_21_front_elbow_down_alike
+    t149 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = t117 + point_11_front_elbow_down_alike
+    t150 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    folded_left_front_elbow_down_alike = np.sqrt(t149 + t150) <= t81
+    N_left_front_elbow_down_alike = np.maximum(t129, 0.0)
+    M_left_front_elbow_down_alike = np.maximum(t131, 0.0)
+    t151 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
     whole_left_front_elbow_down_alike = N_left_front_elbow_down_alike + M_left_front_elbow_down_alike
-    c_bend_left_front_elbow_down_alike = np.where(short_right, 1.0, -(t152 / whole_left_front_elbow_down_alike))
-    t153 = fore_arm * c_bend_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = L1 + t153
-    t154 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    c_bend_left_front_elbow_down_alike = _runtime.select(short_right, 1.0, -(t151 / whole_left_front_elbow_down_alike))
+    t152 = fore_arm * c_bend_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = L1 + t152
+    t153 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t155 = t138 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t155 / whole_left_front_elbow_down_alike)
-    t156 = fore_arm * s_bend_left_front_elbow_down_alike
-    t157 = r_left_front_elbow_down_alike * t156
-    t158 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t159 = h_left_front_elbow_down_alike * t156
-    t160 = np.where(folded_left_front_elbow_down_alike, t137, np.arctan2(t154 - t157, t158 + t159))
-    t161 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t162 = np.where(short_right, 0.0, t138 * t161)
-    t163 = t100 + t133
-    t164 = np.where(folded_left_front_elbow_down_alike, t137, np.arctan2(t154 + t157, t158 - t159))
-    t165 = _runtime.wrap_up(-np.where(nowhere, 0.0, t2 + t15))
-    t166 = x * np.where(nowhere, 1.0, -((t34 + t35) / h))
-    outward_rear_elbow_up_alike = t166 + y * np.where(nowhere, 0.0, (t37 - t38) / h)
-    t167 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t32 + t167)
-    t168 = t29 - reach_rear_elbow_up_alike
-    t169 = reach_rear_elbow_up_alike + t40
-    t170 = reach_rear_elbow_up_alike - t40
-    t171 = t28 & (t30 <= t168) & (t30 <= t169) & (t30 <= t170)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t48
-    s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t31 / reach_rear_elbow_up_alike)
-    t172 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t168, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t170, 0.0)
-    t173 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    t154 = t137 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t154 / whole_left_front_elbow_down_alike)
+    t155 = fore_arm * s_bend_left_front_elbow_down_alike
+    t156 = r_left_front_elbow_down_alike * t155
+    t157 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t158 = h_left_front_elbow_down_alike * t155
+    t159 = _runtime.select(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 - t156, t157 + t158))
+    t160 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t161 = _runtime.select(short_right, 0.0, t137 * t160)
+    t162 = t99 + t132
+    t163 = _runtime.select(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 + t156, t157 - t158))
+    t164 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t34 + t35) / h))
+    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t36 - t37) / h)
+    outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
+    t165 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t32 + t165)
+    t166 = t29 - reach_rear_elbow_up_alike
+    t167 = reach_rear_elbow_up_alike + t39
+    t168 = reach_rear_elbow_up_alike - t39
+    t169 = t28 & (t30 <= t166) & (t30 <= t167) & (t30 <= t168)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t47
+    s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t31 / reach_rear_elbow_up_alike)
+    t170 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t166, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t168, 0.0)
+    t171 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
     S_rear_elbow_up_alike = t29 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t169, 0.0)
-    t174 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t173 + t174
-    t175 = -((t173 - t174) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = np.where(t172, 1.0, t175)
-    t176 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t177 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t177)
-    t178 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t178 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t179 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = np.where(t172, 0.0, t179)
-    t180 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t176 - t180
-    t181 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t182 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t181 + t182
-    t183 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t184 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t183 + t184
-    t185 = -((t183 - t184) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t185)
-    t186 = c_lag * c_bend_rear_elbow_up_alike
-    t187 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t187)
-    t188 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t186 - t188
-    t189 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t190 = s_lag * c_bend_rear_elbow_up_alike
-    t191 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t190 + t191
-    t192 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t189 - t192
-    t193 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t194 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t195 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t194 + t195
-    t196 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t197 = t193 - t196
-    t198 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t199 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t198 + t199
-    t200 = L2 * t197 - a3 * c_elbow_rear_elbow_up_alike
-    t201 = 0.0 <= -t200
-    t202 = L2 * c_elbow_rear_elbow_up_alike + a3 * t197
-    large_rear_elbow_up_alike = fore_arm + np.where(t201, -t200, t200)
-    small_rear_elbow_up_alike = t202 * t202 / large_rear_elbow_up_alike
-    t203 = np.where(t201, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    t204 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t205 = t204 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t206 = d * t205
-    t207 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t208 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t207
-    t209 = d * t208
-    gap_rear_elbow_up_alike = t206 * t206 + t209 * t209
-    t210 = t47 * t203 - gap_rear_elbow_up_alike
-    t211 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t211 + a3 * ctheta23A_rear_elbow_up_alike
-    t212 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t212 + a3 * stheta23A_rear_elbow_up_alike
-    t213 = 2.0 * t206 * point_11_rear_elbow_up_alike + 2.0 * t209 * point_21_rear_elbow_up_alike
-    t214 = t210 + t213
-    t215 = np.where(t201, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    t216 = gap_rear_elbow_up_alike + t47 * t215
-    t217 = t216 - t213
-    t218 = t210 - t213
-    t219 = t171 & (t46 <= t214) & (t46 <= t217) & (t46 <= t218)
-    t220 = t213 + t216
-    unreachable_3 = np.logical_not(t219 & (t46 <= t220))
-    t221 = _runtime.poison(invalid | unreachable_3)
-    t222 = t165 + t221
-    t223 = t209 - point_21_rear_elbow_up_alike
-    t224 = t206 - point_11_rear_elbow_up_alike
-    folded_right_rear_elbow_up_alike = np.sqrt(t223 * t223 + t224 * t224) <= t82
-    t225 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    t226 = 2.0 * np.where(0.0 <= -t202, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t214, t85)
+    B_rear_elbow_up_alike = np.maximum(t167, 0.0)
+    t172 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t171 + t172
+    t173 = -((t171 - t172) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = _runtime.select(t170, 1.0, t173)
+    t174 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t175 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t175)
+    t176 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t176 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t177 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = _runtime.select(t170, 0.0, t177)
+    t178 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t174 - t178
+    t179 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t180 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t179 + t180
+    t181 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t182 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t181 + t182
+    t183 = -((t181 - t182) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t183)
+    t184 = c_lag * c_bend_rear_elbow_up_alike
+    t185 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t185)
+    t186 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t184 - t186
+    t187 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t188 = s_lag * c_bend_rear_elbow_up_alike
+    t189 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t188 + t189
+    t190 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t187 - t190
+    t191 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t192 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t193 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t192 + t193
+    t194 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t195 = t191 - t194
+    t196 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t197 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t196 + t197
+    t198 = L2 * t195 - a3 * c_elbow_rear_elbow_up_alike
+    t199 = 0.0 <= -t198
+    t200 = L2 * c_elbow_rear_elbow_up_alike + a3 * t195
+    large_rear_elbow_up_alike = fore_arm + _runtime.select(t199, -t198, t198)
+    small_rear_elbow_up_alike = t200 * t200 / large_rear_elbow_up_alike
+    t201 = _runtime.select(t199, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    t202 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t203 = t202 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t204 = d * t203
+    t205 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t206 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t205
+    t207 = d * t206
+    gap_rear_elbow_up_alike = t204 * t204 + t207 * t207
+    t208 = t46 * t201 - gap_rear_elbow_up_alike
+    t209 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t209 + a3 * ctheta23A_rear_elbow_up_alike
+    t210 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t210 + a3 * stheta23A_rear_elbow_up_alike
+    t211 = 2.0 * t204 * point_11_rear_elbow_up_alike + 2.0 * t207 * point_21_rear_elbow_up_alike
+    t212 = t208 + t211
+    t213 = _runtime.select(t199, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    t214 = gap_rear_elbow_up_alike + t46 * t213
+    t215 = t214 - t211
+    t216 = t208 - t211
+    t217 = t169 & (t45 <= t212) & (t45 <= t215) & (t45 <= t216)
+    t218 = t211 + t214
+    unreachable_3 = np.logical_not(t217 & (t45 <= t218))
+    t219 = _runtime.poison(invalid | unreachable_3)
+    t220 = t164 + t219
+    t221 = t207 - point_21_rear_elbow_up_alike
+    t222 = t204 - point_11_rear_elbow_up_alike
+    folded_right_rear_elbow_up_alike = np.sqrt(t221 * t221 + t222 * t222) <= t81
+    t223 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    t224 = 2.0 * _runtime.select(0.0 <= -t200, 1.0, -1.0)
+    N_right_rear_elbow_up_alike = np.maximum(t212, t84)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(t217, t85)
+    M_right_rear_elbow_up_alike = np.maximum(t215, t84)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t227 = t226 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    t225 = t224 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = N_right_rear_elbow_up_alike + M_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t227 / whole_right_rear_elbow_up_alike)
-    t228 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t229 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
-    c_bend_right_rear_elbow_up_alike = np.where(short_right, 1.0, -(t229 / whole_right_rear_elbow_up_alike))
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t225 / whole_right_rear_elbow_up_alike)
+    t226 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t227 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
+    c_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 1.0, -(t227 / whole_right_rear_elbow_up_alike))
     ahead_1_right_rear_elbow_up_alike = L1 + fore_arm * c_bend_right_rear_elbow_up_alike
-    up_right_rear_elbow_up_alike = t224 * t228 - t223 * ahead_1_right_rear_elbow_up_alike
-    t230 = t224 * ahead_1_right_rear_elbow_up_alike + t223 * t228
-    t231 = np.arctan2(up_right_rear_elbow_up_alike, -t230)
-    t232 = np.where(folded_right_rear_elbow_up_alike, t225, t231)
-    t233 = _runtime.wrap_cut(t232) + t221
-    t234 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t235 = t90 + np.where(short_right, 0.0, t226 * t234)
-    t236 = _runtime.wrap(t235) + t221
-    h_left_rear_elbow_up_alike = t209 + point_21_rear_elbow_up_alike
-    t237 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = t206 + point_11_rear_elbow_up_alike
-    t238 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    folded_left_rear_elbow_up_alike = np.sqrt(t237 + t238) <= t82
-    N_left_rear_elbow_up_alike = np.maximum(t218, 0.0)
-    M_left_rear_elbow_up_alike = np.maximum(t220, 0.0)
-    t239 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
+    up_right_rear_elbow_up_alike = t222 * t226 - t221 * ahead_1_right_rear_elbow_up_alike
+    t228 = t222 * ahead_1_right_rear_elbow_up_alike + t221 * t226
+    t229 = np.arctan2(up_right_rear_elbow_up_alike, -t228)
+    t230 = _runtime.select(folded_right_rear_elbow_up_alike, t223, t229)
+    t231 = _runtime.wrap_cut(t230) + t219
+    t232 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t233 = _runtime.select(short_right, 0.0, t224 * t232)
+    t234 = _runtime.wrap_cut(_runtime.wrap(t89 + t233)) + t219
+    h_left_rear_elbow_up_alike = t207 + point_21_rear_elbow_up_alike
+    t235 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = t204 + point_11_rear_elbow_up_alike
+    t236 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    folded_left_rear_elbow_up_alike = np.sqrt(t235 + t236) <= t81
+    N_left_rear_elbow_up_alike = np.maximum(t216, 0.0)
+    M_left_rear_elbow_up_alike = np.maximum(t218, 0.0)
+    t237 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
     whole_left_rear_elbow_up_alike = N_left_rear_elbow_up_alike + M_left_rear_elbow_up_alike
-    c_bend_left_rear_elbow_up_alike = np.where(short_right, 1.0, -(t239 / whole_left_rear_elbow_up_alike))
+    c_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 1.0, -(t237 / whole_left_rear_elbow_up_alike))
     ahead_1_left_rear_elbow_up_alike = L1 + fore_arm * c_bend_left_rear_elbow_up_alike
-    t240 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t238 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t241 = t226 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t241 / whole_left_rear_elbow_up_alike)
-    t242 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t243 = r_left_rear_elbow_up_alike * t242
-    t244 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t245 = h_left_rear_elbow_up_alike * t242
-    t246 = np.where(folded_left_rear_elbow_up_alike, t225, np.arctan2(t240 - t243, t244 + t245))
-    t247 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t248 = np.where(short_right, 0.0, t226 * t247)
-    t249 = t100 + t221
-    t250 = np.where(folded_left_rear_elbow_up_alike, t225, np.arctan2(t240 + t243, t244 - t245))
-    stheta2A_rear_elbow_down_alike = t176 + t180
-    ctheta2A_rear_elbow_down_alike = t181 - t182
-    c_relative_rear_elbow_down_alike = t186 + t188
-    t251 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t190 - t191
-    t252 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t251 - t252
-    t253 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t254 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t255 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t254 + t255
-    t256 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t257 = t253 - t256
-    t258 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t259 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t258 + t259
-    t260 = L2 * t257 - a3 * c_elbow_rear_elbow_down_alike
-    t261 = 0.0 <= -t260
-    t262 = L2 * c_elbow_rear_elbow_down_alike + a3 * t257
-    large_rear_elbow_down_alike = fore_arm + np.where(t261, -t260, t260)
-    small_rear_elbow_down_alike = t262 * t262 / large_rear_elbow_down_alike
-    t263 = np.where(t261, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    t264 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t265 = t264 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t266 = d * t265
-    t267 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t268 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t267
-    t269 = d * t268
-    gap_rear_elbow_down_alike = t266 * t266 + t269 * t269
-    t270 = t47 * t263 - gap_rear_elbow_down_alike
-    t271 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t271 + a3 * ctheta23A_rear_elbow_down_alike
-    t272 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t272 + a3 * stheta23A_rear_elbow_down_alike
-    t273 = 2.0 * t266 * point_11_rear_elbow_down_alike + 2.0 * t269 * point_21_rear_elbow_down_alike
-    t274 = t270 + t273
-    t275 = np.where(t261, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    t276 = gap_rear_elbow_down_alike + t47 * t275
-    t277 = t276 - t273
-    t278 = t270 - t273
-    t279 = t171 & (t46 <= t274) & (t46 <= t277) & (t46 <= t278)
-    t280 = t273 + t276
-    unreachable_4 = np.logical_not(t279 & (t46 <= t280))
-    t281 = _runtime.poison(invalid | unreachable_4)
-    t282 = t165 + t281
-    t283 = t269 - point_21_rear_elbow_down_alike
-    t284 = t266 - point_11_rear_elbow_down_alike
-    folded_right_rear_elbow_down_alike = np.sqrt(t283 * t283 + t284 * t284) <= t82
-    t285 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    t286 = 2.0 * np.where(0.0 <= -t262, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t274, t85)
+    t239 = t224 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t239 / whole_left_rear_elbow_up_alike)
+    t240 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t241 = r_left_rear_elbow_up_alike * t240
+    t242 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t243 = h_left_rear_elbow_up_alike * t240
+    t244 = _runtime.select(folded_left_rear_elbow_up_alike, t223, np.arctan2(t238 - t241, t242 + t243))
+    t245 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t246 = _runtime.select(short_right, 0.0, t224 * t245)
+    t247 = t99 + t219
+    t248 = _runtime.select(folded_left_rear_elbow_up_alike, t223, np.arctan2(t238 + t241, t242 - t243))
+    stheta2A_rear_elbow_down_alike = t174 + t178
+    ctheta2A_rear_elbow_down_alike = t179 - t180
+    c_relative_rear_elbow_down_alike = t184 + t186
+    t249 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t188 - t189
+    t250 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t249 - t250
+    t251 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t252 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    t253 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t252 + t253
+    t254 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t255 = t251 - t254
+    t256 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t257 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t256 + t257
+    t258 = L2 * t255 - a3 * c_elbow_rear_elbow_down_alike
+    t259 = 0.0 <= -t258
+    t260 = L2 * c_elbow_rear_elbow_down_alike + a3 * t255
+    large_rear_elbow_down_alike = fore_arm + _runtime.select(t259, -t258, t258)
+    small_rear_elbow_down_alike = t260 * t260 / large_rear_elbow_down_alike
+    t261 = _runtime.select(t259, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    t262 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t263 = t262 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t264 = d * t263
+    t265 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t266 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t265
+    t267 = d * t266
+    gap_rear_elbow_down_alike = t264 * t264 + t267 * t267
+    t268 = t46 * t261 - gap_rear_elbow_down_alike
+    t269 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t269 + a3 * ctheta23A_rear_elbow_down_alike
+    t270 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t270 + a3 * stheta23A_rear_elbow_down_alike
+    t271 = 2.0 * t264 * point_11_rear_elbow_down_alike + 2.0 * t267 * point_21_rear_elbow_down_alike
+    t272 = t268 + t271
+    t273 = _runtime.select(t259, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    t274 = gap_rear_elbow_down_alike + t46 * t273
+    t275 = t274 - t271
+    t276 = t268 - t271
+    t277 = t169 & (t45 <= t272) & (t45 <= t275) & (t45 <= t276)
+    t278 = t271 + t274
+    unreachable_4 = np.logical_not(t277 & (t45 <= t278))
+    t279 = _runtime.poison(invalid | unreachable_4)
+    t280 = t164 + t279
+    t281 = t267 - point_21_rear_elbow_down_alike
+    t282 = t264 - point_11_rear_elbow_down_alike
+    folded_right_rear_elbow_down_alike = np.sqrt(t281 * t281 + t282 * t282) <= t81
+    t283 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    t284 = 2.0 * _runtime.select(0.0 <= -t260, 1.0, -1.0)
+    N_right_rear_elbow_down_alike = np.maximum(t272, t84)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(t277, t85)
+    M_right_rear_elbow_down_alike = np.maximum(t275, t84)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t287 = t286 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    t285 = t284 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
     whole_right_rear_elbow_down_alike = N_right_rear_elbow_down_alike + M_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t287 / whole_right_rear_elbow_down_alike)
-    t288 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t289 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
-    c_bend_right_rear_elbow_down_alike = np.where(short_right, 1.0, -(t289 / whole_right_rear_elbow_down_alike))
-    t290 = fore_arm * c_bend_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = L1 + t290
-    up_right_rear_elbow_down_alike = t284 * t288 - t283 * ahead_1_right_rear_elbow_down_alike
-    t291 = t284 * ahead_1_right_rear_elbow_down_alike + t283 * t288
-    t292 = np.arctan2(up_right_rear_elbow_down_alike, -t291)
-    t293 = np.where(folded_right_rear_elbow_down_alike, t285, t292)
-    t294 = _runtime.wrap_cut(t293) + t281
-    t295 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t296 = t90 + np.where(short_right, 0.0, t286 * t295)
-    t297 = _runtime.wrap(t296) + t281
-    h_left_rear_elbow_down_alike = t269 + point_21_rear_elbow_down_alike
-    t298 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = t266 + point_11_rear_elbow_down_alike
-    t299 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    folded_left_rear_elbow_down_alike = np.sqrt(t298 + t299) <= t82
-    N_left_rear_elbow_down_alike = np.maximum(t278, 0.0)
-    M_left_rear_elbow_down_alike = np.maximum(t280, 0.0)
-    t300 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t285 / whole_right_rear_elbow_down_alike)
+    t286 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t287 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
+    c_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 1.0, -(t287 / whole_right_rear_elbow_down_alike))
+    t288 = fore_arm * c_bend_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = L1 + t288
+    up_right_rear_elbow_down_alike = t282 * t286 - t281 * ahead_1_right_rear_elbow_down_alike
+    t289 = t282 * ahead_1_right_rear_elbow_down_alike + t281 * t286
+    t290 = np.arctan2(up_right_rear_elbow_down_alike, -t289)
+    t291 = _runtime.select(folded_right_rear_elbow_down_alike, t283, t290)
+    t292 = _runtime.wrap_cut(t291) + t279
+    t293 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t294 = _runtime.select(short_right, 0.0, t284 * t293)
+    t295 = _runtime.wrap_cut(_runtime.wrap(t89 + t294)) + t279
+    h_left_rear_elbow_down_alike = t267 + point_21_rear_elbow_down_alike
+    t296 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = t264 + point_11_rear_elbow_down_alike
+    t297 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    folded_left_rear_elbow_down_alike = np.sqrt(t296 + t297) <= t81
+    N_left_rear_elbow_down_alike = np.maximum(t276, 0.0)
+    M_left_rear_elbow_down_alike = np.maximum(t278, 0.0)
+    t298 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
     whole_left_rear_elbow_down_alike = N_left_rear_elbow_down_alike + M_left_rear_elbow_down_alike
-    c_bend_left_rear_elbow_down_alike = np.where(short_right, 1.0, -(t300 / whole_left_rear_elbow_down_alike))
+    c_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 1.0, -(t298 / whole_left_rear_elbow_down_alike))
     ahead_1_left_rear_elbow_down_alike = L1 + fore_arm * c_bend_left_rear_elbow_down_alike
-    t301 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t299 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t302 = t286 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t302 / whole_left_rear_elbow_down_alike)
-    t303 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t304 = r_left_rear_elbow_down_alike * t303
-    t305 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t306 = h_left_rear_elbow_down_alike * t303
-    t307 = np.where(folded_left_rear_elbow_down_alike, t285, np.arctan2(t301 - t304, t305 + t306))
-    t308 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t309 = np.where(short_right, 0.0, t286 * t308)
-    t310 = t100 + t281
-    t311 = np.where(folded_left_rear_elbow_down_alike, t285, np.arctan2(t301 + t304, t305 - t306))
-    t312 = nowhere | folded | short
-    t313 = t312 | folded_right | short_right | folded_left
-    t314 = _runtime.status(invalid, unreachable, t313)
-    t315 = t312 | folded_right_front_elbow_down_alike | short_right
-    t316 = _runtime.status(invalid, unreachable_2, t315 | folded_left_front_elbow_down_alike)
-    t317 = nowhere | folded_rear_elbow_up_alike | short
-    t318 = t317 | folded_right_rear_elbow_up_alike | short_right
-    t319 = _runtime.status(invalid, unreachable_3, t318 | folded_left_rear_elbow_up_alike)
-    t320 = t317 | folded_right_rear_elbow_down_alike | short_right
-    t321 = _runtime.status(invalid, unreachable_4, t320 | folded_left_rear_elbow_down_alike)
+    t300 = t284 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t300 / whole_left_rear_elbow_down_alike)
+    t301 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t302 = r_left_rear_elbow_down_alike * t301
+    t303 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t304 = h_left_rear_elbow_down_alike * t301
+    t305 = _runtime.select(folded_left_rear_elbow_down_alike, t283, np.arctan2(t299 - t302, t303 + t304))
+    t306 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t307 = _runtime.select(short_right, 0.0, t284 * t306)
+    t308 = t99 + t279
+    t309 = _runtime.select(folded_left_rear_elbow_down_alike, t283, np.arctan2(t299 + t302, t303 - t304))
+    t310 = nowhere | folded | short
+    t311 = t310 | folded_right | short_right | folded_left
+    t312 = _runtime.status(invalid, unreachable, t311)
+    t313 = t310 | folded_right_front_elbow_down_alike | short_right
+    t314 = _runtime.status(invalid, unreachable_2, t313 | folded_left_front_elbow_down_alike)
+    t315 = nowhere | folded_rear_elbow_up_alike | short
+    t316 = t315 | folded_right_rear_elbow_up_alike | short_right
+    t317 = _runtime.status(invalid, unreachable_3, t316 | folded_left_rear_elbow_up_alike)
+    t318 = t315 | folded_right_rear_elbow_down_alike | short_right
+    t319 = _runtime.status(invalid, unreachable_4, t318 | folded_left_rear_elbow_down_alike)
     return (
-        t79,
-        t89,
-        t92,
-        _runtime.wrap_cut(t98) + t78,
-        _runtime.wrap(t90 + t99) + t78,
-        t101,
-        t79,
-        t89,
-        t92,
-        _runtime.wrap_cut(t102) + t78,
-        _runtime.wrap(t90 - t99) + t78,
-        t101,
-        t134,
-        t146,
-        t149,
-        _runtime.wrap_cut(t160) + t133,
-        _runtime.wrap(t90 + t162) + t133,
-        t163,
-        t134,
-        t146,
-        t149,
-        _runtime.wrap_cut(t164) + t133,
-        _runtime.wrap(t90 - t162) + t133,
-        t163,
-        t222,
-        t233,
-        t236,
-        _runtime.wrap_cut(t246) + t221,
-        _runtime.wrap(t90 + t248) + t221,
-        t249,
-        t222,
-        t233,
-        t236,
-        _runtime.wrap_cut(t250) + t221,
-        _runtime.wrap(t90 - t248) + t221,
-        t249,
-        t282,
-        t294,
-        t297,
-        _runtime.wrap_cut(t307) + t281,
-        _runtime.wrap(t90 + t309) + t281,
-        t310,
-        t282,
-        t294,
-        t297,
-        _runtime.wrap_cut(t311) + t281,
-        _runtime.wrap(t90 - t309) + t281,
-        t310,
+        t78,
+        t88,
+        t91,
+        _runtime.wrap_cut(t97) + t77,
+        _runtime.wrap(t89 + t98) + t77,
+        t100,
+        t78,
+        t88,
+        t91,
+        _runtime.wrap_cut(t101) + t77,
+        _runtime.wrap(t89 - t98) + t77,
+        t100,
+        t133,
+        t145,
+        t148,
+        _runtime.wrap_cut(t159) + t132,
+        _runtime.wrap(t89 + t161) + t132,
+        t162,
+        t133,
+        t145,
+        t148,
+        _runtime.wrap_cut(t163) + t132,
+        _runtime.wrap(t89 - t161) + t132,
+        t162,
+        t220,
+        t231,
+        t234,
+        _runtime.wrap_cut(t244) + t219,
+        _runtime.wrap(t89 + t246) + t219,
+        t247,
+        t220,
+        t231,
+        t234,
+        _runtime.wrap_cut(t248) + t219,
+        _runtime.wrap(t89 - t246) + t219,
+        t247,
+        t280,
+        t292,
+        t295,
+        _runtime.wrap_cut(t305) + t279,
+        _runtime.wrap(t89 + t307) + t279,
+        t308,
+        t280,
+        t292,
+        t295,
+        _runtime.wrap_cut(t309) + t279,
+        _runtime.wrap(t89 - t307) + t279,
+        t308,
+        t312,
+        t312,
         t314,
         t314,
-        t316,
-        t316,
+        t317,
+        t317,
         t319,
         t319,
-        t321,
-        t321,
     )
 
 

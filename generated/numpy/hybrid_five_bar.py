@@ -93,14 +93,14 @@ def _fk(theta1, theta2, theta3, L0, L1, L2):
     t3 = L0 + L1 + L2
     t4 = t3 * _runtime.VANISHING
     coincide = apart <= t4
-    distance = np.where(coincide, 0.0, apart)
-    t5 = np.where(coincide, 0.0, t1 / apart)
+    distance = _runtime.select(coincide, 0.0, apart)
+    t5 = _runtime.select(coincide, 0.0, t1 / apart)
     t6 = distance * t5 / 2.0
-    n_1 = np.where(coincide, 1.0, -(t2 / apart))
+    n_1 = _runtime.select(coincide, 1.0, -(t2 / apart))
     t7 = L2 * 2.0
     t8 = t7 - apart
     slack = np.maximum(t8, 0.0)
-    height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
+    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
     t9 = n_1 * height
     P_r = C_r - (t6 - t9)
     t10 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
@@ -160,14 +160,14 @@ def _passive_angles(theta1, theta2, theta3, L0, L1, L2):
     t3 = L0 + L1 + L2
     t4 = t3 * _runtime.VANISHING
     coincide = apart <= t4
-    distance = np.where(coincide, 0.0, apart)
-    t5 = np.where(coincide, 0.0, t1 / apart)
+    distance = _runtime.select(coincide, 0.0, apart)
+    t5 = _runtime.select(coincide, 0.0, t1 / apart)
     t6 = distance * t5 / 2.0
-    n_1 = np.where(coincide, 1.0, -(t2 / apart))
+    n_1 = _runtime.select(coincide, 1.0, -(t2 / apart))
     t7 = L2 * 2.0
     t8 = t7 - apart
     slack = np.maximum(t8, 0.0)
-    height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
+    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
     t9 = n_1 * height
     DP_r_right_of_CD = t6 - t9
     t10 = distance * n_1 / 2.0
@@ -237,12 +237,12 @@ def _jacobian_parallel(theta1, theta2, theta3, L0, L1, L2):
     t12 = L2 * c1 + t9
     t13 = t4 * _runtime.VANISHING
     coincide = apart <= t13
-    distance = np.where(coincide, 0.0, apart)
-    t14 = np.where(coincide, 0.0, t6 / apart)
+    distance = _runtime.select(coincide, 0.0, apart)
+    t14 = _runtime.select(coincide, 0.0, t6 / apart)
     t15 = distance * t14 / 2.0
-    n_1 = np.where(coincide, 1.0, -(t7 / apart))
+    n_1 = _runtime.select(coincide, 1.0, -(t7 / apart))
     slack = np.maximum(t8, 0.0)
-    height = np.where(slack <= t13, 0.0, np.sqrt(slack) * np.sqrt(apart + t5) / 2.0)
+    height = _runtime.select(slack <= t13, 0.0, np.sqrt(slack) * np.sqrt(apart + t5) / 2.0)
     t16 = n_1 * height
     DP_r_right_of_CD = t15 - t16
     t17 = DP_r_right_of_CD * c1
@@ -311,14 +311,14 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     t4 = L0 + L1 + L2
     t5 = t4 * _runtime.VANISHING
     coincide = apart <= t5
-    distance = np.where(coincide, 0.0, apart)
-    t6 = np.where(coincide, 0.0, t1 / apart)
+    distance = _runtime.select(coincide, 0.0, apart)
+    t6 = _runtime.select(coincide, 0.0, t1 / apart)
     t7 = distance * t6 / 2.0
-    n_1 = np.where(coincide, 1.0, -(t3 / apart))
+    n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
-    height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     t11 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
@@ -379,14 +379,14 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     t4 = L0 + L1 + L2
     t5 = t4 * _runtime.VANISHING
     coincide = apart <= t5
-    distance = np.where(coincide, 0.0, apart)
-    t6 = np.where(coincide, 0.0, t1 / apart)
+    distance = _runtime.select(coincide, 0.0, apart)
+    t6 = _runtime.select(coincide, 0.0, t1 / apart)
     t7 = distance * t6 / 2.0
-    n_1 = np.where(coincide, 1.0, -(t3 / apart))
+    n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
-    height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     P_r = C_r - DP_r_right_of_CD
@@ -470,14 +470,14 @@ def _determinant(theta1, theta2, theta3, L0, L1, L2):
     t4 = L0 + L1 + L2
     t5 = t4 * _runtime.VANISHING
     coincide = apart <= t5
-    distance = np.where(coincide, 0.0, apart)
-    t6 = np.where(coincide, 0.0, t1 / apart)
+    distance = _runtime.select(coincide, 0.0, apart)
+    t6 = _runtime.select(coincide, 0.0, t1 / apart)
     t7 = distance * t6 / 2.0
-    n_1 = np.where(coincide, 1.0, -(t3 / apart))
+    n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
-    height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     t11 = distance * n_1 / 2.0
@@ -538,14 +538,14 @@ def _singularities(theta1, theta2, theta3, L0, L1, L2):
     t4 = L0 + L1 + L2
     t5 = t4 * _runtime.VANISHING
     coincide = apart <= t5
-    distance = np.where(coincide, 0.0, apart)
-    t6 = np.where(coincide, 0.0, t1 / apart)
+    distance = _runtime.select(coincide, 0.0, apart)
+    t6 = _runtime.select(coincide, 0.0, t1 / apart)
     t7 = distance * t6 / 2.0
-    n_1 = np.where(coincide, 1.0, -(t3 / apart))
+    n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
-    height = np.where(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     t11 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
@@ -603,12 +603,12 @@ def _condition_number(theta1, theta2, theta3, L0, L1, L2):
     t3 = L0 + L1 + L2
     t4 = t3 * _runtime.VANISHING
     coincide = apart <= t4
-    t5 = np.where(coincide, 0.0, apart) / 2.0
+    t5 = _runtime.select(coincide, 0.0, apart) / 2.0
     t6 = L2 * 2.0
     t7 = t6 - apart
     slack = np.maximum(t7, 0.0)
-    height = np.where(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
-    t8 = np.where(coincide, 1.0, np.maximum(t5, height))
+    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
+    t8 = _runtime.select(coincide, 1.0, np.maximum(t5, height))
     t9 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
     t10 = t9 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
     t11 = t10 & np.isfinite(theta1) & np.isfinite(theta2)
@@ -650,7 +650,7 @@ def _ik(x, y, z, L0, L1, L2):
     t1 = L1 + L2
     t2 = _runtime.VANISHING * (L0 + t1)
     on_axis = r <= t2
-    t3 = _runtime.wrap_cut(np.where(on_axis, 0.0, np.arctan2(z, -x)))
+    t3 = _runtime.select(on_axis, 0.0, np.arctan2(z, -x))
     t4 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
     t5 = t4 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
     t6 = t5 & np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
@@ -670,27 +670,27 @@ def _ik(x, y, z, L0, L1, L2):
     t17 = reach_d - t10
     unreachable = np.logical_not(t15 & (t7 <= t16) & (t7 <= t17))
     t18 = _runtime.poison(invalid | unreachable)
-    t19 = t3 + t18
+    t19 = _runtime.wrap_cut(t3) + t18
     at_A = reach_c <= t2
     t20 = np.arctan2(r, y)
     t21 = np.sqrt(np.maximum(t9, 0.0)) * np.sqrt(np.maximum(t12, 0.0))
     t22 = np.sqrt(reach_c + t1) * np.sqrt(np.maximum(t11, 0.0))
     t23 = 2.0 * np.arctan2(t21, t22)
-    t24 = np.where(at_A, 0.0, t20 - t23)
+    t24 = _runtime.select(at_A, 0.0, t20 - t23)
     t25 = _runtime.wrap_cut(t24) + t18
     at_B = reach_d <= t2
     t26 = np.arctan2(r, t13)
     t27 = np.sqrt(np.maximum(t14, 0.0)) * np.sqrt(np.maximum(t17, 0.0))
     t28 = np.sqrt(reach_d + t1) * np.sqrt(np.maximum(t16, 0.0))
     t29 = 2.0 * np.arctan2(t27, t28)
-    t30 = np.where(at_B, 0.0, t26 - t29)
+    t30 = _runtime.select(at_B, 0.0, t26 - t29)
     t31 = _runtime.wrap_cut(t30) + t18
-    t32 = np.where(at_B, 0.0, t26 + t29)
+    t32 = _runtime.select(at_B, 0.0, t26 + t29)
     t33 = _runtime.wrap_down(t32) + t18
-    t34 = np.where(at_A, 0.0, t20 + t23)
+    t34 = _runtime.select(at_A, 0.0, t20 + t23)
     t35 = _runtime.wrap_down(t34) + t18
-    t36 = _runtime.wrap_cut(-np.where(on_axis, 0.0, np.arctan2(z, x)))
-    t37 = t36 + t18
+    t36 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
+    t37 = _runtime.wrap_cut(-t36) + t18
     t38 = _runtime.wrap_up(-t34) + t18
     t39 = _runtime.wrap_up(-t32) + t18
     t40 = _runtime.wrap_cut(-t30) + t18
@@ -823,10 +823,10 @@ def _workspace_volume(L0, L1, L2):
     t12 = t9 * t10 * 25.132741228718345 / L0
     t13 = t3 + t4
     t14 = 3.141592653589793 * (t13 * t13) * (t6 - t7) / 12.0
-    t15 = np.where(L0 <= t3, t8 - r * r * r * 8.377580409572783, t12)
-    t16 = np.where(2.0 * np.maximum(m, r) <= L0, t12 + t14, t15)
-    t17 = np.where(L0 <= 2.0 * np.minimum(m, r), 3.141592653589793 * t11 / 6.0, t16)
-    t18 = np.where(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, np.where(t2 <= L0, t8, t17))
+    t15 = _runtime.select(L0 <= t3, t8 - r * r * r * 8.377580409572783, t12)
+    t16 = _runtime.select(2.0 * np.maximum(m, r) <= L0, t12 + t14, t15)
+    t17 = _runtime.select(L0 <= 2.0 * np.minimum(m, r), 3.141592653589793 * t11 / 6.0, t16)
+    t18 = _runtime.select(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, _runtime.select(t2 <= L0, t8, t17))
     t19 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
     t20 = t19 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
     unreachable = np.logical_not(-(t1 * _runtime.FEASIBILITY) <= t1)

@@ -595,8 +595,8 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     t3 = l2 + l5 + t1 + t2
     t4 = _runtime.VANISHING * t3
     on_axis = r <= t4
-    s_turret_back_elbow_up = np.where(on_axis, 0.0, px)
-    c_turret = np.where(on_axis, 1.0, py)
+    s_turret_back_elbow_up = _runtime.select(on_axis, 0.0, px)
+    c_turret = _runtime.select(on_axis, 1.0, py)
     t5 = _runtime.wrap_cut(-np.arctan2(s_turret_back_elbow_up, c_turret))
     t6 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
     t7 = t6 & (0.0 <= l2) & np.isfinite(l3) & (0.0 <= l3)
@@ -622,18 +622,18 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     rC = np.sqrt(np.maximum(t17, 0.0))
     rS = np.sqrt(t1 + reach)
     rB = np.sqrt(np.maximum(t16, 0.0))
-    t20 = np.where(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
+    t20 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
     t21 = np.arctan2(-t13, h)
-    t22 = _runtime.wrap_up(-np.where(folded, 0.0, t20 + t21))
+    t22 = _runtime.wrap_up(-_runtime.select(folded, 0.0, t20 + t21))
     t23 = 2.0 * np.arctan2(rA * rS, rC * rB)
-    t24 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 - t23)
+    t24 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t23)
     t25 = c_psi * s_turret_back_elbow_up
     t26 = s_psi * s_turret_back_elbow_up
     t27 = np.arctan2(s_psi * c_turret + t25, c_psi * c_turret - t26)
     t28 = _runtime.wrap_cut(t27) + t18
-    t29 = _runtime.wrap(np.where(folded, 0.0, t20 - t21))
-    t30 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 + t23)
-    c_turret_back_elbow_up = np.where(on_axis, 1.0, -py)
+    t29 = _runtime.wrap(_runtime.select(folded, 0.0, t20 - t21))
+    t30 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t23)
+    c_turret_back_elbow_up = _runtime.select(on_axis, 1.0, -py)
     t31 = np.arctan2(s_turret_back_elbow_up, c_turret_back_elbow_up)
     t32 = r + t2
     reach_back_elbow_up = np.sqrt(t12 + t32 * t32)
@@ -649,16 +649,16 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     rS_back_elbow_up = np.sqrt(t1 + reach_back_elbow_up)
     rB_back_elbow_up = np.sqrt(np.maximum(t34, 0.0))
     t38 = np.arctan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up)
-    t39 = np.where(no_link, 0.0, 2.0 * t38)
+    t39 = _runtime.select(no_link, 0.0, 2.0 * t38)
     t40 = np.arctan2(t32, h)
-    t41 = np.where(folded_back_elbow_up, 0.0, t39 + t40)
+    t41 = _runtime.select(folded_back_elbow_up, 0.0, t39 + t40)
     t42 = np.arctan2(rA_back_elbow_up * rS_back_elbow_up, rC_back_elbow_up * rB_back_elbow_up)
     t43 = 2.0 * t42
-    t44 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 - t43)
+    t44 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t43)
     t45 = np.arctan2(t25 - s_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up)
     t46 = _runtime.wrap_cut(-t45) + t36
-    t47 = np.where(folded_back_elbow_up, 0.0, t39 - t40)
-    t48 = np.where(no_link, 1.5707963267948966, 1.5707963267948966 + t43)
+    t47 = _runtime.select(folded_back_elbow_up, 0.0, t39 - t40)
+    t48 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t43)
     t49 = _runtime.status(invalid, unreachable, on_axis | folded | no_link)
     t50 = _runtime.status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link)
     return (

@@ -310,7 +310,7 @@ def _ik(px, py, l1, l2):
     t6 = r + t4
     rB = np.sqrt(np.maximum(t6, 0.0))
     t7 = 2.0 * np.arctan2(rA * rC, rS * rB)
-    t8 = _runtime.wrap_up(np.where(at_base, 0.0, t2 - t7))
+    t8 = _runtime.wrap_up(_runtime.select(at_base, 0.0, t2 - t7))
     t9 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
     t10 = t9 & (0.0 <= l2) & np.isfinite(px) & np.isfinite(py)
     invalid = np.logical_not(t10)
@@ -318,7 +318,7 @@ def _ik(px, py, l1, l2):
     unreachable = np.logical_not((t11 <= t3) & (t11 <= t6) & (t11 <= t5))
     t12 = _runtime.poison(invalid | unreachable)
     t13 = 2.0 * np.arctan2(rA * rS, rC * rB)
-    t14 = _runtime.wrap(np.where(at_base, 0.0, t2 + t7))
+    t14 = _runtime.wrap(_runtime.select(at_base, 0.0, t2 + t7))
     t15 = at_base | (l1 * l2 <= _runtime.VANISHING * (t1 * t1))
     t16 = _runtime.status(invalid, unreachable, t15)
     return (
@@ -363,9 +363,9 @@ def _ik_pose(
     t1 = l1 + l2
     no_first_link = l1 <= t1 * _runtime.VANISHING
     elbow_y = T24 - T21 * l2
-    s1 = np.where(no_first_link, 0.0, elbow_y / l1)
+    s1 = _runtime.select(no_first_link, 0.0, elbow_y / l1)
     elbow_x = T14 - T11 * l2
-    c1 = np.where(no_first_link, 1.0, elbow_x / l1)
+    c1 = _runtime.select(no_first_link, 1.0, elbow_x / l1)
     t2 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
     t3 = t2 & (0.0 <= l2) & np.isfinite(T14) & np.isfinite(T24)
     t4 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION

@@ -545,10 +545,10 @@ def _ik(
     root = np.sqrt(above) * np.sqrt(below)
     t8 = root * 2.0
     t9 = T24 * t8 / t6
-    t10 = np.where(free_theta1, 0.0, t7 - t9)
+    t10 = _runtime.select(free_theta1, 0.0, t7 - t9)
     t11 = T24 * t5 / t6
     t12 = T14 * t8 / t6
-    c1 = np.where(free_theta1, 1.0, t11 + t12)
+    c1 = _runtime.select(free_theta1, 1.0, t11 + t12)
     t13 = np.isfinite(a2) & (0.0 <= a2) & np.isfinite(a3)
     t14 = t13 & np.isfinite(d3) & np.isfinite(d4) & (0.0 <= d4)
     t15 = t14 & np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
@@ -574,7 +574,7 @@ def _ik(
     t32 = _runtime.poison(invalid | unreachable)
     t33 = _runtime.wrap_cut(-np.arctan2(t10, c1)) + t32
     folded = reach <= t2
-    t34 = np.where(folded, 0.0, T34 / reach)
+    t34 = _runtime.select(folded, 0.0, T34 / reach)
     no_link = a2 * f <= _runtime.VANISHING * (t1 * t1)
     t35 = folded | no_link
     S = reach + t1
@@ -584,14 +584,14 @@ def _ik(
     C = np.maximum(t31, 0.0)
     AC = A * C
     sides = SB + AC
-    t36 = np.where(t35, 1.0, (SB - AC) / sides)
+    t36 = _runtime.select(t35, 1.0, (SB - AC) / sides)
     t37 = t34 * t36
     SA = S * A
     BC = B * C
     area = 2.0 * np.sqrt(SA * BC)
-    t38 = np.where(t35, 0.0, area / sides)
+    t38 = _runtime.select(t35, 0.0, area / sides)
     t39 = root / reach
-    t40 = np.where(folded, 1.0, t39)
+    t40 = _runtime.select(folded, 1.0, t39)
     t41 = t38 * t40
     s2 = t37 + t41
     t42 = t34 * t38
@@ -599,12 +599,12 @@ def _ik(
     t44 = t42 - t43
     t45 = _runtime.wrap_cut(np.arctan2(s2, -t44)) + t32
     no_forearm = f <= t2
-    t46 = np.where(no_forearm, 0.0, d4 / f)
+    t46 = _runtime.select(no_forearm, 0.0, d4 / f)
     links = SA + BC
-    t47 = np.where(no_link, 1.0, -((SA - BC) / links))
+    t47 = _runtime.select(no_link, 1.0, -((SA - BC) / links))
     t48 = t46 * t47
-    t49 = np.where(no_link, 0.0, area / links)
-    t50 = np.where(no_forearm, 1.0, a3 / f)
+    t49 = _runtime.select(no_link, 0.0, area / links)
+    t50 = _runtime.select(no_forearm, 1.0, a3 / f)
     t51 = t49 * t50
     t52 = t48 + t51
     t53 = t46 * t49
@@ -620,8 +620,8 @@ def _ik(
     h = np.sqrt(t58 + R2_13 * R2_13)
     t59 = _runtime.VANISHING * 16.0
     aligned = h <= t59
-    t60 = np.where(aligned, 0.0, t57 / h)
-    c4 = np.where(aligned, 1.0, -(R2_13 / h))
+    t60 = _runtime.select(aligned, 0.0, t57 / h)
+    c4 = _runtime.select(aligned, 1.0, -(R2_13 / h))
     t61 = np.arctan2(t60, c4)
     t62 = np.arctan2(t57 * t60 - R2_13 * c4, T33 * c23 - s23 * R1_13)
     t63 = T11 * t10 + T21 * c1
@@ -629,7 +629,7 @@ def _ik(
     t64 = T12 * t10 + T22 * c1
     R1_12 = T12 * c1 - T22 * t10
     t65 = np.arctan2(c4 * t63 + t60 * (T31 * s23 + c23 * R1_11), c4 * t64 + t60 * (T32 * s23 + c23 * R1_12))
-    flip = np.where(aligned, 0.0, 3.141592653589793)
+    flip = _runtime.select(aligned, 0.0, 3.141592653589793)
     s2_right_down_noflip = t37 - t41
     c2_right_down_noflip = t42 + t43
     t66 = np.arctan2(s2_right_down_noflip, c2_right_down_noflip)
@@ -643,21 +643,21 @@ def _ik(
     t72 = T33 * t71 - R1_13 * c23_right_down_noflip
     h_right_down_noflip = np.sqrt(t58 + t72 * t72)
     aligned_right_down_noflip = h_right_down_noflip <= t59
-    t73 = np.where(aligned_right_down_noflip, 0.0, t57 / h_right_down_noflip)
-    c4_right_down_noflip = np.where(aligned_right_down_noflip, 1.0, t72 / h_right_down_noflip)
+    t73 = _runtime.select(aligned_right_down_noflip, 0.0, t57 / h_right_down_noflip)
+    c4_right_down_noflip = _runtime.select(aligned_right_down_noflip, 1.0, t72 / h_right_down_noflip)
     t74 = np.arctan2(t73, c4_right_down_noflip)
     t75 = np.arctan2(t57 * t73 + t72 * c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t71)
     t76 = t73 * (T31 * t71 - R1_11 * c23_right_down_noflip)
     t77 = t73 * (T32 * t71 - R1_12 * c23_right_down_noflip)
     t78 = np.arctan2(t63 * c4_right_down_noflip - t76, t64 * c4_right_down_noflip - t77)
-    flip_right_down_flip = np.where(aligned_right_down_noflip, 0.0, 3.141592653589793)
+    flip_right_down_flip = _runtime.select(aligned_right_down_noflip, 0.0, 3.141592653589793)
     t79 = _runtime.wrap(flip_right_down_flip - t74) + t32
     t80 = _runtime.wrap(t78 + flip_right_down_flip) + t32
-    t81 = np.where(free_theta1, 0.0, t7 + t9)
-    c1_left_up_noflip = np.where(free_theta1, 1.0, t11 - t12)
+    t81 = _runtime.select(free_theta1, 0.0, t7 + t9)
+    c1_left_up_noflip = _runtime.select(free_theta1, 1.0, t11 - t12)
     t82 = _runtime.wrap_cut(-np.arctan2(t81, c1_left_up_noflip))
     t83 = t82 + t32
-    t84 = np.where(folded, 1.0, -t39)
+    t84 = _runtime.select(folded, 1.0, -t39)
     t85 = t38 * t84
     s2_left_up_noflip = t37 - t85
     t86 = t36 * t84
@@ -672,8 +672,8 @@ def _ik(
     t92 = T33 * t91 - c23_left_up_noflip * R1_13_left_up_noflip
     h_left_up_noflip = np.sqrt(t90 + t92 * t92)
     aligned_left_up_noflip = h_left_up_noflip <= t59
-    t93 = np.where(aligned_left_up_noflip, 0.0, t89 / h_left_up_noflip)
-    c4_left_up_noflip = np.where(aligned_left_up_noflip, 1.0, t92 / h_left_up_noflip)
+    t93 = _runtime.select(aligned_left_up_noflip, 0.0, t89 / h_left_up_noflip)
+    c4_left_up_noflip = _runtime.select(aligned_left_up_noflip, 1.0, t92 / h_left_up_noflip)
     t94 = np.arctan2(t93, c4_left_up_noflip)
     R2_33_left_up_noflip = T33 * c23_left_up_noflip + t91 * R1_13_left_up_noflip
     t95 = np.arctan2(t89 * t93 + t92 * c4_left_up_noflip, R2_33_left_up_noflip)
@@ -684,7 +684,7 @@ def _ik(
     R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t81
     t99 = T32 * t91 - c23_left_up_noflip * R1_12_left_up_noflip
     t100 = np.arctan2(c4_left_up_noflip * t96 - t93 * t97, c4_left_up_noflip * t98 - t93 * t99)
-    flip_left_up_flip = np.where(aligned_left_up_noflip, 0.0, 3.141592653589793)
+    flip_left_up_flip = _runtime.select(aligned_left_up_noflip, 0.0, 3.141592653589793)
     t101 = _runtime.wrap(t100 + flip_left_up_flip) + t32
     s2_left_down_noflip = t37 + t85
     t102 = t42 - t86
@@ -696,9 +696,9 @@ def _ik(
     t105 = R2_13_left_down_noflip * R2_13_left_down_noflip
     h_left_down_noflip = np.sqrt(t90 + t105)
     aligned_left_down_noflip = h_left_down_noflip <= t59
-    t106 = np.where(aligned_left_down_noflip, 0.0, t89 / h_left_down_noflip)
+    t106 = _runtime.select(aligned_left_down_noflip, 0.0, t89 / h_left_down_noflip)
     t107 = -(R2_13_left_down_noflip / h_left_down_noflip)
-    c4_left_down_noflip = np.where(aligned_left_down_noflip, 1.0, t107)
+    c4_left_down_noflip = _runtime.select(aligned_left_down_noflip, 1.0, t107)
     t108 = np.arctan2(t106, c4_left_down_noflip)
     t109 = t89 * t106 - R2_13_left_down_noflip * c4_left_down_noflip
     R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip * s23_left_down_noflip
@@ -708,7 +708,7 @@ def _ik(
     R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip * c23_left_down_noflip
     t112 = t98 * c4_left_down_noflip + t106 * R2_12_left_down_noflip
     t113 = np.arctan2(t111, t112)
-    flip_left_down_flip = np.where(aligned_left_down_noflip, 0.0, 3.141592653589793)
+    flip_left_down_flip = _runtime.select(aligned_left_down_noflip, 0.0, 3.141592653589793)
     t114 = _runtime.wrap(flip_left_down_flip - t108) + t32
     t115 = _runtime.wrap(t113 + flip_left_down_flip) + t32
     t116 = free_theta1 | no_link | folded | no_forearm

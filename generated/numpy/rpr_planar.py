@@ -68,10 +68,10 @@ def _fk(rho1, rho2, b):
     t2 = b + t1
     t3 = _runtime.VANISHING * t2
     coincide = b <= t3
-    n_1 = np.where(coincide, 1.0, b / b)
+    n_1 = _runtime.select(coincide, 1.0, b / b)
     t4 = rho1 - rho2
     t5 = b * 2.0
-    t6 = np.where(coincide, rho1, b / 2.0 + t4 * t1 / t5)
+    t6 = _runtime.select(coincide, rho1, b / 2.0 + t4 * t1 / t5)
     t7 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
     invalid = np.logical_not(t7 & np.isfinite(rho2))
     t8 = -(_runtime.FEASIBILITY * t2)
@@ -83,8 +83,8 @@ def _fk(rho1, rho2, b):
     t13 = n_1 * t6 + t12
     slack = np.maximum(t9, 0.0)
     t14 = np.sqrt(np.maximum(t11, 0.0)) * np.sqrt(np.maximum(t10, 0.0))
-    t15 = np.where(coincide, 0.0, t14 * np.sqrt(slack) * np.sqrt(t2) / t5)
-    P_y = n_1 * np.where(slack <= t3, 0.0, t15)
+    t15 = _runtime.select(coincide, 0.0, t14 * np.sqrt(slack) * np.sqrt(t2) / t5)
+    P_y = n_1 * _runtime.select(slack <= t3, 0.0, t15)
     t16 = _runtime.status(invalid, unreachable, coincide)
     return (
         t13,
@@ -125,7 +125,7 @@ def _passive_angles(rho1, rho2, b):
     t2 = b + t1
     t3 = _runtime.VANISHING * t2
     coincide = b <= t3
-    n_1 = np.where(coincide, 1.0, b / b)
+    n_1 = _runtime.select(coincide, 1.0, b / b)
     t4 = t1 - b
     slack = np.maximum(t4, 0.0)
     t5 = rho1 - rho2
@@ -133,9 +133,9 @@ def _passive_angles(rho1, rho2, b):
     t7 = b + t5
     t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
     t9 = b * 2.0
-    t10 = np.where(coincide, 0.0, t8 * np.sqrt(slack) * np.sqrt(t2) / t9)
-    P_y = n_1 * np.where(slack <= t3, 0.0, t10)
-    t11 = np.where(coincide, rho1, b / 2.0 + t5 * t1 / t9)
+    t10 = _runtime.select(coincide, 0.0, t8 * np.sqrt(slack) * np.sqrt(t2) / t9)
+    P_y = n_1 * _runtime.select(slack <= t3, 0.0, t10)
+    t11 = _runtime.select(coincide, rho1, b / 2.0 + t5 * t1 / t9)
     P_x = n_1 * t11
     t12 = np.arctan2(P_y, P_x)
     t13 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
@@ -189,14 +189,15 @@ def _jacobian(rho1, rho2, b):
     t11 = -(rho2 / b) + t9
     t12 = _runtime.VANISHING * t3
     coincide = b <= t12
-    n_1 = np.where(coincide, 1.0, b / b)
+    n_1 = _runtime.select(coincide, 1.0, b / b)
     t13 = b * 2.0
-    t14 = np.where(coincide, rho1, b / 2.0 + t6 * t2 / t13)
+    t14 = _runtime.select(coincide, rho1, b / 2.0 + t6 * t2 / t13)
     P_x = n_1 * t14
     slack = np.maximum(t5, 0.0)
     t15 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
-    t16 = np.where(coincide, 0.0, t15 * np.sqrt(slack) * np.sqrt(t3) / t13)
-    t17 = b * (n_1 * np.where(slack <= t12, 0.0, t16))
+    t16 = _runtime.select(coincide, 0.0, t15 * np.sqrt(slack) * np.sqrt(t3) / t13)
+    P_y = n_1 * _runtime.select(slack <= t12, 0.0, t16)
+    t17 = b * P_y
     t18 = (rho1 * b - rho1 * P_x) / t17
     t19 = rho2 * P_x / t17
     return (
@@ -244,17 +245,17 @@ def _determinant(rho1, rho2, b):
     t7 = b + t5
     t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
     t9 = t8 * np.sqrt(slack) * np.sqrt(t2) / (b * 2.0)
-    height = np.where(slack <= t3, 0.0, np.where(coincide, 0.0, t9))
-    t10 = b * (np.where(coincide, 1.0, b / b) * height)
-    t11 = rho1 * rho2 / t10
-    t12 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
-    t13 = -(_runtime.FEASIBILITY * t2)
-    unreachable = np.logical_not((t13 <= t4) & (t13 <= t7) & (t13 <= t6))
-    failed = np.logical_not(t12 & np.isfinite(rho2)) | unreachable
-    t14 = _runtime.poison(failed)
+    height = _runtime.select(slack <= t3, 0.0, _runtime.select(coincide, 0.0, t9))
+    P_y = _runtime.select(coincide, 1.0, b / b) * height
+    t10 = rho1 * rho2 / (b * P_y)
+    t11 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
+    t12 = -(_runtime.FEASIBILITY * t2)
+    unreachable = np.logical_not((t12 <= t4) & (t12 <= t7) & (t12 <= t6))
+    failed = np.logical_not(t11 & np.isfinite(rho2)) | unreachable
+    t13 = _runtime.poison(failed)
     return (
-        t11 + t14,
-        -t11 + t14,
+        t10 + t13,
+        -t10 + t13,
     )
 
 
@@ -298,8 +299,8 @@ def _singularities(rho1, rho2, b):
     slack = np.maximum(t5, 0.0)
     t13 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
     t14 = t13 * np.sqrt(slack) * np.sqrt(t3) / (b * 2.0)
-    height = np.where(slack <= t12, 0.0, np.where(coincide, 0.0, t14))
-    P_y = np.where(coincide, 1.0, b / b) * height
+    height = _runtime.select(slack <= t12, 0.0, _runtime.select(coincide, 0.0, t14))
+    P_y = _runtime.select(coincide, 1.0, b / b) * height
     return (
         t10,
         t11,

@@ -376,16 +376,16 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     B_elbow = np.maximum(t6, 0.0)
     t7 = S_elbow * B_elbow
     width_elbow = t5 + t7
-    c_base_elbow = np.where(no_link_elbow, 1.0, -((t5 - t7) / width_elbow))
+    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t5 - t7) / width_elbow))
     t8 = x_y * c_base_elbow / r_elbow
     t9 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
     area_elbow = t9 * np.sqrt(S_elbow)
-    s_base_elbow = np.where(no_link_elbow, 0.0, area_elbow / width_elbow)
+    s_base_elbow = _runtime.select(no_link_elbow, 0.0, area_elbow / width_elbow)
     t10 = x_x * s_base_elbow / r_elbow
-    s1 = np.where(folded_elbow, 0.0, t8 - t10)
+    s1 = _runtime.select(folded_elbow, 0.0, t8 - t10)
     t11 = x_x * c_base_elbow / r_elbow
     t12 = x_y * s_base_elbow / r_elbow
-    c1 = np.where(folded_elbow, 1.0, t11 + t12)
+    c1 = _runtime.select(folded_elbow, 1.0, t11 + t12)
     t13 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
     t14 = t13 & (0.0 <= l2) & np.isfinite(h) & (0.0 <= h)
     t15 = t14 & np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z)
@@ -396,15 +396,15 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     t18 = A_elbow * S_elbow
     t19 = C_elbow * B_elbow
     sum_elbow = t18 + t19
-    s2 = np.where(no_link_elbow, 0.0, area_elbow / sum_elbow)
-    c2 = np.where(no_link_elbow, 1.0, -((t18 - t19) / sum_elbow))
+    s2 = _runtime.select(no_link_elbow, 0.0, area_elbow / sum_elbow)
+    c2 = _runtime.select(no_link_elbow, 1.0, -((t18 - t19) / sum_elbow))
     t20 = np.arctan2(s2, c2)
     t21 = h - x_z + t17
     t22 = c1 * c2 - s1 * s2
     t23 = c1 * s2 + s1 * c2
     t24 = np.arctan2(s_x_yaw * t22 - c_x_yaw * t23, c_x_yaw * t22 + s_x_yaw * t23)
-    s1_right = np.where(folded_elbow, 0.0, t8 + t10)
-    c1_right = np.where(folded_elbow, 1.0, t11 - t12)
+    s1_right = _runtime.select(folded_elbow, 0.0, t8 + t10)
+    c1_right = _runtime.select(folded_elbow, 1.0, t11 - t12)
     t25 = _runtime.wrap_cut(np.arctan2(s1_right, c1_right))
     t26 = c2 * c1_right + s2 * s1_right
     t27 = s2 * c1_right - c2 * s1_right

@@ -286,8 +286,8 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33):
     h = np.sqrt(R13 * R13 + R23 * R23)
     aligned = h <= _runtime.VANISHING
-    s4 = np.where(aligned, 0.0, R23 / h)
-    c4 = np.where(aligned, 1.0, R13 / h)
+    s4 = _runtime.select(aligned, 0.0, R23 / h)
+    c4 = _runtime.select(aligned, 1.0, R13 / h)
     t1 = np.arctan2(s4, c4)
     t2 = np.abs(R13 - R21 * R32 + R22 * R31) <= _runtime.ROTATION
     t3 = np.abs(R23 + R11 * R32 - R12 * R31) <= _runtime.ROTATION
@@ -300,7 +300,7 @@ def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33):
     t9 = _runtime.poison(invalid)
     t10 = np.arctan2(R13 * c4 + R23 * s4, R33)
     t11 = np.arctan2(R11 * s4 - R21 * c4, R22 * c4 - R12 * s4)
-    flip = np.where(aligned, 0.0, 3.141592653589793)
+    flip = _runtime.select(aligned, 0.0, 3.141592653589793)
     t12 = _runtime.status(invalid, np.False_, aligned)
     return (
         _runtime.wrap_cut(t1) + t9,

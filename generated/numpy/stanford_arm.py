@@ -497,10 +497,10 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     root = np.sqrt(above) * np.sqrt(below)
     t9 = root * 2.0
     t10 = T24 * t9 / t7
-    s1 = np.where(free_theta1, 0.0, t8 + t10)
+    s1 = _runtime.select(free_theta1, 0.0, t8 + t10)
     t11 = T14 * t9 / t7
     t12 = T24 * t6 / t7
-    c1 = np.where(free_theta1, 1.0, t11 - t12)
+    c1 = _runtime.select(free_theta1, 1.0, t11 - t12)
     t13 = np.isfinite(d2) & np.isfinite(T14) & np.isfinite(T24)
     t14 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t15 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
@@ -519,9 +519,9 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t26 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t25
     reach = np.sqrt(t2 + root * root)
     drawn_in = reach <= t3
-    s2 = np.where(drawn_in, 0.0, root / reach)
+    s2 = _runtime.select(drawn_in, 0.0, root / reach)
     t27 = T34 / reach
-    c2 = np.where(drawn_in, 1.0, t27)
+    c2 = _runtime.select(drawn_in, 1.0, t27)
     t28 = np.arctan2(s2, c2)
     t29 = _runtime.wrap_cut(t28) + t25
     t30 = reach + t25
@@ -533,8 +533,8 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     h = np.sqrt(t32 + t34 * t34)
     t35 = _runtime.VANISHING * 16.0
     aligned = h <= t35
-    t36 = np.where(aligned, 0.0, t31 / h)
-    c4 = np.where(aligned, 1.0, -(t34 / h))
+    t36 = _runtime.select(aligned, 0.0, t31 / h)
+    c4 = _runtime.select(aligned, 1.0, -(t34 / h))
     t37 = np.arctan2(t36, c4)
     t38 = T33 * c2
     t39 = s2 * R1_13
@@ -546,8 +546,8 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t44 = T32 * s2
     R1_12 = T12 * c1 + T22 * s1
     t45 = np.arctan2(c4 * t41 + t36 * (t42 - c2 * R1_11), -(c4 * t43 + t36 * (t44 - c2 * R1_12)))
-    flip = np.where(aligned, 0.0, 3.141592653589793)
-    c2_right_back_noflip = np.where(drawn_in, 1.0, -t27)
+    flip = _runtime.select(aligned, 0.0, 3.141592653589793)
+    c2_right_back_noflip = _runtime.select(drawn_in, 1.0, -t27)
     t46 = np.arctan2(s2, c2_right_back_noflip)
     t47 = _runtime.wrap_cut(-t46) + t25
     t48 = -reach + t25
@@ -555,9 +555,9 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t49 = R2_13_right_back_noflip * R2_13_right_back_noflip
     h_right_back_noflip = np.sqrt(t32 + t49)
     aligned_right_back_noflip = h_right_back_noflip <= t35
-    t50 = np.where(aligned_right_back_noflip, 0.0, t31 / h_right_back_noflip)
+    t50 = _runtime.select(aligned_right_back_noflip, 0.0, t31 / h_right_back_noflip)
     t51 = R2_13_right_back_noflip / h_right_back_noflip
-    c4_right_back_noflip = np.where(aligned_right_back_noflip, 1.0, t51)
+    c4_right_back_noflip = _runtime.select(aligned_right_back_noflip, 1.0, t51)
     t52 = np.arctan2(t50, c4_right_back_noflip)
     t53 = R2_13_right_back_noflip * c4_right_back_noflip
     t54 = T33 * c2_right_back_noflip
@@ -565,11 +565,11 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t56 = t41 * c4_right_back_noflip - t50 * (t42 + R1_11 * c2_right_back_noflip)
     t57 = t50 * (t44 + R1_12 * c2_right_back_noflip) - t43 * c4_right_back_noflip
     t58 = np.arctan2(t56, t57)
-    flip_right_back_flip = np.where(aligned_right_back_noflip, 0.0, 3.141592653589793)
+    flip_right_back_flip = _runtime.select(aligned_right_back_noflip, 0.0, 3.141592653589793)
     t59 = _runtime.wrap(flip_right_back_flip - t52) + t25
     t60 = _runtime.wrap(flip_right_back_flip - t58) + t25
-    s1_left_out_noflip = np.where(free_theta1, 0.0, t8 - t10)
-    c1_left_out_noflip = np.where(free_theta1, 1.0, -(t12 + t11))
+    s1_left_out_noflip = _runtime.select(free_theta1, 0.0, t8 - t10)
+    c1_left_out_noflip = _runtime.select(free_theta1, 1.0, -(t12 + t11))
     t61 = np.arctan2(s1_left_out_noflip, c1_left_out_noflip)
     t62 = _runtime.wrap_cut(t61) + t25
     t63 = _runtime.wrap_cut(-t28) + t25
@@ -580,8 +580,8 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t66 = R2_13_left_out_noflip * R2_13_left_out_noflip
     h_left_out_noflip = np.sqrt(t65 + t66)
     aligned_left_out_noflip = h_left_out_noflip <= t35
-    t67 = np.where(aligned_left_out_noflip, 0.0, t64 / h_left_out_noflip)
-    c4_left_out_noflip = np.where(aligned_left_out_noflip, 1.0, R2_13_left_out_noflip / h_left_out_noflip)
+    t67 = _runtime.select(aligned_left_out_noflip, 0.0, t64 / h_left_out_noflip)
+    c4_left_out_noflip = _runtime.select(aligned_left_out_noflip, 1.0, R2_13_left_out_noflip / h_left_out_noflip)
     t68 = np.arctan2(t67, c4_left_out_noflip)
     t69 = t64 * t67 + R2_13_left_out_noflip * c4_left_out_noflip
     t70 = s2 * R1_13_left_out_noflip
@@ -593,21 +593,21 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t74 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip
     t75 = t67 * (t44 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t74
     t76 = np.arctan2(t73, t75)
-    flip_left_out_flip = np.where(aligned_left_out_noflip, 0.0, 3.141592653589793)
+    flip_left_out_flip = _runtime.select(aligned_left_out_noflip, 0.0, 3.141592653589793)
     t77 = _runtime.wrap(flip_left_out_flip - t68) + t25
     t78 = _runtime.wrap(flip_left_out_flip - t76) + t25
     t79 = _runtime.wrap_cut(t46) + t25
     t80 = t33 - c2_right_back_noflip * R1_13_left_out_noflip
     h_left_back_noflip = np.sqrt(t65 + t80 * t80)
     aligned_left_back_noflip = h_left_back_noflip <= t35
-    t81 = np.where(aligned_left_back_noflip, 0.0, t64 / h_left_back_noflip)
-    c4_left_back_noflip = np.where(aligned_left_back_noflip, 1.0, -(t80 / h_left_back_noflip))
+    t81 = _runtime.select(aligned_left_back_noflip, 0.0, t64 / h_left_back_noflip)
+    c4_left_back_noflip = _runtime.select(aligned_left_back_noflip, 1.0, -(t80 / h_left_back_noflip))
     t82 = np.arctan2(t81, c4_left_back_noflip)
     t83 = np.arctan2(t64 * t81 - t80 * c4_left_back_noflip, t54 + t70)
     t84 = t42 - c2_right_back_noflip * R1_11_left_out_noflip
     t85 = t44 - c2_right_back_noflip * R1_12_left_out_noflip
     t86 = np.arctan2(t72 * c4_left_back_noflip + t81 * t84, -(t74 * c4_left_back_noflip + t81 * t85))
-    flip_left_back_flip = np.where(aligned_left_back_noflip, 0.0, 3.141592653589793)
+    flip_left_back_flip = _runtime.select(aligned_left_back_noflip, 0.0, 3.141592653589793)
     t87 = _runtime.wrap(flip_left_back_flip - t82) + t25
     t88 = _runtime.wrap(flip_left_back_flip - t86) + t25
     t89 = free_theta1 | drawn_in

@@ -313,6 +313,27 @@ def test_tips_on_the_shoulders(closed) -> None:
     assert np.abs(np.angle(np.exp(1j * off))).max() < TOL
 
 
+@pytest.mark.parametrize("small", [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize("which", ["right", "left", "alike"])
+def test_arms_of_equal_links_folded_onto_their_shoulders(closed, small: float, which: str) -> None:
+    """With r = h = 0 of one tip, or of both and the virtual one, no digit is lost."""
+    equal = P._replace(a3=0.0)
+    q, rng = postures(300, 11), np.random.default_rng(12)
+    q[:, 2] = -np.pi / 2 + small * rng.choice((-1, 1), 300)
+    q[:, 3:5] = q[:, 1:3] if which == "alike" else q[:, 1:3] + rng.uniform(0.02, 0.1, (300, 2))
+    if which == "left":
+        q[:, [1, 2, 3, 4]] = q[:, [3, 4, 1, 2]]
+    x = closed.fk(q, equal)
+    assert np.isfinite(x).all()
+    solutions, status = closed.ik(x, equal)
+    found = np.isin(status, (OK, SINGULAR))
+    assert found.any(-1).all()
+    assert (status == SINGULAR).any() == (small < 1e-12)
+    off = closed.fk(solutions, equal) - x[:, None]
+    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    assert np.abs(off[found]).max() < TOL
+
+
 @pytest.mark.parametrize(
     "change", [{"a3": 0.0}, {"L2": 0.3}, {"gs": 0.0}, {"loff": 0.0, "lp": 0.0}]
 )

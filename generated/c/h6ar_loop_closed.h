@@ -4,14 +4,14 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 79 add, 84 compare and select, 3 atan2, 20 divide, 119 multiply, 6 sincos, 9 sqrt
- *   pose: 106 add, 81 compare and select, 20 divide, 160 multiply, 6 sincos, 9 sqrt
+ *   fk: 90 add, 89 compare and select, 3 atan2, 29 divide, 130 multiply, 6 sincos, 9 sqrt
+ *   pose: 117 add, 86 compare and select, 29 divide, 171 multiply, 6 sincos, 9 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
- *   jacobian: 214 add, 77 compare and select, 52 divide, 299 multiply, 6 sincos, 9 sqrt
- *   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
- *   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
- *   ik: 264 add, 285 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+ *   jacobian: 215 add, 82 compare and select, 61 divide, 326 multiply, 6 sincos, 9 sqrt
+ *   determinant: 93 add, 82 compare and select, 30 divide, 159 multiply, 5 sincos, 9 sqrt
+ *   singularities: 98 add, 82 compare and select, 29 divide, 149 multiply, 5 sincos, 9 sqrt
+ *   ik: 266 add, 305 compare and select, 28 atan2, 60 divide, 315 multiply, 3 sincos, 41 sqrt
  *   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt

@@ -7,7 +7,7 @@
 #   pose: 72 add, 60 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 4 compare and select, 34 multiply, 5 sincos
-#   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
+#   jacobian: 133 add, 56 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
 #   ik: 190 add, 223 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
@@ -129,7 +129,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t23 = L1 * (t21 - t22)
     t24 = t19 * (L2 * t20 + a3 * t16) + t3 * t23
     rise = np.sqrt(t18 + t24 * t24)
-    cphi = d / rise
+    c_phi = d / rise
     t25 = t24 / rise
     t26 = t21 + t22
     t27 = t19 * (L2 * t16 - a3 * t20) - t26 * t23
@@ -141,12 +141,12 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     wrist = np.sqrt(np.maximum(t29, 0.0)) * np.sqrt(np.maximum(t31, 0.0))
     t32 = loff + lp * c + wrist
     t33 = t28 * t32
-    t34 = a3 + t17 * cphi + t25 * t33
+    t34 = a3 + t17 * c_phi + t25 * t33
     s23A = side23A * t20
-    cpsi = d / base
-    t35 = L2 + cpsi * t32
+    c_psi = d / base
+    t35 = L2 + c_psi * t32
     t36 = L1 * (side2A * t3) + c23A * t34 + s23A * t35
-    t37 = t17 * t25 - cphi * t33
+    t37 = t17 * t25 - c_phi * t33
     t38 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
     t39 = t38 & np.isfinite(theta2L) & np.isfinite(theta3L)
     t40 = t39 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
@@ -163,8 +163,8 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
         c1 * t36 - s1 * t37 + t47,
         c1 * t37 + s1 * t36 + t47,
         t48 + t47,
-        _runtime.wrap(np.arctan2(-t28, cpsi)) + t47,
-        _runtime.wrap(-np.arctan2(t25, cphi)) + t47,
+        _runtime.wrap(np.arctan2(-t28, c_psi)) + t47,
+        _runtime.wrap(-np.arctan2(t25, c_phi)) + t47,
         _runtime.wrap(np.arctan2(s, c)) + t47,
     )
 
@@ -227,20 +227,20 @@ def _pose(
     t23 = L1 * (t21 - t22)
     t24 = t16 * (L2 * t17 + a3 * t13) + t20 * t23
     rise = np.sqrt(t15 + t24 * t24)
-    cphi = d / rise
+    c_phi = d / rise
     t25 = t21 + t22
     t26 = t16 * (L2 * t13 - a3 * t17) - t25 * t23
     base = np.sqrt(t15 + t26 * t26)
     t27 = t26 / base
     t28 = t24 / rise
     t29 = t27 * t28
-    hand_11 = c * cphi - s * t29
-    t30 = cphi * t27
+    hand_11 = c * c_phi - s * t29
+    t30 = c_phi * t27
     t31 = s * t30 + c * t28
     s23A = side23A * t17
     t32 = s23A * c1
-    cpsi = d / base
-    t33 = s * cpsi
+    c_psi = d / base
+    t33 = s * c_psi
     t34 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
     t35 = t34 & np.isfinite(theta2L) & np.isfinite(theta3L)
     t36 = t35 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
@@ -255,19 +255,19 @@ def _pose(
     t45 = base - (gs - al)
     failed = np.logical_not(t41) | np.logical_not((t43 <= t44) & (t43 <= t45))
     t46 = _runtime.poison(failed)
-    hand_12 = t28 * cpsi
-    hand_22 = cphi * cpsi
+    hand_12 = t28 * c_psi
+    hand_22 = c_phi * c_psi
     t47 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t46
-    hand_13 = s * cphi + c * t29
+    hand_13 = s * c_phi + c * t29
     t48 = c * t30 - s * t28
-    hand_33 = c * cpsi
+    hand_33 = c * c_psi
     t49 = t14 * hand_13 + s1 * t48 + t32 * hand_33 + t46
     side2A = np.where(0.0 <= t18 + t19, 1.0, -1.0)
     t50 = lp * s
     wrist = np.sqrt(np.maximum(t45, 0.0)) * np.sqrt(np.maximum(t44, 0.0))
     t51 = loff + lp * c + wrist
-    t52 = a3 + t50 * cphi + t29 * t51
-    t53 = L2 + cpsi * t51
+    t52 = a3 + t50 * c_phi + t29 * t51
+    t53 = L2 + c_psi * t51
     t54 = L1 * (side2A * t20) + c23A * t52 + s23A * t53
     t55 = t50 * t28 - t30 * t51
     t56 = c23A * s1
@@ -441,161 +441,158 @@ def _jacobian(
     t14 = s2R_half * t11 + c2R_half * t12
     t15 = s2L_half * t13 + c2L_half * t14
     t16 = c2L_half * t13 - s2L_half * t14
-    t17 = L2 * t15 + a3 * t16
-    t18 = t10 * t17
-    t19 = c2L_half * c2R_half
-    t20 = s2L_half * s2R_half
-    t21 = t19 - t20
-    t22 = s2L_half * c2R_half
-    t23 = c2L_half * s2R_half
-    t24 = L1 * (t22 - t23)
-    t25 = t21 * t24
-    t26 = t18 + t25
-    t27 = d * d
-    t28 = t26 * t26
-    rise = np.sqrt(t27 + t28)
-    t29 = t26 / rise
-    t30 = L2 * t16 - a3 * t15
-    t31 = t10 * t30
-    t32 = t22 + t23
-    t33 = t32 * t24
-    t34 = t31 - t33
-    t35 = t34 * t34
-    base = np.sqrt(t27 + t35)
-    t36 = t34 / base
-    cphi = d / rise
-    t37 = t36 * cphi
-    t38 = lp * c
-    t39 = base - (gs - al)
-    t40 = gs + al
-    t41 = t40 - base
-    wrist = np.sqrt(np.maximum(t39, 0.0)) * np.sqrt(np.maximum(t41, 0.0))
-    t42 = loff + t38 + wrist
-    t43 = t1 * t29 - t37 * t42
-    t44 = t19 + t20
-    side2A = np.where(0.0 <= t44, 1.0, -1.0)
-    outer_32 = L1 * (side2A * t21)
-    t45 = c2L_half * t8 + s2L_half * t9
-    side23A = np.where(0.0 <= t45, 1.0, -1.0)
+    t17 = c2L_half * c2R_half
+    t18 = s2L_half * s2R_half
+    t19 = t17 - t18
+    t20 = s2L_half * c2R_half
+    t21 = c2L_half * s2R_half
+    t22 = L1 * (t20 - t21)
+    t23 = t10 * (L2 * t15 + a3 * t16) + t19 * t22
+    t24 = d * d
+    t25 = t23 * t23
+    rise = np.sqrt(t24 + t25)
+    t26 = t23 / rise
+    t27 = t20 + t21
+    t28 = t10 * (L2 * t16 - a3 * t15) - t27 * t22
+    t29 = t28 * t28
+    base = np.sqrt(t24 + t29)
+    t30 = t28 / base
+    c_phi = d / rise
+    t31 = t30 * c_phi
+    t32 = lp * c
+    t33 = base - (gs - al)
+    t34 = gs + al
+    t35 = t34 - base
+    wrist = np.sqrt(np.maximum(t33, 0.0)) * np.sqrt(np.maximum(t35, 0.0))
+    t36 = loff + t32 + wrist
+    t37 = t1 * t26 - t31 * t36
+    side2A = np.where(0.0 <= t17 + t18, 1.0, -1.0)
+    outer_32 = L1 * (side2A * t19)
+    side23A = np.where(0.0 <= c2L_half * t8 + s2L_half * t9, 1.0, -1.0)
     c23A = side23A * t16
-    t46 = t36 * t29
-    t47 = t1 * cphi + t46 * t42
-    t48 = a3 + t47
+    t38 = t30 * t26
+    t39 = t1 * c_phi + t38 * t36
+    t40 = a3 + t39
     s23A = side23A * t15
-    cpsi = d / base
-    t49 = cpsi * t42
-    t50 = L2 + t49
-    outer_33 = c23A * t48 + s23A * t50
-    t51 = outer_32 + outer_33
-    t52 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t53 = t52 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t54 = t53 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t55 = t54 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t56 = t55 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t57 = t56 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t58 = t57 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t59 = -(_runtime.FEASIBILITY * t40)
-    failed = np.logical_not(t58 & (0.0 <= lp)) | np.logical_not((t59 <= t41) & (t59 <= t39))
-    t60 = _runtime.poison(failed)
-    t61 = c23A * t43
-    outer_15 = c1 * t61 + s1 * t47
-    t62 = t45 * t17 / 2.0
-    t63 = t31 / 2.0
-    t64 = t62 - t63
-    t65 = t33 / 2.0
-    t66 = L1 * t44
-    t67 = t21 * t66 / 2.0
-    t68 = d * (1.0 + t28 / t27)
-    inner_52 = (t64 + t65 + t67) / t68
-    t69 = L1 * (side2A * t32)
-    t70 = c23A * t50 - s23A * t48
-    t71 = c1 * t70 / 2.0
-    t72 = c1 * t69 / 2.0 - t71
-    t73 = cphi * t49
-    t74 = t29 * t49
-    t75 = t36 * t42
-    t76 = c23A * t74 - s23A * t75
-    t77 = (gs - d / cpsi) * (d * t36)
-    t78 = s23A * cpsi
-    t79 = c23A * t46 + t78
-    t80 = cpsi * cpsi * wrist
-    t81 = s1 * t73 + c1 * t76 + t77 * (s1 * t37 + c1 * t79) / t80
-    t82 = t18 / 2.0
-    t83 = t45 * t30 / 2.0
-    t84 = t82 + t83
-    t85 = t25 / 2.0
-    t86 = t32 * t66 / 2.0
-    t87 = d * (1.0 + t35 / t27)
-    inner_42 = (t84 + t85 - t86) / t87
-    t88 = outer_15 * inner_52 - (t72 + t81 * inner_42) + t60
-    inner_43 = t84 / t87
-    inner_53 = t64 / t68
-    t89 = t71 - inner_43 * t81 + inner_53 * outer_15 + t60
-    t90 = t82 - t83
-    inner_44 = (t90 + t85 + t86) / t87
-    t91 = t62 + t63
-    t92 = (t91 - t65 + t67) / t68
-    t93 = -(t72 + t81 * inner_44 + outer_15 * t92) + t60
-    inner_45 = t90 / t87
-    t94 = t91 / t68
-    t95 = t38 * cphi - t1 * t46
-    t96 = c23A * t95 - t1 * t78
-    t97 = t1 * t37 + t38 * t29
-    outer_25 = s1 * t61 - c1 * t47
-    t98 = s1 * t70 / 2.0
-    t99 = s1 * t69 / 2.0 - t98
-    outer_24 = c1 * t73 - s1 * t76 + t77 * (c1 * t37 - s1 * t79) / t80
-    t100 = inner_52 * outer_25 - (t99 - inner_42 * outer_24)
-    t101 = t98 + inner_43 * outer_24 + inner_53 * outer_25
-    t102 = -(t99 - inner_44 * outer_24 + t92 * outer_25)
-    t103 = t98 + inner_45 * outer_24 - t94 * outer_25 + t60
-    t104 = 0.0 + t60
-    t105 = outer_33 / 2.0
-    t106 = outer_32 / 2.0 + t105
-    t107 = c23A * cpsi
-    t108 = c23A * t75 + s23A * t74 - t77 * (t107 - s23A * t46) / t80
-    outer_35 = s23A * t43
-    t109 = t106 - inner_42 * t108 + inner_52 * outer_35 + t60
-    t110 = t105 - inner_43 * t108 + inner_53 * outer_35 + t60
-    t111 = t106 - inner_44 * t108 - t92 * outer_35 + t60
-    t112 = t105 - inner_45 * t108 - t94 * outer_35 + t60
+    c_psi = d / base
+    t41 = c_psi * t36
+    t42 = L2 + t41
+    outer_33 = c23A * t40 + s23A * t42
+    t43 = outer_32 + outer_33
+    t44 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t45 = t44 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t46 = t45 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t47 = t46 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t48 = t47 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t49 = t48 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t50 = t49 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t51 = -(_runtime.FEASIBILITY * t34)
+    failed = np.logical_not(t50 & (0.0 <= lp)) | np.logical_not((t51 <= t35) & (t51 <= t33))
+    t52 = _runtime.poison(failed)
+    t53 = c23A * t37
+    outer_15 = c1 * t53 + s1 * t39
+    t54 = c2R_half * c2R_half - s2R_half * s2R_half
+    t55 = s2R_half * c2R_half
+    t56 = t55 + t55
+    t57 = c3R_half * c3R_half - s3R_half * s3R_half
+    t58 = s3R_half * c3R_half
+    t59 = t58 + t58
+    s2R3R = t56 * t57 + t54 * t59
+    c2R3R = t54 * t57 - t56 * t59
+    t60 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
+    t61 = d * (1.0 + t25 / t24)
+    inner_52 = (L1 * t54 / 2.0 + t60) / t61
+    t62 = L1 * (side2A * t27)
+    t63 = c23A * t42 - s23A * t40
+    t64 = c1 * t63 / 2.0
+    t65 = c1 * t62 / 2.0 - t64
+    t66 = c_phi * t41
+    t67 = t26 * t41
+    t68 = t30 * t36
+    t69 = c23A * t67 - s23A * t68
+    t70 = (gs - d / c_psi) * (d * t30)
+    t71 = s23A * c_psi
+    t72 = c23A * t38 + t71
+    t73 = c_psi * c_psi * wrist
+    t74 = s1 * t66 + c1 * t69 + t70 * (s1 * t31 + c1 * t72) / t73
+    t75 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
+    t76 = d * (1.0 + t29 / t24)
+    t77 = (L1 * t56 / 2.0 - t75) / t76
+    t78 = outer_15 * inner_52 - (t65 - t74 * t77) + t52
+    inner_43 = t75 / t76
+    inner_53 = t60 / t61
+    t79 = t64 - inner_43 * t74 + inner_53 * outer_15 + t52
+    t80 = s2L_half * c2L_half
+    t81 = t80 + t80
+    t82 = c2L_half * c2L_half - s2L_half * s2L_half
+    t83 = c3L_half * c3L_half - s3L_half * s3L_half
+    t84 = s3L_half * c3L_half
+    t85 = t84 + t84
+    c2L3L = t82 * t83 - t81 * t85
+    s2L3L = t81 * t83 + t82 * t85
+    t86 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
+    inner_44 = (L1 * t81 / 2.0 - t86) / t76
+    t87 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
+    t88 = (L1 * t82 / 2.0 + t87) / t61
+    t89 = -(t65 + t74 * inner_44 + outer_15 * t88) + t52
+    t90 = t86 / t76
+    t91 = t87 / t61
+    t92 = t32 * c_phi - t1 * t38
+    t93 = c23A * t92 - t1 * t71
+    t94 = t1 * t31 + t32 * t26
+    outer_25 = s1 * t53 - c1 * t39
+    t95 = s1 * t63 / 2.0
+    t96 = s1 * t62 / 2.0 - t95
+    outer_24 = c1 * t66 - s1 * t69 + t70 * (c1 * t31 - s1 * t72) / t73
+    t97 = inner_52 * outer_25 - (t96 + t77 * outer_24) + t52
+    t98 = t95 + inner_43 * outer_24 + inner_53 * outer_25
+    t99 = -(t96 - inner_44 * outer_24 + t88 * outer_25)
+    t100 = 0.0 + t52
+    t101 = outer_33 / 2.0
+    t102 = outer_32 / 2.0 + t101
+    t103 = c23A * c_psi
+    t104 = c23A * t68 + s23A * t67 - t70 * (t103 - s23A * t38) / t73
+    outer_35 = s23A * t37
+    t105 = t102 + t77 * t104 + inner_52 * outer_35 + t52
+    t106 = t101 - inner_43 * t104 + inner_53 * outer_35 + t52
+    t107 = t102 - inner_44 * t104 - t88 * outer_35 + t52
     return (
-        -(c1 * t43 + s1 * t51) + t60,
-        t88,
+        -(c1 * t37 + s1 * t43) + t52,
+        t78,
+        t79,
         t89,
-        t93,
-        t71 - inner_45 * t81 - t94 * outer_15 + t60,
-        c1 * t96 - s1 * t97 + t60,
-        c1 * t51 - s1 * t43 + t60,
-        t100 + t60,
-        t101 + t60,
-        t102 + t60,
-        t103,
-        s1 * t96 + c1 * t97 + t60,
-        t104,
-        t109,
-        t110,
-        t111,
-        t112,
-        t1 * t107 + s23A * t95 + t60,
-        t104,
-        inner_42 + t60,
-        inner_43 + t60,
-        inner_44 + t60,
-        inner_45 + t60,
-        t104,
-        t104,
-        inner_52 + t60,
-        inner_53 + t60,
-        -t92 + t60,
-        -t94 + t60,
-        t104,
-        t104,
-        t104,
-        t104,
-        t104,
-        t104,
-        1.0 + t60,
+        t64 + t90 * t74 - t91 * outer_15 + t52,
+        c1 * t93 - s1 * t94 + t52,
+        c1 * t43 - s1 * t37 + t52,
+        t97,
+        t98 + t52,
+        t99 + t52,
+        t95 - t90 * outer_24 - t91 * outer_25 + t52,
+        s1 * t93 + c1 * t94 + t52,
+        t100,
+        t105,
+        t106,
+        t107,
+        t101 + t90 * t104 - t91 * outer_35 + t52,
+        t1 * t103 + s23A * t92 + t52,
+        t100,
+        -t77 + t52,
+        inner_43 + t52,
+        inner_44 + t52,
+        -t90 + t52,
+        t100,
+        t100,
+        inner_52 + t52,
+        inner_53 + t52,
+        -t88 + t52,
+        -t91 + t52,
+        t100,
+        t100,
+        t100,
+        t100,
+        t100,
+        t100,
+        1.0 + t52,
     )
 
 
@@ -666,18 +663,18 @@ def _determinant(
     t28 = L1 * (t19 - t20)
     t29 = t27 * (L2 * t22 + a3 * t18) + t13 * t28
     rise = np.sqrt(t26 + t29 * t29)
-    cphi = d / rise
+    c_phi = d / rise
     t30 = t27 * (L2 * t18 - a3 * t22) - t21 * t28
     base = np.sqrt(t26 + t30 * t30)
-    cpsi = d / base
+    c_psi = d / base
     t31 = base - (gs - al)
     t32 = gs + al
     t33 = t32 - base
     wrist = np.sqrt(np.maximum(t31, 0.0)) * np.sqrt(np.maximum(t33, 0.0))
     t34 = loff + lp * c + wrist
-    t35 = L2 + cpsi * t34
-    t36 = a3 + lp * s * cphi + t30 / base * (t29 / rise) * t34
-    t37 = t25 * (cphi * cphi) * (cpsi * cpsi) * (t23 * t35 + t24 * t36)
+    t35 = L2 + c_psi * t34
+    t36 = a3 + lp * s * c_phi + t30 / base * (t29 / rise) * t34
+    t37 = t25 * (c_phi * c_phi) * (c_psi * c_psi) * (t23 * t35 + t24 * t36)
     t38 = t37 * (L1 * c2A + c23A * t36 + s23A * t35) / (t26 * 4.0)
     t39 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
     t40 = t39 & np.isfinite(theta2L) & np.isfinite(theta3L)
@@ -1003,8 +1000,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t116 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     t117 = np.arctan2(t115 / total_alpha_front_elbow_down, t116 / total_alpha_front_elbow_down)
     t118 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    cbeta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t118 / total_beta_front_elbow_down)
-    t119 = t117 - np.arctan2(t106, cbeta_front_elbow_down)
+    c_beta_front_elbow_down = np.where(parallel_front_elbow_down, 1.0, t118 / total_beta_front_elbow_down)
+    t119 = t117 - np.arctan2(t106, c_beta_front_elbow_down)
     t120 = t82 + t83
     t121 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t14))
     t122 = x * np.where(nowhere, 1.0, -((t32 + t33) / h))
@@ -1100,8 +1097,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t173 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
     t174 = np.arctan2(t172 / total_alpha_rear_elbow_up, t173 / total_alpha_rear_elbow_up)
     t175 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    cbeta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, t175 / total_beta_rear_elbow_up)
-    t176 = t174 - np.arctan2(t160, cbeta_rear_elbow_up)
+    c_beta_rear_elbow_up = np.where(parallel_rear_elbow_up, 1.0, t175 / total_beta_rear_elbow_up)
+    t176 = t174 - np.arctan2(t160, c_beta_rear_elbow_up)
     t177 = np.where(short, 0.0, 2.0 * np.arctan2(t133, t132))
     t178 = t82 + t177
     stheta2A_rear_elbow_down = t131 + t134
@@ -1153,8 +1150,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t206 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     t207 = np.arctan2(t205 / total_alpha_rear_elbow_down, t206 / total_alpha_rear_elbow_down)
     t208 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    cbeta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t208 / total_beta_rear_elbow_down)
-    t209 = t207 - np.arctan2(t196, cbeta_rear_elbow_down)
+    c_beta_rear_elbow_down = np.where(parallel_rear_elbow_down, 1.0, t208 / total_beta_rear_elbow_down)
+    t209 = t207 - np.arctan2(t196, c_beta_rear_elbow_down)
     t210 = t82 - t177
     t211 = nowhere | folded | short
     t212 = _runtime.status(invalid, unreachable, t211 | parallel)

@@ -3,14 +3,14 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 79 add, 84 compare and select, 3 atan2, 20 divide, 119 multiply, 6 sincos, 9 sqrt
-#   pose: 106 add, 81 compare and select, 20 divide, 160 multiply, 6 sincos, 9 sqrt
+#   fk: 90 add, 89 compare and select, 3 atan2, 29 divide, 130 multiply, 6 sincos, 9 sqrt
+#   pose: 117 add, 86 compare and select, 29 divide, 171 multiply, 6 sincos, 9 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 214 add, 77 compare and select, 52 divide, 299 multiply, 6 sincos, 9 sqrt
-#   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
-#   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
-#   ik: 264 add, 285 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+#   jacobian: 215 add, 82 compare and select, 61 divide, 326 multiply, 6 sincos, 9 sqrt
+#   determinant: 93 add, 82 compare and select, 30 divide, 159 multiply, 5 sincos, 9 sqrt
+#   singularities: 98 add, 82 compare and select, 29 divide, 149 multiply, 5 sincos, 9 sqrt
+#   ik: 266 add, 305 compare and select, 28 atan2, 60 divide, 315 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -97,131 +97,135 @@ _DEFAULT = Parameters()
 
 def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp):
     s1, c1 = _runtime.sincos(theta1)
-    s, c = _runtime.sincos(theta)
     s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
     s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
     s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    t1 = lp * s
-    t2 = c3R_half * c3L_half
-    t3 = s3R_half * s3L_half
-    t4 = t2 + t3
-    t5 = c3R_half * s3L_half
-    t6 = s3R_half * c3L_half
-    t7 = t5 - t6
-    t8 = c2R_half * t4 + s2R_half * t7
-    t9 = s2R_half * t4 - c2R_half * t7
-    t10 = s2L_half * t8 - c2L_half * t9
-    t11 = t2 - t3
-    t12 = t5 + t6
-    t13 = c2R_half * t11 - s2R_half * t12
-    t14 = s2R_half * t11 + c2R_half * t12
-    t15 = c2L_half * t13 - s2L_half * t14
-    t16 = s2L_half * t13 + c2L_half * t14
-    t17 = L2 * t15 - a3 * t16
-    t18 = s2L_half * c2R_half
-    t19 = c2L_half * s2R_half
-    t20 = t18 + t19
-    t21 = L1 * (t18 - t19)
-    t22 = t10 * t17 - t20 * t21
+    s, c = _runtime.sincos(theta)
+    t1 = c3R_half * c3L_half
+    t2 = s3R_half * s3L_half
+    t3 = t1 - t2
+    t4 = c3R_half * s3L_half
+    t5 = s3R_half * c3L_half
+    t6 = t4 + t5
+    t7 = c2R_half * t3 - s2R_half * t6
+    t8 = s2R_half * t3 + c2R_half * t6
+    t9 = c2L_half * t7 - s2L_half * t8
+    t10 = s2L_half * t7 + c2L_half * t8
+    t11 = t1 + t2
+    t12 = t4 - t5
+    t13 = s2L_half * (c2R_half * t11 + s2R_half * t12) - c2L_half * (s2R_half * t11 - c2R_half * t12)
+    t14 = s2L_half * c2R_half
+    t15 = c2L_half * s2R_half
+    t16 = L1 * (t14 - t15)
+    t17 = (L2 * t9 - a3 * t10) * t13 - (t14 + t15) * t16
+    t18 = c3L_half * c3L_half - s3L_half * s3L_half
+    t19 = s3L_half * c3L_half
+    t20 = t19 + t19
+    t21 = L2 * t18 - a3 * t20
+    t22 = c2L_half * c2L_half - s2L_half * s2L_half
+    t23 = c3R_half * c3R_half - s3R_half * s3R_half
+    t24 = s3R_half * c3R_half
+    t25 = t24 + t24
+    t26 = L2 * t23 - a3 * t25
+    t27 = c2R_half * c2R_half - s2R_half * s2R_half
+    t28 = s2L_half * c2L_half
+    t29 = t28 + t28
+    straight_left = L2 * t20 + a3 * t18
+    t30 = 0.0 <= straight_left
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t23 = L1 + fore
-    t24 = t23 * _runtime.VANISHING
-    bare_virtual = fore <= t24
-    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
-    short_virtual = L1 * fore <= _runtime.VANISHING * (t23 * t23)
-    t25 = L2 * t16 + a3 * t15
-    t26 = c2L_half * c2R_half
-    t27 = s2L_half * s2R_half
-    t28 = t26 - t27
-    t29 = t25 * t10 + t28 * t21
-    gap = t22 * t22 + t29 * t29
-    t30 = s3L_half * c3L_half
-    t31 = t30 + t30
-    t32 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t31 + a3 * t32
-    t33 = 0.0 <= straight_left
-    t34 = L2 * t32 - a3 * t31
-    large_left = fore + np.where(t33, straight_left, -straight_left)
-    small_left = t34 * t34 / large_left
-    t35 = L1 * 2.0
-    t36 = np.where(t33, small_left, large_left) * t35 / 2.0
-    t37 = s3R_half * c3R_half
-    t38 = t37 + t37
-    t39 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t38 + a3 * t39
-    t40 = 0.0 <= straight_right
-    t41 = L2 * t39 - a3 * t38
-    t42 = np.where(t40, straight_right, -straight_right)
-    large_right = fore + t42
-    small_right = t41 * t41 / large_right
-    N_right = np.where(t40, small_right, large_right) * t35
-    t43 = gap + t36 + N_right / 2.0
-    N_virtual = np.maximum(t43, 0.0)
-    M_right = np.where(t40, large_right, small_right) * t35
-    t44 = np.where(t33, large_left, small_left) * t35 / 2.0
-    t45 = M_right / 2.0 - (gap - t44)
-    M_virtual = np.maximum(t45, 0.0)
+    t31 = L1 + fore
+    large_left = fore + np.where(t30, straight_left, -straight_left)
+    small_left = t21 * t21 / large_left
+    t32 = L1 - fore
+    end_left = np.where(t30, t31 - small_left, small_left + t32)
+    t33 = t21 * t22 / 2.0 + t26 * t27 / 2.0 - t29 * end_left / 2.0
+    t34 = s2R_half * c2R_half
+    t35 = t34 + t34
+    straight_right = L2 * t25 + a3 * t23
+    t36 = 0.0 <= straight_right
+    t37 = np.where(t36, straight_right, -straight_right)
+    large_right = fore + t37
+    small_right = t26 * t26 / large_right
+    end_right = np.where(t36, t31 - small_right, small_right + t32)
+    t38 = t33 - t35 * end_right / 2.0
+    t39 = t21 * t29 / 2.0 + t26 * t35 / 2.0 + t22 * end_left / 2.0
+    r_I = t39 + t27 * end_right / 2.0
+    t40 = t38 * t38 + r_I * r_I
+    t41 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t40) <= t41
+    t42 = t31 * t31
+    short_virtual = L1 * fore <= t42 * _runtime.VANISHING
+    t43 = (c2L_half * c2R_half - s2L_half * s2R_half) * t16
+    t44 = t13 * (L2 * t10 + a3 * t9) + t43
+    gap = t17 * t17 + t44 * t44
+    t45 = L1 * 2.0
+    t46 = np.where(t30, large_left, small_left) * t45 / 2.0
+    M_right = np.where(t36, large_right, small_right) * t45
+    t47 = np.where(t42 * t40 < gap * gap, t32 * t32 - t40, gap - t46 - M_right / 2.0)
+    M_virtual = np.maximum(-t47, 0.0)
+    t48 = np.where(t30, small_left, large_left) * t45 / 2.0
+    N_right = np.where(t36, small_right, large_right) * t45
+    t49 = gap + t48 + N_right / 2.0
+    N_virtual = np.maximum(t49, 0.0)
     whole_virtual = N_virtual + M_virtual
+    ahead_1_virtual = np.where(short_virtual, t31, t32 + fore * 2.0 * M_virtual / whole_virtual)
+    t50 = 2.0 * np.where(0.0 <= -t26, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t50 * np.sqrt(M_virtual) / whole_virtual)
+    t51 = fore * s_bend_virtual
+    t52 = t38 * ahead_1_virtual + r_I * t51
+    out_virtual = r_I * ahead_1_virtual - t38 * t51
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
+    stheta2A = np.where(folded_virtual, t35, -(t52 / norm_virtual))
+    bare_virtual = fore <= t31 * _runtime.VANISHING
+    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
-    t46 = 2.0 * np.where(0.0 <= -t41, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t46 * np.sqrt(M_virtual) / whole_virtual)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t47 = c2L_half * t8 + s2L_half * t9
-    t48 = L1 * (t26 + t27)
-    t49 = t47 * t17 - t20 * t48
-    r_I = t25 * t47 + t28 * t48
-    folded_virtual = np.sqrt(t49 * t49 + r_I * r_I) <= t24
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t50 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t49 * t50
-    t51 = t49 * ahead_1_virtual + r_I * t50
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
-    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
-    t52 = s2R_half * c2R_half
-    stheta2A = np.where(folded_virtual, t52 + t52, -(t51 / norm_virtual))
+    ctheta2A = np.where(folded_virtual, t27, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
-    t53 = t22 * ctheta23A + t29 * stheta23A
-    t54 = d * d
-    tilted = np.sqrt(t54 + t53 * t53)
-    t55 = t53 / tilted
-    cphi = d / tilted
-    base = np.sqrt(t54 + gap)
-    t56 = (t22 * stheta23A - t29 * ctheta23A) / base
-    t57 = base - (gs - al)
-    t58 = gs + al
-    t59 = t58 - base
-    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
-    t60 = loff + lp * c + wrist
-    t61 = t56 * t60
-    t62 = t1 * t55 + cphi * t61
-    t63 = a3 + t1 * cphi - t55 * t61
-    cpsi = tilted / base
-    t64 = L2 + t60 * cpsi
-    t65 = L1 * ctheta2A + ctheta23A * t63 + stheta23A * t64
-    t66 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t67 = t66 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t68 = t67 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t69 = t68 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t70 = t69 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t71 = t70 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t72 = t71 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t73 = t72 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t74 = -(_runtime.FEASIBILITY * (d * t23))
-    t75 = -(_runtime.FEASIBILITY * t58)
-    t76 = (t74 <= t43) & (t74 <= t45) & (t75 <= t59) & (t75 <= t57)
-    t77 = _runtime.poison(np.logical_not(t73) | np.logical_not(t76))
-    t78 = d1 + L1 * stheta2A - ctheta23A * t64 + stheta23A * t63
+    ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
+    t53 = d * d
+    base = np.sqrt(t53 + gap)
+    t54 = (t17 * stheta23A - t44 * ctheta23A) / base
+    t55 = base - (gs - al)
+    t56 = gs + al
+    t57 = t56 - base
+    wrist = np.sqrt(np.maximum(t55, 0.0)) * np.sqrt(np.maximum(t57, 0.0))
+    t58 = loff + lp * c + wrist
+    t59 = t54 * t58
+    t60 = t17 * ctheta23A + t44 * stheta23A
+    tilted = np.sqrt(t53 + t60 * t60)
+    c_phi = d / tilted
+    t61 = lp * s
+    t62 = t60 / tilted
+    t63 = t59 * c_phi + t61 * t62
+    t64 = a3 + t61 * c_phi - t59 * t62
+    c_psi = tilted / base
+    t65 = L2 + t58 * c_psi
+    t66 = L1 * ctheta2A + ctheta23A * t64 + stheta23A * t65
+    t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t68 = t67 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t69 = t68 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t70 = t69 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t71 = t70 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t72 = t71 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t73 = t72 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t74 = t73 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t75 = -(_runtime.FEASIBILITY * (d * t31))
+    t76 = -(_runtime.FEASIBILITY * t56)
+    t77 = (t75 <= t49) & (t75 <= -t47) & (t76 <= t57) & (t76 <= t55)
+    t78 = _runtime.poison(np.logical_not(t74) | np.logical_not(t77))
+    t79 = d1 + L1 * stheta2A - ctheta23A * t65 + stheta23A * t64
+    t80 = _runtime.wrap(-np.arctan2(-t62, c_phi)) + t78
     return (
-        s1 * t62 + c1 * t65 + t77,
-        s1 * t65 - c1 * t62 + t77,
-        t78 + t77,
-        _runtime.wrap(np.arctan2(-t56, cpsi)) + t77,
-        _runtime.wrap(-np.arctan2(-t55, cphi)) + t77,
-        _runtime.wrap(np.arctan2(s, c)) + t77,
+        s1 * t63 + c1 * t66 + t78,
+        s1 * t66 - c1 * t63 + t78,
+        t79 + t78,
+        _runtime.wrap(np.arctan2(-t54, c_psi)) + t78,
+        t80,
+        _runtime.wrap(np.arctan2(s, c)) + t78,
     )
 
 
@@ -254,162 +258,163 @@ def _pose(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp
 ):
     s1, c1 = _runtime.sincos(theta1)
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
     s, c = _runtime.sincos(theta)
-    t1 = c3R_half * c3L_half
-    t2 = s3R_half * s3L_half
-    t3 = t1 + t2
-    t4 = c3R_half * s3L_half
-    t5 = s3R_half * c3L_half
-    t6 = t4 - t5
-    t7 = c2R_half * t3 + s2R_half * t6
-    t8 = s2R_half * t3 - c2R_half * t6
-    t9 = c2L_half * t7 + s2L_half * t8
-    t10 = t1 - t2
-    t11 = t4 + t5
-    t12 = c2R_half * t10 - s2R_half * t11
-    t13 = s2R_half * t10 + c2R_half * t11
-    t14 = c2L_half * t12 - s2L_half * t13
-    t15 = s2L_half * t12 + c2L_half * t13
-    t16 = L2 * t14 - a3 * t15
-    t17 = s2L_half * c2R_half
-    t18 = c2L_half * s2R_half
-    t19 = t17 + t18
-    t20 = c2L_half * c2R_half
-    t21 = s2L_half * s2R_half
-    t22 = L1 * (t20 + t21)
-    t23 = t9 * t16 - t19 * t22
-    t24 = L2 * t15 + a3 * t14
-    t25 = t20 - t21
-    r_I = t24 * t9 + t25 * t22
+    t1 = c3L_half * c3L_half - s3L_half * s3L_half
+    t2 = s3L_half * c3L_half
+    t3 = t2 + t2
+    t4 = L2 * t1 - a3 * t3
+    t5 = c2L_half * c2L_half - s2L_half * s2L_half
+    t6 = c3R_half * c3R_half - s3R_half * s3R_half
+    t7 = s3R_half * c3R_half
+    t8 = t7 + t7
+    t9 = L2 * t6 - a3 * t8
+    t10 = c2R_half * c2R_half - s2R_half * s2R_half
+    t11 = s2L_half * c2L_half
+    t12 = t11 + t11
+    straight_left = L2 * t3 + a3 * t1
+    t13 = 0.0 <= straight_left
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t26 = L1 + fore
-    t27 = t26 * _runtime.VANISHING
-    folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t27
-    short_virtual = L1 * fore <= _runtime.VANISHING * (t26 * t26)
-    t28 = s2L_half * t7 - c2L_half * t8
-    t29 = L1 * (t17 - t18)
-    t30 = t28 * t16 - t19 * t29
-    t31 = t24 * t28 + t25 * t29
-    gap = t30 * t30 + t31 * t31
-    t32 = s3L_half * c3L_half
-    t33 = t32 + t32
-    t34 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t33 + a3 * t34
-    t35 = 0.0 <= straight_left
-    t36 = L2 * t34 - a3 * t33
-    large_left = fore + np.where(t35, straight_left, -straight_left)
-    small_left = t36 * t36 / large_left
-    t37 = L1 * 2.0
-    t38 = np.where(t35, small_left, large_left) * t37 / 2.0
-    t39 = s3R_half * c3R_half
-    t40 = t39 + t39
-    t41 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t40 + a3 * t41
-    t42 = 0.0 <= straight_right
-    t43 = L2 * t41 - a3 * t40
-    t44 = np.where(t42, straight_right, -straight_right)
-    large_right = fore + t44
-    small_right = t43 * t43 / large_right
-    N_right = np.where(t42, small_right, large_right) * t37
-    t45 = gap + t38 + N_right / 2.0
-    N_virtual = np.maximum(t45, 0.0)
-    M_right = np.where(t42, large_right, small_right) * t37
-    t46 = np.where(t35, large_left, small_left) * t37 / 2.0
-    t47 = M_right / 2.0 - (gap - t46)
-    M_virtual = np.maximum(t47, 0.0)
+    t14 = L1 + fore
+    large_left = fore + np.where(t13, straight_left, -straight_left)
+    small_left = t4 * t4 / large_left
+    t15 = L1 - fore
+    end_left = np.where(t13, t14 - small_left, small_left + t15)
+    t16 = t4 * t5 / 2.0 + t9 * t10 / 2.0 - t12 * end_left / 2.0
+    t17 = s2R_half * c2R_half
+    t18 = t17 + t17
+    straight_right = L2 * t8 + a3 * t6
+    t19 = 0.0 <= straight_right
+    t20 = np.where(t19, straight_right, -straight_right)
+    large_right = fore + t20
+    small_right = t9 * t9 / large_right
+    end_right = np.where(t19, t14 - small_right, small_right + t15)
+    t21 = t16 - t18 * end_right / 2.0
+    t22 = t4 * t12 / 2.0 + t9 * t18 / 2.0 + t5 * end_left / 2.0
+    r_I = t22 + t10 * end_right / 2.0
+    t23 = t21 * t21 + r_I * r_I
+    t24 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t23) <= t24
+    t25 = t14 * t14
+    short_virtual = L1 * fore <= t25 * _runtime.VANISHING
+    t26 = c3R_half * c3L_half
+    t27 = s3R_half * s3L_half
+    t28 = t26 - t27
+    t29 = c3R_half * s3L_half
+    t30 = s3R_half * c3L_half
+    t31 = t29 + t30
+    t32 = c2R_half * t28 - s2R_half * t31
+    t33 = s2R_half * t28 + c2R_half * t31
+    t34 = c2L_half * t32 - s2L_half * t33
+    t35 = s2L_half * t32 + c2L_half * t33
+    t36 = t26 + t27
+    t37 = t29 - t30
+    t38 = s2L_half * (c2R_half * t36 + s2R_half * t37) - c2L_half * (s2R_half * t36 - c2R_half * t37)
+    t39 = s2L_half * c2R_half
+    t40 = c2L_half * s2R_half
+    t41 = L1 * (t39 - t40)
+    t42 = (L2 * t34 - a3 * t35) * t38 - (t39 + t40) * t41
+    t43 = (c2L_half * c2R_half - s2L_half * s2R_half) * t41
+    t44 = t38 * (L2 * t35 + a3 * t34) + t43
+    gap = t42 * t42 + t44 * t44
+    t45 = L1 * 2.0
+    t46 = np.where(t13, large_left, small_left) * t45 / 2.0
+    M_right = np.where(t19, large_right, small_right) * t45
+    t47 = np.where(t25 * t23 < gap * gap, t15 * t15 - t23, gap - t46 - M_right / 2.0)
+    M_virtual = np.maximum(-t47, 0.0)
+    t48 = np.where(t13, small_left, large_left) * t45 / 2.0
+    N_right = np.where(t19, small_right, large_right) * t45
+    t49 = gap + t48 + N_right / 2.0
+    N_virtual = np.maximum(t49, 0.0)
     whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t48 = 2.0 * np.where(0.0 <= -t43, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t48 * np.sqrt(M_virtual) / whole_virtual)
-    t49 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t23 * t49
-    t50 = t23 * ahead_1_virtual + r_I * t49
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t50 * t50)
-    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
-    bare_virtual = fore <= t27
+    ahead_1_virtual = np.where(short_virtual, t14, t15 + fore * 2.0 * M_virtual / whole_virtual)
+    t50 = 2.0 * np.where(0.0 <= -t9, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t50 * np.sqrt(M_virtual) / whole_virtual)
+    t51 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t21 * t51
+    t52 = t21 * ahead_1_virtual + r_I * t51
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
+    ctheta2A = np.where(folded_virtual, t10, out_virtual / norm_virtual)
+    bare_virtual = fore <= t14 * _runtime.VANISHING
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t51 = s2R_half * c2R_half
-    stheta2A = np.where(folded_virtual, t51 + t51, -(t50 / norm_virtual))
+    stheta2A = np.where(folded_virtual, t18, -(t52 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t52 = c1 * ctheta23A
-    t53 = d * d
+    t53 = c1 * ctheta23A
+    t54 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t54 = t30 * ctheta23A + t31 * stheta23A
-    tilted = np.sqrt(t53 + t54 * t54)
-    cphi = d / tilted
-    t55 = t54 / tilted
-    base = np.sqrt(t53 + gap)
-    t56 = (t30 * stheta23A - t31 * ctheta23A) / base
-    t57 = t55 * t56
-    hand_11 = c * cphi + s * t57
-    t58 = cphi * t56
-    hand_21 = c * t55 - s * t58
-    t59 = c1 * stheta23A
-    cpsi = tilted / base
-    t60 = s * cpsi
-    t61 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t62 = t61 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t63 = t62 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t64 = t63 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t65 = t64 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t66 = t65 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t67 = t66 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t68 = t67 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t69 = -(_runtime.FEASIBILITY * (d * t26))
-    t70 = gs + al
-    t71 = -(_runtime.FEASIBILITY * t70)
-    t72 = t70 - base
-    t73 = base - (gs - al)
-    t74 = (t69 <= t45) & (t69 <= t47) & (t71 <= t72) & (t71 <= t73)
-    t75 = _runtime.poison(np.logical_not(t68) | np.logical_not(t74))
-    t76 = t52 * hand_11 + s1 * hand_21 - t59 * t60 + t75
-    t77 = t55 * cpsi
-    hand_22 = cphi * cpsi
-    t78 = -(t52 * t77 - s1 * hand_22 + t59 * t56) + t75
-    hand_13 = s * cphi - c * t57
-    t79 = s * t55 + c * t58
-    hand_33 = c * cpsi
-    t80 = t52 * hand_13 + s1 * t79 + t59 * hand_33 + t75
-    t81 = lp * s
-    wrist = np.sqrt(np.maximum(t73, 0.0)) * np.sqrt(np.maximum(t72, 0.0))
+    t55 = t42 * ctheta23A + t44 * stheta23A
+    tilted = np.sqrt(t54 + t55 * t55)
+    c_phi = d / tilted
+    base = np.sqrt(t54 + gap)
+    t56 = (t42 * stheta23A - t44 * ctheta23A) / base
+    t57 = t55 / tilted
+    t58 = t56 * t57
+    hand_11 = c * c_phi + s * t58
+    t59 = c_phi * t56
+    t60 = s * t59 - c * t57
+    t61 = c1 * stheta23A
+    c_psi = tilted / base
+    t62 = s * c_psi
+    t63 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t64 = t63 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t65 = t64 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t66 = t65 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t67 = t66 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t68 = t67 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t69 = t68 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t70 = t69 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t71 = -(_runtime.FEASIBILITY * (d * t14))
+    t72 = gs + al
+    t73 = -(_runtime.FEASIBILITY * t72)
+    t74 = t72 - base
+    t75 = base - (gs - al)
+    t76 = (t71 <= t49) & (t71 <= -t47) & (t73 <= t74) & (t73 <= t75)
+    t77 = _runtime.poison(np.logical_not(t70) | np.logical_not(t76))
+    t78 = t57 * c_psi
+    hand_22 = c_phi * c_psi
+    t79 = -(t53 * t78 - s1 * hand_22 + t56 * t61) + t77
+    hand_13 = s * c_phi - c * t58
+    t80 = c * t59 + s * t57
+    hand_33 = c * c_psi
+    t81 = t53 * hand_13 + s1 * t80 + t61 * hand_33 + t77
+    wrist = np.sqrt(np.maximum(t75, 0.0)) * np.sqrt(np.maximum(t74, 0.0))
     t82 = loff + lp * c + wrist
-    t83 = t81 * t55 + t58 * t82
-    t84 = a3 + t81 * cphi - t57 * t82
-    t85 = L2 + cpsi * t82
-    t86 = L1 * ctheta2A + ctheta23A * t84 + stheta23A * t85
-    t87 = s1 * ctheta23A
-    t88 = s1 * stheta23A
-    t89 = t87 * hand_11 - c1 * hand_21 - t88 * t60 + t75
-    t90 = -(t87 * t77 + c1 * hand_22 + t88 * t56) + t75
-    t91 = t87 * hand_13 - c1 * t79 + t88 * hand_33 + t75
-    t92 = stheta23A * hand_13 - ctheta23A * hand_33 + t75
-    t93 = d1 + L1 * stheta2A - ctheta23A * t85 + stheta23A * t84
-    t94 = 0.0 + t75
+    t83 = lp * s
+    t84 = t59 * t82 + t83 * t57
+    t85 = a3 + t83 * c_phi - t58 * t82
+    t86 = L2 + c_psi * t82
+    t87 = L1 * ctheta2A + ctheta23A * t85 + stheta23A * t86
+    t88 = s1 * ctheta23A
+    t89 = s1 * stheta23A
+    t90 = -(t78 * t88 + c1 * hand_22 + t56 * t89) + t77
+    t91 = hand_13 * t88 - c1 * t80 + hand_33 * t89 + t77
+    t92 = stheta23A * hand_13 - ctheta23A * hand_33 + t77
+    t93 = d1 + L1 * stheta2A - ctheta23A * t86 + stheta23A * t85
+    t94 = 0.0 + t77
     return (
-        t76,
-        t78,
-        t80,
-        s1 * t83 + c1 * t86 + t75,
-        t89,
+        t53 * hand_11 - s1 * t60 - t61 * t62 + t77,
+        t79,
+        t81,
+        s1 * t84 + c1 * t87 + t77,
+        hand_11 * t88 + c1 * t60 - t62 * t89 + t77,
         t90,
         t91,
-        s1 * t86 - c1 * t83 + t75,
-        ctheta23A * t60 + stheta23A * hand_11 + t75,
-        ctheta23A * t56 - stheta23A * t77 + t75,
+        s1 * t87 - c1 * t84 + t77,
+        ctheta23A * t62 + stheta23A * hand_11 + t77,
+        ctheta23A * t56 - stheta23A * t78 + t77,
         t92,
-        t93 + t75,
+        t93 + t77,
         t94,
         t94,
         t94,
-        1.0 + t75,
+        1.0 + t77,
     )
 
 
@@ -539,292 +544,261 @@ def _jacobian(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
     s1, c1 = _runtime.sincos(theta1)
-    s, c = _runtime.sincos(theta)
     s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
     s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
     s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    t1 = lp * s
-    t2 = c3R_half * c3L_half
-    t3 = s3R_half * s3L_half
-    t4 = t2 + t3
-    t5 = c3R_half * s3L_half
-    t6 = s3R_half * c3L_half
-    t7 = t5 - t6
-    t8 = c2R_half * t4 + s2R_half * t7
-    t9 = s2R_half * t4 - c2R_half * t7
-    t10 = s2L_half * t8 - c2L_half * t9
-    t11 = t2 - t3
-    t12 = t5 + t6
-    t13 = c2R_half * t11 - s2R_half * t12
-    t14 = s2R_half * t11 + c2R_half * t12
-    t15 = c2L_half * t13 - s2L_half * t14
-    t16 = L2 * t15
-    t17 = s2L_half * t13 + c2L_half * t14
-    t18 = a3 * t17
-    t19 = t16 - t18
-    t20 = t10 * t19
-    t21 = s2L_half * c2R_half
-    t22 = c2L_half * s2R_half
-    t23 = t21 + t22
-    t24 = L1 * (t21 - t22)
-    t25 = t23 * t24
-    t26 = t20 - t25
+    s, c = _runtime.sincos(theta)
+    t1 = c3R_half * c3L_half
+    t2 = s3R_half * s3L_half
+    t3 = t1 - t2
+    t4 = c3R_half * s3L_half
+    t5 = s3R_half * c3L_half
+    t6 = t4 + t5
+    t7 = c2R_half * t3 - s2R_half * t6
+    t8 = s2R_half * t3 + c2R_half * t6
+    t9 = c2L_half * t7 - s2L_half * t8
+    t10 = s2L_half * t7 + c2L_half * t8
+    t11 = t1 + t2
+    t12 = t4 - t5
+    t13 = s2L_half * (c2R_half * t11 + s2R_half * t12) - c2L_half * (s2R_half * t11 - c2R_half * t12)
+    t14 = s2L_half * c2R_half
+    t15 = c2L_half * s2R_half
+    t16 = L1 * (t14 - t15)
+    t17 = (L2 * t9 - a3 * t10) * t13 - (t14 + t15) * t16
+    t18 = c3L_half * c3L_half - s3L_half * s3L_half
+    t19 = s3L_half * c3L_half
+    t20 = t19 + t19
+    t21 = L2 * t18 - a3 * t20
+    t22 = c2L_half * c2L_half - s2L_half * s2L_half
+    t23 = c3R_half * c3R_half - s3R_half * s3R_half
+    t24 = s3R_half * c3R_half
+    t25 = t24 + t24
+    t26 = L2 * t23 - a3 * t25
+    t27 = c2R_half * c2R_half - s2R_half * s2R_half
+    t28 = s2L_half * c2L_half
+    t29 = t28 + t28
+    straight_left = L2 * t20 + a3 * t18
+    t30 = 0.0 <= straight_left
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t27 = L1 + fore
-    t28 = t27 * _runtime.VANISHING
-    bare_virtual = fore <= t28
-    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
-    short_virtual = L1 * fore <= _runtime.VANISHING * (t27 * t27)
-    t29 = L2 * t17
-    t30 = a3 * t15
-    t31 = t29 + t30
-    t32 = t31 * t10
-    t33 = c2L_half * c2R_half
-    t34 = s2L_half * s2R_half
-    t35 = t33 - t34
-    t36 = t35 * t24
-    t37 = t32 + t36
-    gap = t26 * t26 + t37 * t37
-    t38 = s3L_half * c3L_half
-    t39 = t38 + t38
-    t40 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t39 + a3 * t40
-    t41 = 0.0 <= straight_left
-    t42 = L2 * t40 - a3 * t39
-    large_left = fore + np.where(t41, straight_left, -straight_left)
-    small_left = t42 * t42 / large_left
-    t43 = L1 * 2.0
-    t44 = np.where(t41, small_left, large_left) * t43 / 2.0
-    t45 = s3R_half * c3R_half
-    t46 = t45 + t45
-    t47 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t46 + a3 * t47
-    t48 = 0.0 <= straight_right
-    t49 = L2 * t47 - a3 * t46
-    t50 = np.where(t48, straight_right, -straight_right)
-    large_right = fore + t50
-    small_right = t49 * t49 / large_right
-    N_right = np.where(t48, small_right, large_right) * t43
-    t51 = gap + t44 + N_right / 2.0
-    N_virtual = np.maximum(t51, 0.0)
-    M_right = np.where(t48, large_right, small_right) * t43
-    t52 = np.where(t41, large_left, small_left) * t43 / 2.0
-    t53 = M_right / 2.0 - (gap - t52)
-    M_virtual = np.maximum(t53, 0.0)
+    t31 = L1 + fore
+    large_left = fore + np.where(t30, straight_left, -straight_left)
+    small_left = t21 * t21 / large_left
+    t32 = L1 - fore
+    end_left = np.where(t30, t31 - small_left, small_left + t32)
+    t33 = t21 * t22 / 2.0 + t26 * t27 / 2.0 - t29 * end_left / 2.0
+    t34 = s2R_half * c2R_half
+    t35 = t34 + t34
+    straight_right = L2 * t25 + a3 * t23
+    t36 = 0.0 <= straight_right
+    t37 = np.where(t36, straight_right, -straight_right)
+    large_right = fore + t37
+    small_right = t26 * t26 / large_right
+    end_right = np.where(t36, t31 - small_right, small_right + t32)
+    t38 = t33 - t35 * end_right / 2.0
+    t39 = t21 * t29 / 2.0 + t26 * t35 / 2.0 + t22 * end_left / 2.0
+    r_I = t39 + t27 * end_right / 2.0
+    t40 = t38 * t38 + r_I * r_I
+    t41 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t40) <= t41
+    t42 = t31 * t31
+    short_virtual = L1 * fore <= t42 * _runtime.VANISHING
+    t43 = (c2L_half * c2R_half - s2L_half * s2R_half) * t16
+    t44 = t13 * (L2 * t10 + a3 * t9) + t43
+    gap = t17 * t17 + t44 * t44
+    t45 = L1 * 2.0
+    t46 = np.where(t30, large_left, small_left) * t45 / 2.0
+    M_right = np.where(t36, large_right, small_right) * t45
+    t47 = np.where(t42 * t40 < gap * gap, t32 * t32 - t40, gap - t46 - M_right / 2.0)
+    M_virtual = np.maximum(-t47, 0.0)
+    t48 = np.where(t30, small_left, large_left) * t45 / 2.0
+    N_right = np.where(t36, small_right, large_right) * t45
+    t49 = gap + t48 + N_right / 2.0
+    N_virtual = np.maximum(t49, 0.0)
     whole_virtual = N_virtual + M_virtual
+    ahead_1_virtual = np.where(short_virtual, t31, t32 + fore * 2.0 * M_virtual / whole_virtual)
+    t50 = 2.0 * np.where(0.0 <= -t26, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t50 * np.sqrt(M_virtual) / whole_virtual)
+    t51 = fore * s_bend_virtual
+    t52 = t38 * ahead_1_virtual + r_I * t51
+    out_virtual = r_I * ahead_1_virtual - t38 * t51
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
+    stheta2A = np.where(folded_virtual, t35, -(t52 / norm_virtual))
+    bare_virtual = fore <= t31 * _runtime.VANISHING
+    c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
-    t54 = 2.0 * np.where(0.0 <= -t49, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t54 * np.sqrt(M_virtual) / whole_virtual)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t55 = c2L_half * t8 + s2L_half * t9
-    t56 = t55 * t19
-    t57 = L1 * (t33 + t34)
-    t58 = t23 * t57
-    t59 = t56 - t58
-    t60 = t31 * t55
-    t61 = t35 * t57
-    r_I = t60 + t61
-    folded_virtual = np.sqrt(t59 * t59 + r_I * r_I) <= t28
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t62 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t59 * t62
-    t63 = t59 * ahead_1_virtual + r_I * t62
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t63 * t63)
-    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
-    t64 = s2R_half * c2R_half
-    stheta2A = np.where(folded_virtual, t64 + t64, -(t63 / norm_virtual))
+    ctheta2A = np.where(folded_virtual, t27, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
-    ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
-    t65 = t26 * ctheta23A + t37 * stheta23A
-    t66 = d * d
-    t67 = t65 * t65
-    tilted = np.sqrt(t66 + t67)
-    t68 = t65 / tilted
-    cphi = d / tilted
-    t69 = t26 * stheta23A - t37 * ctheta23A
-    base = np.sqrt(t66 + gap)
-    t70 = t69 / base
-    t71 = cphi * t70
-    t72 = lp * c
-    t73 = base - (gs - al)
-    t74 = gs + al
-    t75 = t74 - base
-    wrist = np.sqrt(np.maximum(t73, 0.0)) * np.sqrt(np.maximum(t75, 0.0))
-    t76 = loff + t72 + wrist
-    t77 = t1 * t68 + t71 * t76
+    ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
+    t53 = t17 * stheta23A - t44 * ctheta23A
+    t54 = d * d
+    base = np.sqrt(t54 + gap)
+    t55 = t53 / base
+    t56 = t17 * ctheta23A + t44 * stheta23A
+    t57 = t56 * t56
+    tilted = np.sqrt(t54 + t57)
+    c_phi = d / tilted
+    t58 = t55 * c_phi
+    t59 = lp * c
+    t60 = base - (gs - al)
+    t61 = gs + al
+    t62 = t61 - base
+    wrist = np.sqrt(np.maximum(t60, 0.0)) * np.sqrt(np.maximum(t62, 0.0))
+    t63 = loff + t59 + wrist
+    t64 = lp * s
+    t65 = t56 / tilted
+    t66 = t58 * t63 + t64 * t65
+    t67 = t55 * t65
+    t68 = t64 * c_phi - t63 * t67
+    t69 = a3 + t68
+    c_psi = tilted / base
+    t70 = t63 * c_psi
+    t71 = L2 + t70
+    outer_33 = ctheta23A * t69 + stheta23A * t71
     outer_32 = L1 * ctheta2A
-    t78 = t68 * t70
-    t79 = t1 * cphi - t76 * t78
-    t80 = a3 + t79
-    cpsi = tilted / base
-    t81 = t76 * cpsi
-    t82 = L2 + t81
-    outer_33 = ctheta23A * t80 + stheta23A * t82
-    t83 = outer_32 + outer_33
-    t84 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t85 = t84 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t86 = t85 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t87 = t86 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t88 = t87 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t89 = t88 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t90 = t89 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t91 = -(_runtime.FEASIBILITY * (d * t27))
-    t92 = -(_runtime.FEASIBILITY * t74)
-    t93 = (t91 <= t51) & (t91 <= t53) & (t92 <= t75) & (t92 <= t73)
-    failed = np.logical_not(t90 & (0.0 <= lp)) | np.logical_not(t93)
-    t94 = _runtime.poison(failed)
-    t95 = cphi * t81
-    t96 = t68 * t81
-    t97 = t70 * t76
-    t98 = ctheta23A * t96 + stheta23A * t97
-    t99 = d * (gs - d / (cphi * cpsi))
-    t100 = t70 * t99
-    t101 = stheta23A * cpsi
-    t102 = t101 - ctheta23A * t78
-    t103 = s1 * t71 + c1 * t102
-    t104 = cphi * wrist * (cpsi * cpsi)
-    t105 = s1 * t95 - c1 * t98 + t100 * t103 / t104
-    t106 = tilted * tilted
-    t107 = 1.0 + t69 * t69 / t106
-    t108 = t69 * t65 / (tilted * t106 * t107)
-    t109 = t29 / 2.0 + t30 / 2.0
-    t110 = t10 * t109
-    t111 = t56 / 2.0
-    gap_13 = t110 + t111
-    t112 = t36 / 2.0
-    t113 = t58 / 2.0
-    t114 = t112 - t113
-    gap_12 = gap_13 + t114
-    t115 = t60 / 2.0
-    t116 = t16 / 2.0 - t18 / 2.0
-    t117 = t10 * t116
-    gap_23 = t115 - t117
-    t118 = t25 / 2.0
-    t119 = t61 / 2.0
-    t120 = t118 + t119
-    gap_22 = gap_23 + t120
-    t121 = t32 / 2.0
-    t122 = t55 * t116
-    mid_13 = t121 + t122
-    mid_12 = mid_13 + t114
-    t123 = L1 * stheta2A
-    t124 = t55 * t109
-    t125 = t20 / 2.0
-    mid_23 = t124 - t125
-    mid_22 = mid_23 + t120
-    t126 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t127 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t128 = L1 * (t126 + t127)
-    rate_22 = (outer_32 * mid_12 + t123 * mid_22) / t128
-    line_12 = ctheta23A * gap_12 + stheta23A * gap_22 + t69 * rate_22
-    turn_12 = 1.0 / (tilted * t107)
-    t129 = ctheta23A * gap_22 - stheta23A * gap_12 + t65 * rate_22
-    t130 = t108 * line_12 + turn_12 * t129
-    t131 = ctheta23A * t77
-    t132 = t68 * t99
-    t133 = cphi * cphi * wrist * cpsi
-    t134 = c1 * t131 - s1 * t79 - t103 * t132 / t133
-    t135 = 1.0 / (d * (1.0 + t67 / t66))
-    t136 = t135 * line_12
-    t137 = c1 * t123
+    t72 = outer_33 + outer_32
+    t73 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t74 = t73 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t75 = t74 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t76 = t75 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t77 = t76 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t78 = t77 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t79 = t78 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t80 = -(_runtime.FEASIBILITY * (d * t31))
+    t81 = -(_runtime.FEASIBILITY * t61)
+    t82 = (t80 <= t49) & (t80 <= -t47) & (t81 <= t62) & (t81 <= t60)
+    failed = np.logical_not(t79 & (0.0 <= lp)) | np.logical_not(t82)
+    t83 = _runtime.poison(failed)
+    t84 = c_phi * t70
+    t85 = t65 * t70
+    t86 = t55 * t63
+    t87 = ctheta23A * t85 + stheta23A * t86
+    t88 = d * (gs - d / (c_phi * c_psi))
+    t89 = t55 * t88
+    t90 = stheta23A * c_psi
+    t91 = t90 - ctheta23A * t67
+    t92 = s1 * t58 + c1 * t91
+    t93 = c_phi * wrist * (c_psi * c_psi)
+    t94 = s1 * t84 - c1 * t87 + t89 * t92 / t93
+    c2R3R = t23 * t27 - t25 * t35
+    s2R3R = t23 * t35 + t25 * t27
+    mid_13 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
+    t95 = L1 * t35 / 2.0 - mid_13
+    mid_23 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
+    mid_22 = L1 * t27 / 2.0 + mid_23
+    t96 = L1 * stheta2A
+    t97 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t98 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t99 = L1 * (t97 + t98)
+    t100 = (outer_32 * t95 - mid_22 * t96) / t99
+    t101 = ctheta23A * t95 - stheta23A * mid_22 + t53 * t100
+    t102 = tilted * tilted
+    t103 = 1.0 + t53 * t53 / t102
+    t104 = t53 * t56 / (tilted * t102 * t103)
+    t105 = ctheta23A * mid_22 + stheta23A * t95 - t56 * t100
+    turn_12 = 1.0 / (tilted * t103)
+    inner_42 = t101 * t104 - t105 * turn_12
+    t106 = ctheta23A * t66
+    t107 = t65 * t88
+    t108 = wrist * c_psi * (c_phi * c_phi)
+    t109 = c1 * t106 - s1 * t68 - t92 * t107 / t108
+    t110 = 1.0 / (d * (1.0 + t57 / t54))
+    inner_52 = t101 * t110
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t138 = L2 * ctheta23A - a3 * stheta23A
-    t139 = (virtual_11 * mid_12 - t138 * mid_22) / t128
-    t140 = ctheta23A * t82 - stheta23A * t80
-    outer_13 = c1 * t140
-    t141 = t105 * t130 + t134 * t136 + t137 * t139 + rate_22 * outer_13
-    t142 = (mid_13 * virtual_11 - mid_23 * t138) / t128
-    rate_23 = (mid_13 * outer_32 + mid_23 * t123) / t128
-    line_13 = gap_13 * ctheta23A + gap_23 * stheta23A + t69 * rate_23
-    t143 = gap_23 * ctheta23A - gap_13 * stheta23A + t65 * rate_23
-    t144 = t108 * line_13 + turn_12 * t143
-    t145 = t135 * line_13
-    t146 = t137 * t142 + t144 * t105 + t145 * t134 + rate_23 * outer_13
-    gap_15 = t110 - t111
-    t147 = t112 + t113
-    gap_14 = gap_15 + t147
-    t148 = t115 + t117
-    t149 = t118 - t119
-    t150 = t148 - t149
-    t151 = t121 - t122
-    t152 = t151 + t147
-    mid_25 = t124 + t125
-    t153 = mid_25 - t149
-    t154 = (outer_32 * t152 - t123 * t153) / t128
-    line_14 = ctheta23A * gap_14 - stheta23A * t150 - t69 * t154
-    t155 = ctheta23A * t150 + stheta23A * gap_14 + t65 * t154
-    t156 = t108 * line_14 - turn_12 * t155
-    t157 = t135 * line_14
-    rate_14 = (virtual_11 * t152 + t138 * t153) / t128
-    t158 = t105 * t156 + t134 * t157 - t137 * rate_14 - outer_13 * t154
-    rate_15 = (t151 * virtual_11 + mid_25 * t138) / t128
-    t159 = (t151 * outer_32 - mid_25 * t123) / t128
-    line_15 = gap_15 * ctheta23A - t148 * stheta23A - t69 * t159
-    line_25 = t148 * ctheta23A + gap_15 * stheta23A + t65 * t159
-    t160 = t108 * line_15 - turn_12 * line_25
-    t161 = t135 * line_15
-    t162 = t137 * rate_15 - t160 * t105 - t161 * t134 + t159 * outer_13
-    t163 = t72 * t68 - t1 * t71
-    t164 = t72 * cphi + t1 * t78
-    t165 = t1 * t101 - ctheta23A * t164
-    outer_23 = s1 * t140
-    t166 = c1 * t71 - s1 * t102
-    outer_24 = c1 * t95 + s1 * t98 + t100 * t166 / t104
-    t167 = s1 * t131 + c1 * t79 + t132 * t166 / t133
-    t168 = s1 * t123
-    t169 = rate_22 * outer_23 - (t130 * outer_24 - t136 * t167 - t168 * t139)
-    t170 = t142 * t168 - t144 * outer_24 + t145 * t167 + rate_23 * outer_23
-    t171 = t156 * outer_24 - t157 * t167 + t168 * rate_14
-    t172 = rate_15 * t168 + t160 * outer_24 - t161 * t167
-    t173 = 0.0 + t94
-    t174 = ctheta23A * cpsi
-    t175 = t174 + stheta23A * t78
-    t176 = stheta23A * t96 - ctheta23A * t97 + t100 * t175 / t104
-    t177 = stheta23A * t77 + t132 * t175 / t133
-    t178 = outer_33 * rate_22 - (t130 * t176 - t136 * t177 + outer_32 * t139)
-    t179 = rate_23 * outer_33 - (outer_32 * t142 + t144 * t176 - t145 * t177)
-    t180 = t156 * t176 - t157 * t177 - outer_32 * rate_14
-    t181 = outer_32 * rate_15 - t160 * t176 + t161 * t177
+    t111 = L2 * ctheta23A - a3 * stheta23A
+    rate_12 = (t95 * virtual_11 + mid_22 * t111) / t99
+    t112 = c1 * t96
+    t113 = t94 * inner_42 + t109 * inner_52 + rate_12 * t112
+    t114 = ctheta23A * t71 - stheta23A * t69
+    outer_13 = c1 * t114
+    rate_23 = (mid_13 * outer_32 + mid_23 * t96) / t99
+    line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t53 * rate_23
+    t115 = mid_23 * ctheta23A - mid_13 * stheta23A + t56 * rate_23
+    t116 = t104 * line_13 + turn_12 * t115
+    t117 = t110 * line_13
+    t118 = (mid_13 * virtual_11 - mid_23 * t111) / t99
+    t119 = t94 * t116 + t109 * t117 + t112 * t118 + outer_13 * rate_23
+    c2L3L = t18 * t22 - t20 * t29
+    s2L3L = t18 * t29 + t20 * t22
+    mid_15 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
+    gap_14 = L1 * t29 / 2.0 - mid_15
+    mid_25 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
+    mid_24 = L1 * t22 / 2.0 + mid_25
+    t120 = (outer_32 * gap_14 - t96 * mid_24) / t99
+    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t53 * t120
+    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t56 * t120
+    t121 = t104 * line_14 - turn_12 * line_24
+    t122 = t110 * line_14
+    rate_14 = (virtual_11 * gap_14 + t111 * mid_24) / t99
+    t123 = t94 * t121 + t109 * t122 - t112 * rate_14 - outer_13 * t120
+    rate_25 = (mid_15 * outer_32 + mid_25 * t96) / t99
+    t124 = mid_15 * ctheta23A + mid_25 * stheta23A - t53 * rate_25
+    line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t56 * rate_25
+    inner_45 = t104 * t124 + turn_12 * line_25
+    inner_55 = t110 * t124
+    t125 = (mid_15 * virtual_11 - mid_25 * t111) / t99
+    t126 = t94 * inner_45 + t109 * inner_55 - t112 * t125
+    t127 = t64 * t58 - t59 * t65
+    t128 = t59 * c_phi + t64 * t67
+    t129 = t64 * t90 - ctheta23A * t128
+    t130 = c1 * t58 - s1 * t91
+    outer_24 = c1 * t84 + s1 * t87 + t89 * t130 / t93
+    t131 = s1 * t106 + c1 * t68 + t107 * t130 / t108
+    t132 = s1 * t96
+    t133 = inner_42 * outer_24 - inner_52 * t131 - rate_12 * t132
+    outer_23 = s1 * t114
+    t134 = rate_23 * outer_23 - (t116 * outer_24 - t117 * t131 - t118 * t132)
+    t135 = t121 * outer_24 - t122 * t131 + rate_14 * t132
+    t136 = inner_45 * outer_24 - inner_55 * t131 + t125 * t132
+    t137 = 0.0 + t83
+    t138 = ctheta23A * c_psi
+    t139 = t138 + stheta23A * t67
+    t140 = stheta23A * t85 - ctheta23A * t86 + t89 * t139 / t93
+    t141 = stheta23A * t66 + t107 * t139 / t108
+    t142 = inner_42 * t140 - inner_52 * t141 + outer_32 * rate_12
+    t143 = outer_33 * rate_23 - (t116 * t140 - t117 * t141 + outer_32 * t118)
+    t144 = t121 * t140 - t122 * t141 - outer_32 * rate_14
+    t145 = inner_45 * t140 - inner_55 * t141 - outer_32 * t125
     return (
-        c1 * t77 - s1 * t83 + t94,
-        t141 + t94,
-        t146 + t94,
-        t158 + t94,
-        -t162 + t94,
-        s1 * t163 - c1 * t165 + t94,
-        s1 * t77 + c1 * t83 + t94,
-        t169 + t94,
-        t170 + t94,
-        -(t171 + t154 * outer_23) + t94,
-        -(t172 + t159 * outer_23) + t94,
-        -(c1 * t163 + s1 * t165) + t94,
-        t173,
-        t178 + t94,
-        t179 + t94,
-        -(t180 + outer_33 * t154) + t94,
-        t181 - t159 * outer_33 + t94,
-        t1 * t174 + stheta23A * t164 + t94,
-        t173,
-        -t130 + t94,
-        -t144 + t94,
-        -t156 + t94,
-        -t160 + t94,
-        t173,
-        t173,
-        -t136 + t94,
-        -t145 + t94,
-        -t157 + t94,
-        -t161 + t94,
-        t173,
-        t173,
-        t173,
-        t173,
-        t173,
-        t173,
-        1.0 + t94,
+        c1 * t66 - s1 * t72 + t83,
+        -(t113 + t100 * outer_13) + t83,
+        t119 + t83,
+        t123 + t83,
+        outer_13 * rate_25 - t126 + t83,
+        -(s1 * t127 + c1 * t129) + t83,
+        s1 * t66 + c1 * t72 + t83,
+        t133 - t100 * outer_23 + t83,
+        t134 + t83,
+        -(t135 + t120 * outer_23) + t83,
+        t136 + rate_25 * outer_23 + t83,
+        c1 * t127 - s1 * t129 + t83,
+        t137,
+        t142 - outer_33 * t100 + t83,
+        t143 + t83,
+        -(t144 + outer_33 * t120) + t83,
+        t145 + outer_33 * rate_25 + t83,
+        t64 * t138 + stheta23A * t128 + t83,
+        t137,
+        inner_42 + t83,
+        -t116 + t83,
+        -t121 + t83,
+        inner_45 + t83,
+        t137,
+        t137,
+        inner_52 + t83,
+        -t117 + t83,
+        -t122 + t83,
+        inner_55 + t83,
+        t137,
+        t137,
+        t137,
+        t137,
+        t137,
+        t137,
+        1.0 + t83,
     )
 
 
@@ -880,110 +854,108 @@ def _determinant(
     s2R3R = t10 * t9 + t12 * t13
     c2R3R = t10 * t13 - t12 * t9
     t14 = L2 * (t9 * s2R3R + t13 * c2R3R) + a3 * (t9 * c2R3R - t13 * s2R3R)
-    t15 = c3R_half * c3L_half
-    t16 = s3R_half * s3L_half
-    t17 = t15 + t16
-    t18 = c3R_half * s3L_half
-    t19 = s3R_half * c3L_half
-    t20 = t18 - t19
-    t21 = c2R_half * t17 + s2R_half * t20
-    t22 = s2R_half * t17 - c2R_half * t20
-    t23 = c2L_half * t21 + s2L_half * t22
-    t24 = t15 - t16
-    t25 = t18 + t19
-    t26 = c2R_half * t24 - s2R_half * t25
-    t27 = s2R_half * t24 + c2R_half * t25
-    t28 = c2L_half * t26 - s2L_half * t27
-    t29 = s2L_half * t26 + c2L_half * t27
-    t30 = L2 * t28 - a3 * t29
-    t31 = s2L_half * c2R_half
-    t32 = c2L_half * s2R_half
-    t33 = t31 + t32
-    t34 = c2L_half * c2R_half
-    t35 = s2L_half * s2R_half
-    t36 = L1 * (t34 + t35)
-    t37 = t23 * t30 - t33 * t36
-    t38 = L2 * t29 + a3 * t28
-    t39 = t34 - t35
-    r_I = t38 * t23 + t39 * t36
-    fore = np.sqrt(L2 * L2 + a3 * a3)
-    t40 = L1 + fore
-    t41 = t40 * _runtime.VANISHING
-    folded_virtual = np.sqrt(t37 * t37 + r_I * r_I) <= t41
-    short_virtual = L1 * fore <= _runtime.VANISHING * (t40 * t40)
-    t42 = s2L_half * t21 - c2L_half * t22
-    t43 = L1 * (t31 - t32)
-    t44 = t42 * t30 - t33 * t43
-    t45 = t38 * t42 + t39 * t43
-    gap = t44 * t44 + t45 * t45
+    t15 = L2 * t3 - a3 * t5
+    t16 = L2 * t10 - a3 * t12
     straight_left = L2 * t5 + a3 * t3
-    t46 = 0.0 <= straight_left
-    t47 = L2 * t3 - a3 * t5
-    large_left = fore + np.where(t46, straight_left, -straight_left)
-    small_left = t47 * t47 / large_left
-    t48 = L1 * 2.0
-    t49 = np.where(t46, small_left, large_left) * t48 / 2.0
+    t17 = 0.0 <= straight_left
+    fore = np.sqrt(L2 * L2 + a3 * a3)
+    t18 = L1 + fore
+    large_left = fore + np.where(t17, straight_left, -straight_left)
+    small_left = t15 * t15 / large_left
+    t19 = L1 - fore
+    end_left = np.where(t17, t18 - small_left, small_left + t19)
+    t20 = t15 * t6 / 2.0 + t16 * t13 / 2.0 - t2 * end_left / 2.0
     straight_right = L2 * t12 + a3 * t10
-    t50 = 0.0 <= straight_right
-    t51 = L2 * t10 - a3 * t12
-    t52 = np.where(t50, straight_right, -straight_right)
-    large_right = fore + t52
-    small_right = t51 * t51 / large_right
-    N_right = np.where(t50, small_right, large_right) * t48
-    t53 = gap + t49 + N_right / 2.0
-    N_virtual = np.maximum(t53, 0.0)
-    M_right = np.where(t50, large_right, small_right) * t48
-    t54 = np.where(t46, large_left, small_left) * t48 / 2.0
-    t55 = M_right / 2.0 - (gap - t54)
-    M_virtual = np.maximum(t55, 0.0)
+    t21 = 0.0 <= straight_right
+    t22 = np.where(t21, straight_right, -straight_right)
+    large_right = fore + t22
+    small_right = t16 * t16 / large_right
+    end_right = np.where(t21, t18 - small_right, small_right + t19)
+    t23 = t20 - t9 * end_right / 2.0
+    t24 = t15 * t2 / 2.0 + t16 * t9 / 2.0 + t6 * end_left / 2.0
+    r_I = t24 + t13 * end_right / 2.0
+    t25 = t23 * t23 + r_I * r_I
+    t26 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t25) <= t26
+    t27 = t18 * t18
+    short_virtual = L1 * fore <= t27 * _runtime.VANISHING
+    t28 = c3R_half * c3L_half
+    t29 = s3R_half * s3L_half
+    t30 = t28 - t29
+    t31 = c3R_half * s3L_half
+    t32 = s3R_half * c3L_half
+    t33 = t31 + t32
+    t34 = c2R_half * t30 - s2R_half * t33
+    t35 = s2R_half * t30 + c2R_half * t33
+    t36 = c2L_half * t34 - s2L_half * t35
+    t37 = s2L_half * t34 + c2L_half * t35
+    t38 = t28 + t29
+    t39 = t31 - t32
+    t40 = s2L_half * (c2R_half * t38 + s2R_half * t39) - c2L_half * (s2R_half * t38 - c2R_half * t39)
+    t41 = s2L_half * c2R_half
+    t42 = c2L_half * s2R_half
+    t43 = L1 * (t41 - t42)
+    t44 = (L2 * t36 - a3 * t37) * t40 - (t41 + t42) * t43
+    t45 = (c2L_half * c2R_half - s2L_half * s2R_half) * t43
+    t46 = t40 * (L2 * t37 + a3 * t36) + t45
+    gap = t44 * t44 + t46 * t46
+    t47 = L1 * 2.0
+    t48 = np.where(t17, large_left, small_left) * t47 / 2.0
+    M_right = np.where(t21, large_right, small_right) * t47
+    t49 = np.where(t27 * t25 < gap * gap, t19 * t19 - t25, gap - t48 - M_right / 2.0)
+    M_virtual = np.maximum(-t49, 0.0)
+    t50 = np.where(t17, small_left, large_left) * t47 / 2.0
+    N_right = np.where(t21, small_right, large_right) * t47
+    t51 = gap + t50 + N_right / 2.0
+    N_virtual = np.maximum(t51, 0.0)
     whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t56 = 2.0 * np.where(0.0 <= -t51, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t56 * np.sqrt(M_virtual) / whole_virtual)
-    t57 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t37 * t57
-    t58 = t37 * ahead_1_virtual + r_I * t57
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t58 * t58)
+    ahead_1_virtual = np.where(short_virtual, t18, t19 + fore * 2.0 * M_virtual / whole_virtual)
+    t52 = 2.0 * np.where(0.0 <= -t16, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t52 * np.sqrt(M_virtual) / whole_virtual)
+    t53 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t23 * t53
+    t54 = t23 * ahead_1_virtual + r_I * t53
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
     ctheta2A = np.where(folded_virtual, t13, out_virtual / norm_virtual)
-    bare_virtual = fore <= t41
+    bare_virtual = fore <= t18 * _runtime.VANISHING
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    stheta2A = np.where(folded_virtual, t9, -(t58 / norm_virtual))
+    stheta2A = np.where(folded_virtual, t9, -(t54 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t59 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t60 = d * d
-    t61 = t44 * ctheta23A + t45 * stheta23A
-    tilted = np.sqrt(t60 + t61 * t61)
-    base = np.sqrt(t60 + gap)
-    t62 = base - (gs - al)
-    t63 = gs + al
-    t64 = t63 - base
-    wrist = np.sqrt(np.maximum(t62, 0.0)) * np.sqrt(np.maximum(t64, 0.0))
-    t65 = loff + lp * c + wrist
-    t66 = L2 + tilted / base * t65
-    t67 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    t68 = t61 / tilted * t65 * ((t44 * stheta23A - t45 * ctheta23A) / base)
-    t69 = a3 + lp * s * (d / tilted) - t68
-    t70 = d * (L1 * L1) * t7 * t14 * (t59 * t66 + t67 * t69)
-    t71 = L1 * ctheta2A + ctheta23A * t69 + stheta23A * t66
-    t72 = 4.0 * tilted * (L2 * t59 + a3 * t67) * (base * base)
-    t73 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t74 = t73 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t75 = t74 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t76 = t75 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t77 = t76 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t78 = t77 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t79 = t78 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t80 = -(_runtime.FEASIBILITY * (d * t40))
-    t81 = -(_runtime.FEASIBILITY * t63)
-    t82 = (t80 <= t53) & (t80 <= t55) & (t81 <= t64) & (t81 <= t62)
-    failed = np.logical_not(t79 & (0.0 <= lp)) | np.logical_not(t82)
+    t55 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t56 = d * d
+    t57 = t44 * ctheta23A + t46 * stheta23A
+    tilted = np.sqrt(t56 + t57 * t57)
+    base = np.sqrt(t56 + gap)
+    t58 = base - (gs - al)
+    t59 = gs + al
+    t60 = t59 - base
+    wrist = np.sqrt(np.maximum(t58, 0.0)) * np.sqrt(np.maximum(t60, 0.0))
+    t61 = loff + lp * c + wrist
+    t62 = L2 + tilted / base * t61
+    t63 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t64 = t61 * ((t44 * stheta23A - t46 * ctheta23A) / base)
+    t65 = a3 + lp * s * (d / tilted) - t64 * (t57 / tilted)
+    t66 = d * (L1 * L1) * t7 * t14 * (t55 * t62 + t63 * t65)
+    t67 = L1 * ctheta2A + ctheta23A * t65 + stheta23A * t62
+    t68 = 4.0 * tilted * (base * base) * (L2 * t55 + a3 * t63)
+    t69 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t70 = t69 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t71 = t70 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t72 = t71 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t73 = t72 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t74 = t73 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t75 = t74 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t76 = -(_runtime.FEASIBILITY * (d * t18))
+    t77 = -(_runtime.FEASIBILITY * t59)
+    t78 = (t76 <= t51) & (t76 <= -t49) & (t77 <= t60) & (t77 <= t58)
+    failed = np.logical_not(t75 & (0.0 <= lp)) | np.logical_not(t78)
     return (
-        t70 * t71 / t72 + _runtime.poison(failed),
+        t66 * t67 / t68 + _runtime.poison(failed),
     )
 
 
@@ -1014,137 +986,135 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 def _singularities(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
     s, c = _runtime.sincos(theta)
-    t1 = c3R_half * c3L_half
-    t2 = s3R_half * s3L_half
-    t3 = t1 + t2
-    t4 = c3R_half * s3L_half
-    t5 = s3R_half * c3L_half
-    t6 = t4 - t5
-    t7 = c2R_half * t3 + s2R_half * t6
-    t8 = s2R_half * t3 - c2R_half * t6
-    t9 = c2L_half * t7 + s2L_half * t8
-    t10 = t1 - t2
-    t11 = t4 + t5
-    t12 = c2R_half * t10 - s2R_half * t11
-    t13 = s2R_half * t10 + c2R_half * t11
-    t14 = c2L_half * t12 - s2L_half * t13
-    t15 = s2L_half * t12 + c2L_half * t13
-    t16 = L2 * t14 - a3 * t15
-    t17 = s2L_half * c2R_half
-    t18 = c2L_half * s2R_half
-    t19 = t17 + t18
-    t20 = c2L_half * c2R_half
-    t21 = s2L_half * s2R_half
-    t22 = L1 * (t20 + t21)
-    t23 = t9 * t16 - t19 * t22
-    t24 = L2 * t15 + a3 * t14
-    t25 = t20 - t21
-    r_I = t24 * t9 + t25 * t22
+    t1 = c3L_half * c3L_half - s3L_half * s3L_half
+    t2 = s3L_half * c3L_half
+    t3 = t2 + t2
+    t4 = L2 * t1 - a3 * t3
+    t5 = c2L_half * c2L_half - s2L_half * s2L_half
+    t6 = c3R_half * c3R_half - s3R_half * s3R_half
+    t7 = s3R_half * c3R_half
+    t8 = t7 + t7
+    t9 = L2 * t6 - a3 * t8
+    t10 = c2R_half * c2R_half - s2R_half * s2R_half
+    t11 = s2L_half * c2L_half
+    t12 = t11 + t11
+    straight_left = L2 * t3 + a3 * t1
+    t13 = 0.0 <= straight_left
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t26 = L1 + fore
-    t27 = t26 * _runtime.VANISHING
-    folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t27
-    t28 = c2R_half * c2R_half - s2R_half * s2R_half
-    short_virtual = L1 * fore <= _runtime.VANISHING * (t26 * t26)
-    t29 = s2L_half * t7 - c2L_half * t8
-    t30 = L1 * (t17 - t18)
-    t31 = t29 * t16 - t19 * t30
-    t32 = t24 * t29 + t25 * t30
-    gap = t31 * t31 + t32 * t32
-    t33 = s3L_half * c3L_half
-    t34 = t33 + t33
-    t35 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t34 + a3 * t35
-    t36 = 0.0 <= straight_left
-    t37 = L2 * t35 - a3 * t34
-    large_left = fore + np.where(t36, straight_left, -straight_left)
-    small_left = t37 * t37 / large_left
-    t38 = L1 * 2.0
-    t39 = np.where(t36, small_left, large_left) * t38 / 2.0
-    t40 = s3R_half * c3R_half
-    t41 = t40 + t40
-    t42 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t41 + a3 * t42
-    t43 = 0.0 <= straight_right
-    t44 = L2 * t42 - a3 * t41
-    t45 = np.where(t43, straight_right, -straight_right)
-    large_right = fore + t45
-    small_right = t44 * t44 / large_right
-    N_right = np.where(t43, small_right, large_right) * t38
-    t46 = gap + t39 + N_right / 2.0
-    N_virtual = np.maximum(t46, 0.0)
-    M_right = np.where(t43, large_right, small_right) * t38
-    t47 = np.where(t36, large_left, small_left) * t38 / 2.0
-    t48 = M_right / 2.0 - (gap - t47)
-    M_virtual = np.maximum(t48, 0.0)
+    t14 = L1 + fore
+    large_left = fore + np.where(t13, straight_left, -straight_left)
+    small_left = t4 * t4 / large_left
+    t15 = L1 - fore
+    end_left = np.where(t13, t14 - small_left, small_left + t15)
+    t16 = t4 * t5 / 2.0 + t9 * t10 / 2.0 - t12 * end_left / 2.0
+    t17 = s2R_half * c2R_half
+    t18 = t17 + t17
+    straight_right = L2 * t8 + a3 * t6
+    t19 = 0.0 <= straight_right
+    t20 = np.where(t19, straight_right, -straight_right)
+    large_right = fore + t20
+    small_right = t9 * t9 / large_right
+    end_right = np.where(t19, t14 - small_right, small_right + t15)
+    t21 = t16 - t18 * end_right / 2.0
+    t22 = t4 * t12 / 2.0 + t9 * t18 / 2.0 + t5 * end_left / 2.0
+    r_I = t22 + t10 * end_right / 2.0
+    t23 = t21 * t21 + r_I * r_I
+    t24 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t23) <= t24
+    t25 = t14 * t14
+    short_virtual = L1 * fore <= t25 * _runtime.VANISHING
+    t26 = c3R_half * c3L_half
+    t27 = s3R_half * s3L_half
+    t28 = t26 - t27
+    t29 = c3R_half * s3L_half
+    t30 = s3R_half * c3L_half
+    t31 = t29 + t30
+    t32 = c2R_half * t28 - s2R_half * t31
+    t33 = s2R_half * t28 + c2R_half * t31
+    t34 = c2L_half * t32 - s2L_half * t33
+    t35 = s2L_half * t32 + c2L_half * t33
+    t36 = t26 + t27
+    t37 = t29 - t30
+    t38 = s2L_half * (c2R_half * t36 + s2R_half * t37) - c2L_half * (s2R_half * t36 - c2R_half * t37)
+    t39 = s2L_half * c2R_half
+    t40 = c2L_half * s2R_half
+    t41 = L1 * (t39 - t40)
+    t42 = (L2 * t34 - a3 * t35) * t38 - (t39 + t40) * t41
+    t43 = (c2L_half * c2R_half - s2L_half * s2R_half) * t41
+    t44 = t38 * (L2 * t35 + a3 * t34) + t43
+    gap = t42 * t42 + t44 * t44
+    t45 = L1 * 2.0
+    t46 = np.where(t13, large_left, small_left) * t45 / 2.0
+    M_right = np.where(t19, large_right, small_right) * t45
+    t47 = np.where(t25 * t23 < gap * gap, t15 * t15 - t23, gap - t46 - M_right / 2.0)
+    M_virtual = np.maximum(-t47, 0.0)
+    t48 = np.where(t13, small_left, large_left) * t45 / 2.0
+    N_right = np.where(t19, small_right, large_right) * t45
+    t49 = gap + t48 + N_right / 2.0
+    N_virtual = np.maximum(t49, 0.0)
     whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t49 = 2.0 * np.where(0.0 <= -t44, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t49 * np.sqrt(M_virtual) / whole_virtual)
-    t50 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t23 * t50
-    t51 = t23 * ahead_1_virtual + r_I * t50
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
-    ctheta2A = np.where(folded_virtual, t28, out_virtual / norm_virtual)
-    bare_virtual = fore <= t27
+    ahead_1_virtual = np.where(short_virtual, t14, t15 + fore * 2.0 * M_virtual / whole_virtual)
+    t50 = 2.0 * np.where(0.0 <= -t9, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t50 * np.sqrt(M_virtual) / whole_virtual)
+    t51 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t21 * t51
+    t52 = t21 * ahead_1_virtual + r_I * t51
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
+    ctheta2A = np.where(folded_virtual, t10, out_virtual / norm_virtual)
+    bare_virtual = fore <= t14 * _runtime.VANISHING
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
+    c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t52 = s2R_half * c2R_half
-    t53 = t52 + t52
-    stheta2A = np.where(folded_virtual, t53, -(t51 / norm_virtual))
+    stheta2A = np.where(folded_virtual, t18, -(t52 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t54 = d * d
+    t53 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t55 = t31 * ctheta23A + t32 * stheta23A
-    tilted = np.sqrt(t54 + t55 * t55)
-    base = np.sqrt(t54 + gap)
-    t56 = t55 / tilted * ((t31 * stheta23A - t32 * ctheta23A) / base)
-    t57 = base - (gs - al)
-    t58 = gs + al
-    t59 = t58 - base
-    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
-    t60 = loff + lp * c + wrist
-    t61 = a3 + lp * s * (d / tilted) - t56 * t60
-    t62 = L2 + t60 * (tilted / base)
-    t63 = L1 * ctheta2A + ctheta23A * t61 + stheta23A * t62
-    t64 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t65 = t64 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t66 = t65 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t67 = t66 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t68 = t67 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t69 = t68 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t70 = t69 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t71 = -(_runtime.FEASIBILITY * (d * t26))
-    t72 = -(_runtime.FEASIBILITY * t58)
-    t73 = (t71 <= t46) & (t71 <= t48) & (t72 <= t59) & (t72 <= t57)
-    failed = np.logical_not(t70 & (0.0 <= lp)) | np.logical_not(t73)
-    t74 = _runtime.poison(failed)
-    t75 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t76 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    s2R3R = t42 * t53 + t41 * t28
-    c2R3R = t42 * t28 - t41 * t53
-    t77 = L2 * (t53 * s2R3R + t28 * c2R3R) + a3 * (t53 * c2R3R - t28 * s2R3R)
-    t78 = s2L_half * c2L_half
-    t79 = t78 + t78
-    t80 = c2L_half * c2L_half - s2L_half * s2L_half
-    s2L3L = t35 * t79 + t34 * t80
-    c2L3L = t35 * t80 - t34 * t79
-    t81 = L2 * (t79 * s2L3L + t80 * c2L3L) + a3 * (t79 * c2L3L - t80 * s2L3L)
+    t54 = t42 * ctheta23A + t44 * stheta23A
+    tilted = np.sqrt(t53 + t54 * t54)
+    base = np.sqrt(t53 + gap)
+    t55 = (t42 * stheta23A - t44 * ctheta23A) / base * (t54 / tilted)
+    t56 = base - (gs - al)
+    t57 = gs + al
+    t58 = t57 - base
+    wrist = np.sqrt(np.maximum(t56, 0.0)) * np.sqrt(np.maximum(t58, 0.0))
+    t59 = loff + lp * c + wrist
+    t60 = a3 + lp * s * (d / tilted) - t55 * t59
+    t61 = L2 + t59 * (tilted / base)
+    t62 = L1 * ctheta2A + ctheta23A * t60 + stheta23A * t61
+    t63 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t64 = t63 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t65 = t64 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t66 = t65 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t67 = t66 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t68 = t67 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t69 = t68 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t70 = -(_runtime.FEASIBILITY * (d * t14))
+    t71 = -(_runtime.FEASIBILITY * t57)
+    t72 = (t70 <= t49) & (t70 <= -t47) & (t71 <= t58) & (t71 <= t56)
+    failed = np.logical_not(t69 & (0.0 <= lp)) | np.logical_not(t72)
+    t73 = _runtime.poison(failed)
+    t74 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t75 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    s2R3R = t6 * t18 + t8 * t10
+    c2R3R = t6 * t10 - t8 * t18
+    t76 = L2 * (t18 * s2R3R + t10 * c2R3R) + a3 * (t18 * c2R3R - t10 * s2R3R)
+    s2L3L = t1 * t12 + t3 * t5
+    c2L3L = t1 * t5 - t3 * t12
+    t77 = L2 * (t12 * s2L3L + t5 * c2L3L) + a3 * (t12 * c2L3L - t5 * s2L3L)
     return (
-        t63 + t74,
-        t75 * t62 + t76 * t61 + t74,
-        t77 + t74,
-        t81 + t74,
-        L2 * t75 + a3 * t76 + t74,
-        wrist + t74,
+        t62 + t73,
+        t61 * t74 + t60 * t75 + t73,
+        t76 + t73,
+        t77 + t73,
+        L2 * t74 + a3 * t75 + t73,
+        wrist + t73,
     )
 
 
@@ -1286,457 +1256,460 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t68 = d * t67
     gap = t66 * t66 + t68 * t68
     t69 = t46 * np.where(t63, small, large) - gap
-    point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
-    point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t70 = 2.0 * t66 * point_11 + 2.0 * t68 * point_21
-    t71 = t69 + t70
-    t72 = gap + t46 * np.where(t63, large, small)
-    t73 = t72 - t70
-    t74 = t69 - t70
-    t75 = t42 & (t45 <= t71) & (t45 <= t73) & (t45 <= t74)
-    t76 = t70 + t72
-    unreachable = np.logical_not(t75 & (t45 <= t76))
-    t77 = _runtime.poison(invalid | unreachable)
-    t78 = t16 + t77
-    t79 = t68 - point_21
-    t80 = t66 - point_11
-    t81 = _runtime.VANISHING * t43
-    folded_right = np.sqrt(t79 * t79 + t80 * t80) <= t81
-    t82 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * (t43 * t43)
-    t83 = 2.0 * np.where(0.0 <= -t64, 1.0, -1.0)
-    t84 = _runtime.VANISHING * (_runtime.VANISHING * (t44 * 16.0))
-    N_right = np.maximum(t71, t84)
-    rN_right = np.sqrt(N_right)
-    M_right = np.maximum(t73, t84)
-    rM_right = np.sqrt(M_right)
-    whole_right = N_right + M_right
-    s_bend_right = np.where(short_right, 0.0, t83 * rN_right * rM_right / whole_right)
-    t85 = fore_arm * s_bend_right
-    c_bend_right = np.where(short_right, 1.0, -((N_right - M_right) / whole_right))
-    ahead_1_right = L1 + fore_arm * c_bend_right
-    t86 = np.arctan2(t80 * t85 - t79 * ahead_1_right, -(t80 * ahead_1_right + t79 * t85))
-    t87 = _runtime.wrap(np.where(folded_right, t82, t86))
-    t88 = t87 + t77
-    bare_right = fore_arm <= t81
-    t89 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
-    t90 = np.where(short_right, 0.0, t83 * np.arctan2(rN_right, rM_right))
-    t91 = _runtime.wrap(t89 + t90) + t77
-    h_left = t68 + point_21
+    t70 = L1 - fore_arm
+    end = np.where(t63, t43 - small, t70 + small)
+    point_11 = stheta2A * t64 + ctheta2A * end
+    t71 = ctheta2A * t64 - stheta2A * end
+    t72 = 2.0 * t66 * point_11 - 2.0 * t68 * t71
+    t73 = t69 + t72
+    t74 = t43 * t43
+    t75 = t68 + t71
+    t76 = t66 - point_11
+    t77 = t75 * t75 + t76 * t76
+    t78 = gap * gap
+    t79 = t70 * t70
+    t80 = gap + t46 * np.where(t63, large, small)
+    t81 = np.where(t74 * t77 < t78, t79 - t77, t72 - t80)
+    t82 = t69 - t72
+    t83 = t42 & (t45 <= t73) & (t45 <= -t81) & (t45 <= t82)
+    t84 = t68 - t71
     r_left = t66 + point_11
-    folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t81
-    N_left = np.maximum(t74, 0.0)
-    M_left = np.maximum(t76, 0.0)
-    whole_left = N_left + M_left
-    c_bend_left = np.where(short_right, 1.0, -((N_left - M_left) / whole_left))
-    ahead_1_left = L1 + fore_arm * c_bend_left
-    t92 = h_left * ahead_1_left
+    t85 = t84 * t84 + r_left * r_left
+    t86 = np.where(t74 * t85 < t78, t85 - t79, t72 + t80)
+    unreachable = np.logical_not(t83 & (t45 <= t86))
+    t87 = _runtime.poison(invalid | unreachable)
+    t88 = t16 + t87
+    t89 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.sqrt(t77) <= t89
+    t90 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t74
+    t91 = 2.0 * fore_arm
+    t92 = _runtime.VANISHING * (_runtime.VANISHING * (t44 * 16.0))
+    M_right = np.maximum(-t81, t92)
+    N_right = np.maximum(t73, t92)
+    whole_right = M_right + N_right
+    ahead_1_right = np.where(short_right, t43, t70 + t91 * M_right / whole_right)
+    t93 = 2.0 * np.where(0.0 <= -t64, 1.0, -1.0)
+    rN_right = np.sqrt(N_right)
+    rM_right = np.sqrt(M_right)
+    s_bend_right = np.where(short_right, 0.0, t93 * rN_right * rM_right / whole_right)
+    t94 = fore_arm * s_bend_right
+    t95 = np.arctan2(t75 * ahead_1_right - t76 * t94, -(t76 * ahead_1_right + t75 * t94))
+    t96 = _runtime.wrap(np.where(folded_right, t90, -t95))
+    t97 = t96 + t87
+    bare_right = fore_arm <= _runtime.VANISHING * t43
+    t98 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
+    t99 = np.where(short_right, 0.0, t93 * np.arctan2(rN_right, rM_right))
+    t100 = _runtime.wrap(t98 + t99) + t87
+    folded_left = np.sqrt(t85) <= t89
+    N_left = np.maximum(t82, 0.0)
     rN_left = np.sqrt(N_left)
+    M_left = np.maximum(t86, 0.0)
     rM_left = np.sqrt(M_left)
-    s_bend_left = np.where(short_right, 0.0, t83 * rN_left * rM_left / whole_left)
-    t93 = fore_arm * s_bend_left
-    t94 = r_left * t93
-    t95 = r_left * ahead_1_left
-    t96 = h_left * t93
-    t97 = np.where(folded_left, t82, np.arctan2(t92 - t94, t95 + t96))
-    t98 = np.where(short_right, 0.0, t83 * np.arctan2(rN_left, rM_left))
-    t99 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    t100 = t99 + t77
-    t101 = np.where(folded_left, t82, np.arctan2(t92 + t94, t95 - t96))
+    whole_left = M_left + N_left
+    s_bend_left = np.where(short_right, 0.0, t93 * rN_left * rM_left / whole_left)
+    t101 = fore_arm * s_bend_left
+    t102 = r_left * t101
+    ahead_1_left = np.where(short_right, t43, t70 + t91 * M_left / whole_left)
+    t103 = t84 * ahead_1_left
+    t104 = r_left * ahead_1_left
+    t105 = t84 * t101
+    t106 = np.where(folded_left, t90, -np.arctan2(t102 - t103, t104 + t105))
+    t107 = np.where(short_right, 0.0, t93 * np.arctan2(rN_left, rM_left))
+    t108 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
+    t109 = t108 + t87
+    t110 = np.where(folded_left, t90, -np.arctan2(-(t103 + t102), t104 - t105))
     stheta2A_front_elbow_down_alike = t51 - t52
     ctheta2A_front_elbow_down_alike = t53 + t54
     c_relative_front_elbow_down_alike = t57 - t58
-    t102 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t111 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
     s_relative_front_elbow_down_alike = t59 + t60
-    t103 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t102 - t103
-    t104 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t105 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t106 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t105 + t106
-    t107 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t108 = t104 - t107
-    t109 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t110 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t109 + t110
-    t111 = L2 * t108 - a3 * c_elbow_front_elbow_down_alike
-    t112 = 0.0 <= -t111
-    t113 = L2 * c_elbow_front_elbow_down_alike + a3 * t108
-    large_front_elbow_down_alike = fore_arm + np.where(t112, -t111, t111)
-    small_front_elbow_down_alike = t113 * t113 / large_front_elbow_down_alike
-    t114 = np.where(t112, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    t115 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t116 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t117 = d * (t115 - t116)
-    t118 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t119 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t120 = d * (t118 + t119)
-    gap_front_elbow_down_alike = t117 * t117 + t120 * t120
-    t121 = t46 * t114 - gap_front_elbow_down_alike
-    t122 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t122 + a3 * ctheta23A_front_elbow_down_alike
-    t123 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t123 + a3 * stheta23A_front_elbow_down_alike
-    t124 = 2.0 * t117 * point_11_front_elbow_down_alike + 2.0 * t120 * point_21_front_elbow_down_alike
-    t125 = t121 + t124
-    t126 = np.where(t112, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    t127 = gap_front_elbow_down_alike + t46 * t126
-    t128 = t127 - t124
-    t129 = t121 - t124
-    t130 = t42 & (t45 <= t125) & (t45 <= t128) & (t45 <= t129)
-    t131 = t124 + t127
-    unreachable_2 = np.logical_not(t130 & (t45 <= t131))
-    t132 = _runtime.poison(invalid | unreachable_2)
-    t133 = t16 + t132
-    t134 = t120 - point_21_front_elbow_down_alike
-    t135 = t117 - point_11_front_elbow_down_alike
-    folded_right_front_elbow_down_alike = np.sqrt(t134 * t134 + t135 * t135) <= t81
-    t136 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    t137 = 2.0 * np.where(0.0 <= -t113, 1.0, -1.0)
-    N_right_front_elbow_down_alike = np.maximum(t125, t84)
+    t112 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t111 - t112
+    t113 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t114 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t115 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t114 + t115
+    t116 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t117 = t113 - t116
+    t118 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t119 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t118 + t119
+    t120 = L2 * t117 - a3 * c_elbow_front_elbow_down_alike
+    t121 = 0.0 <= -t120
+    t122 = L2 * c_elbow_front_elbow_down_alike + a3 * t117
+    large_front_elbow_down_alike = fore_arm + np.where(t121, -t120, t120)
+    small_front_elbow_down_alike = t122 * t122 / large_front_elbow_down_alike
+    t123 = np.where(t121, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    t124 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t125 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t126 = d * (t124 - t125)
+    t127 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t128 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t129 = d * (t127 + t128)
+    gap_front_elbow_down_alike = t126 * t126 + t129 * t129
+    t130 = t46 * t123 - gap_front_elbow_down_alike
+    end_front_elbow_down_alike = np.where(t121, t43 - small_front_elbow_down_alike, t70 + small_front_elbow_down_alike)
+    t131 = ctheta2A_front_elbow_down_alike * end_front_elbow_down_alike
+    point_11_front_elbow_down_alike = stheta2A_front_elbow_down_alike * t122 + t131
+    t132 = stheta2A_front_elbow_down_alike * end_front_elbow_down_alike
+    t133 = ctheta2A_front_elbow_down_alike * t122 - t132
+    t134 = 2.0 * t126 * point_11_front_elbow_down_alike - 2.0 * t129 * t133
+    t135 = t130 + t134
+    t136 = t129 + t133
+    t137 = t126 - point_11_front_elbow_down_alike
+    t138 = t136 * t136 + t137 * t137
+    t139 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t140 = np.where(t121, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    t141 = gap_front_elbow_down_alike + t46 * t140
+    t142 = np.where(t74 * t138 < t139, t79 - t138, t134 - t141)
+    t143 = t130 - t134
+    t144 = t42 & (t45 <= t135) & (t45 <= -t142) & (t45 <= t143)
+    t145 = t129 - t133
+    r_left_front_elbow_down_alike = t126 + point_11_front_elbow_down_alike
+    t146 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t147 = t145 * t145 + t146
+    t148 = np.where(t74 * t147 < t139, t147 - t79, t134 + t141)
+    unreachable_2 = np.logical_not(t144 & (t45 <= t148))
+    t149 = _runtime.poison(invalid | unreachable_2)
+    t150 = t16 + t149
+    folded_right_front_elbow_down_alike = np.sqrt(t138) <= t89
+    t151 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    M_right_front_elbow_down_alike = np.maximum(-t142, t92)
+    N_right_front_elbow_down_alike = np.maximum(t135, t92)
+    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
+    t152 = t91 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = np.where(short_right, t43, t70 + t152)
+    t153 = 2.0 * np.where(0.0 <= -t122, 1.0, -1.0)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(t128, t84)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t138 = t137 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    whole_right_front_elbow_down_alike = N_right_front_elbow_down_alike + M_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t138 / whole_right_front_elbow_down_alike)
-    t139 = fore_arm * s_bend_right_front_elbow_down_alike
-    t140 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
-    c_bend_right_front_elbow_down_alike = np.where(short_right, 1.0, -(t140 / whole_right_front_elbow_down_alike))
-    t141 = fore_arm * c_bend_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = L1 + t141
-    up_right_front_elbow_down_alike = t135 * t139 - t134 * ahead_1_right_front_elbow_down_alike
-    t142 = t135 * ahead_1_right_front_elbow_down_alike + t134 * t139
-    t143 = np.arctan2(up_right_front_elbow_down_alike, -t142)
-    t144 = np.where(folded_right_front_elbow_down_alike, t136, t143)
-    t145 = _runtime.wrap(t144) + t132
-    t146 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t147 = t89 + np.where(short_right, 0.0, t137 * t146)
-    t148 = _runtime.wrap(t147) + t132
-    h_left_front_elbow_down_alike = t120 + point_21_front_elbow_down_alike
-    t149 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = t117 + point_11_front_elbow_down_alike
-    t150 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    folded_left_front_elbow_down_alike = np.sqrt(t149 + t150) <= t81
-    N_left_front_elbow_down_alike = np.maximum(t129, 0.0)
-    M_left_front_elbow_down_alike = np.maximum(t131, 0.0)
-    t151 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
-    whole_left_front_elbow_down_alike = N_left_front_elbow_down_alike + M_left_front_elbow_down_alike
-    c_bend_left_front_elbow_down_alike = np.where(short_right, 1.0, -(t151 / whole_left_front_elbow_down_alike))
-    t152 = fore_arm * c_bend_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = L1 + t152
-    t153 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t154 = t153 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t154 / whole_right_front_elbow_down_alike)
+    t155 = fore_arm * s_bend_right_front_elbow_down_alike
+    t156 = t136 * ahead_1_right_front_elbow_down_alike - t137 * t155
+    t157 = t137 * ahead_1_right_front_elbow_down_alike + t136 * t155
+    t158 = np.where(folded_right_front_elbow_down_alike, t151, -np.arctan2(t156, -t157))
+    t159 = _runtime.wrap(t158) + t149
+    t160 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t161 = t98 + np.where(short_right, 0.0, t153 * t160)
+    t162 = _runtime.wrap(t161) + t149
+    folded_left_front_elbow_down_alike = np.sqrt(t147) <= t89
+    N_left_front_elbow_down_alike = np.maximum(t143, 0.0)
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
+    M_left_front_elbow_down_alike = np.maximum(t148, 0.0)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t154 = t137 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t154 / whole_left_front_elbow_down_alike)
-    t155 = fore_arm * s_bend_left_front_elbow_down_alike
-    t156 = r_left_front_elbow_down_alike * t155
-    t157 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t158 = h_left_front_elbow_down_alike * t155
-    t159 = np.where(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 - t156, t157 + t158))
-    t160 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t161 = np.where(short_right, 0.0, t137 * t160)
-    t162 = t99 + t132
-    t163 = np.where(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 + t156, t157 - t158))
-    t164 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
-    t165 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
-    outward_rear_elbow_up_alike = t165 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
-    t166 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t31 + t166)
-    t167 = t28 - reach_rear_elbow_up_alike
-    t168 = reach_rear_elbow_up_alike + t39
-    t169 = reach_rear_elbow_up_alike - t39
-    t170 = t27 & (t29 <= t167) & (t29 <= t168) & (t29 <= t169)
+    t163 = t153 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t163 / whole_left_front_elbow_down_alike)
+    t164 = fore_arm * s_bend_left_front_elbow_down_alike
+    t165 = r_left_front_elbow_down_alike * t164
+    t166 = t91 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = np.where(short_right, t43, t70 + t166)
+    t167 = t145 * ahead_1_left_front_elbow_down_alike
+    t168 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t169 = t145 * t164
+    t170 = np.where(folded_left_front_elbow_down_alike, t151, -np.arctan2(t165 - t167, t168 + t169))
+    t171 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t172 = np.where(short_right, 0.0, t153 * t171)
+    t173 = t108 + t149
+    t174 = np.where(folded_left_front_elbow_down_alike, t151, -np.arctan2(-(t167 + t165), t168 - t169))
+    t175 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
+    t176 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
+    outward_rear_elbow_up_alike = t176 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
+    t177 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t31 + t177)
+    t178 = t28 - reach_rear_elbow_up_alike
+    t179 = reach_rear_elbow_up_alike + t39
+    t180 = reach_rear_elbow_up_alike - t39
+    t181 = t27 & (t29 <= t178) & (t29 <= t179) & (t29 <= t180)
     folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t47
     s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t30 / reach_rear_elbow_up_alike)
-    t171 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t167, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t169, 0.0)
-    t172 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    t182 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t178, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t180, 0.0)
+    t183 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
     S_rear_elbow_up_alike = t28 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t168, 0.0)
-    t173 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t172 + t173
-    t174 = -((t172 - t173) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = np.where(t171, 1.0, t174)
-    t175 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t176 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t176)
-    t177 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t177 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t178 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = np.where(t171, 0.0, t178)
-    t179 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t175 - t179
-    t180 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t181 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t180 + t181
-    t182 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t183 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t182 + t183
-    t184 = -((t182 - t183) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t184)
-    t185 = c_lag * c_bend_rear_elbow_up_alike
-    t186 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t186)
-    t187 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t185 - t187
-    t188 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t189 = s_lag * c_bend_rear_elbow_up_alike
-    t190 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t189 + t190
-    t191 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t188 - t191
-    t192 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t193 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t194 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t193 + t194
-    t195 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t196 = t192 - t195
-    t197 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t198 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t197 + t198
-    t199 = L2 * t196 - a3 * c_elbow_rear_elbow_up_alike
-    t200 = 0.0 <= -t199
-    t201 = L2 * c_elbow_rear_elbow_up_alike + a3 * t196
-    large_rear_elbow_up_alike = fore_arm + np.where(t200, -t199, t199)
-    small_rear_elbow_up_alike = t201 * t201 / large_rear_elbow_up_alike
-    t202 = np.where(t200, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    t203 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t204 = t203 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t205 = d * t204
-    t206 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t207 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t206
-    t208 = d * t207
-    gap_rear_elbow_up_alike = t205 * t205 + t208 * t208
-    t209 = t46 * t202 - gap_rear_elbow_up_alike
-    t210 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t210 + a3 * ctheta23A_rear_elbow_up_alike
-    t211 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t211 + a3 * stheta23A_rear_elbow_up_alike
-    t212 = 2.0 * t205 * point_11_rear_elbow_up_alike + 2.0 * t208 * point_21_rear_elbow_up_alike
-    t213 = t209 + t212
-    t214 = np.where(t200, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    t215 = gap_rear_elbow_up_alike + t46 * t214
-    t216 = t215 - t212
-    t217 = t209 - t212
-    t218 = t170 & (t45 <= t213) & (t45 <= t216) & (t45 <= t217)
-    t219 = t212 + t215
-    unreachable_3 = np.logical_not(t218 & (t45 <= t219))
-    t220 = _runtime.poison(invalid | unreachable_3)
-    t221 = t164 + t220
-    t222 = t208 - point_21_rear_elbow_up_alike
-    t223 = t205 - point_11_rear_elbow_up_alike
-    folded_right_rear_elbow_up_alike = np.sqrt(t222 * t222 + t223 * t223) <= t81
-    t224 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    t225 = 2.0 * np.where(0.0 <= -t201, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t213, t84)
+    B_rear_elbow_up_alike = np.maximum(t179, 0.0)
+    t184 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t183 + t184
+    t185 = -((t183 - t184) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = np.where(t182, 1.0, t185)
+    t186 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t187 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t187)
+    t188 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t188 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t189 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = np.where(t182, 0.0, t189)
+    t190 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t186 - t190
+    t191 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t192 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t191 + t192
+    t193 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t194 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t193 + t194
+    t195 = -((t193 - t194) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t195)
+    t196 = c_lag * c_bend_rear_elbow_up_alike
+    t197 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t197)
+    t198 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t196 - t198
+    t199 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t200 = s_lag * c_bend_rear_elbow_up_alike
+    t201 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t200 + t201
+    t202 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t199 - t202
+    t203 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t204 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t205 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t204 + t205
+    t206 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t207 = t203 - t206
+    t208 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t209 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t208 + t209
+    t210 = L2 * t207 - a3 * c_elbow_rear_elbow_up_alike
+    t211 = 0.0 <= -t210
+    t212 = L2 * c_elbow_rear_elbow_up_alike + a3 * t207
+    large_rear_elbow_up_alike = fore_arm + np.where(t211, -t210, t210)
+    small_rear_elbow_up_alike = t212 * t212 / large_rear_elbow_up_alike
+    t213 = np.where(t211, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    t214 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t215 = t214 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t216 = d * t215
+    t217 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t218 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t217
+    t219 = d * t218
+    gap_rear_elbow_up_alike = t216 * t216 + t219 * t219
+    t220 = t46 * t213 - gap_rear_elbow_up_alike
+    end_rear_elbow_up_alike = np.where(t211, t43 - small_rear_elbow_up_alike, t70 + small_rear_elbow_up_alike)
+    t221 = ctheta2A_rear_elbow_up_alike * end_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = stheta2A_rear_elbow_up_alike * t212 + t221
+    t222 = stheta2A_rear_elbow_up_alike * end_rear_elbow_up_alike
+    t223 = ctheta2A_rear_elbow_up_alike * t212 - t222
+    t224 = 2.0 * t216 * point_11_rear_elbow_up_alike - 2.0 * t219 * t223
+    t225 = t220 + t224
+    t226 = t219 + t223
+    t227 = t216 - point_11_rear_elbow_up_alike
+    t228 = t226 * t226 + t227 * t227
+    t229 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t230 = np.where(t211, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    t231 = gap_rear_elbow_up_alike + t46 * t230
+    t232 = np.where(t74 * t228 < t229, t79 - t228, t224 - t231)
+    t233 = t220 - t224
+    t234 = t181 & (t45 <= t225) & (t45 <= -t232) & (t45 <= t233)
+    t235 = t219 - t223
+    r_left_rear_elbow_up_alike = t216 + point_11_rear_elbow_up_alike
+    t236 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t237 = t235 * t235 + t236
+    t238 = np.where(t74 * t237 < t229, t237 - t79, t224 + t231)
+    unreachable_3 = np.logical_not(t234 & (t45 <= t238))
+    t239 = _runtime.poison(invalid | unreachable_3)
+    t240 = t175 + t239
+    folded_right_rear_elbow_up_alike = np.sqrt(t228) <= t89
+    t241 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    M_right_rear_elbow_up_alike = np.maximum(-t232, t92)
+    N_right_rear_elbow_up_alike = np.maximum(t225, t92)
+    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
+    t242 = t91 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = np.where(short_right, t43, t70 + t242)
+    t243 = 2.0 * np.where(0.0 <= -t212, 1.0, -1.0)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(t216, t84)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t226 = t225 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    whole_right_rear_elbow_up_alike = N_right_rear_elbow_up_alike + M_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t226 / whole_right_rear_elbow_up_alike)
-    t227 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t228 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
-    c_bend_right_rear_elbow_up_alike = np.where(short_right, 1.0, -(t228 / whole_right_rear_elbow_up_alike))
-    ahead_1_right_rear_elbow_up_alike = L1 + fore_arm * c_bend_right_rear_elbow_up_alike
-    up_right_rear_elbow_up_alike = t223 * t227 - t222 * ahead_1_right_rear_elbow_up_alike
-    t229 = t223 * ahead_1_right_rear_elbow_up_alike + t222 * t227
-    t230 = np.arctan2(up_right_rear_elbow_up_alike, -t229)
-    t231 = np.where(folded_right_rear_elbow_up_alike, t224, t230)
-    t232 = _runtime.wrap(t231) + t220
-    t233 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t234 = t89 + np.where(short_right, 0.0, t225 * t233)
-    t235 = _runtime.wrap(t234) + t220
-    h_left_rear_elbow_up_alike = t208 + point_21_rear_elbow_up_alike
-    t236 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = t205 + point_11_rear_elbow_up_alike
-    t237 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    folded_left_rear_elbow_up_alike = np.sqrt(t236 + t237) <= t81
-    N_left_rear_elbow_up_alike = np.maximum(t217, 0.0)
-    M_left_rear_elbow_up_alike = np.maximum(t219, 0.0)
-    t238 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
-    whole_left_rear_elbow_up_alike = N_left_rear_elbow_up_alike + M_left_rear_elbow_up_alike
-    c_bend_left_rear_elbow_up_alike = np.where(short_right, 1.0, -(t238 / whole_left_rear_elbow_up_alike))
-    ahead_1_left_rear_elbow_up_alike = L1 + fore_arm * c_bend_left_rear_elbow_up_alike
-    t239 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t244 = t243 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t244 / whole_right_rear_elbow_up_alike)
+    t245 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t246 = t226 * ahead_1_right_rear_elbow_up_alike - t227 * t245
+    t247 = t227 * ahead_1_right_rear_elbow_up_alike + t226 * t245
+    t248 = np.where(folded_right_rear_elbow_up_alike, t241, -np.arctan2(t246, -t247))
+    t249 = _runtime.wrap(t248) + t239
+    t250 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t251 = t98 + np.where(short_right, 0.0, t243 * t250)
+    t252 = _runtime.wrap(t251) + t239
+    folded_left_rear_elbow_up_alike = np.sqrt(t237) <= t89
+    N_left_rear_elbow_up_alike = np.maximum(t233, 0.0)
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
+    M_left_rear_elbow_up_alike = np.maximum(t238, 0.0)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t240 = t225 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t240 / whole_left_rear_elbow_up_alike)
-    t241 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t242 = r_left_rear_elbow_up_alike * t241
-    t243 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t244 = h_left_rear_elbow_up_alike * t241
-    t245 = np.where(folded_left_rear_elbow_up_alike, t224, np.arctan2(t239 - t242, t243 + t244))
-    t246 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t247 = np.where(short_right, 0.0, t225 * t246)
-    t248 = t99 + t220
-    t249 = np.where(folded_left_rear_elbow_up_alike, t224, np.arctan2(t239 + t242, t243 - t244))
-    stheta2A_rear_elbow_down_alike = t175 + t179
-    ctheta2A_rear_elbow_down_alike = t180 - t181
-    c_relative_rear_elbow_down_alike = t185 + t187
-    t250 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t189 - t190
-    t251 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t250 - t251
-    t252 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t253 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t254 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t253 + t254
-    t255 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t256 = t252 - t255
-    t257 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t258 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t257 + t258
-    t259 = L2 * t256 - a3 * c_elbow_rear_elbow_down_alike
-    t260 = 0.0 <= -t259
-    t261 = L2 * c_elbow_rear_elbow_down_alike + a3 * t256
-    large_rear_elbow_down_alike = fore_arm + np.where(t260, -t259, t259)
-    small_rear_elbow_down_alike = t261 * t261 / large_rear_elbow_down_alike
-    t262 = np.where(t260, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    t263 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t264 = t263 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t265 = d * t264
-    t266 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t267 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t266
-    t268 = d * t267
-    gap_rear_elbow_down_alike = t265 * t265 + t268 * t268
-    t269 = t46 * t262 - gap_rear_elbow_down_alike
-    t270 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t270 + a3 * ctheta23A_rear_elbow_down_alike
-    t271 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t271 + a3 * stheta23A_rear_elbow_down_alike
-    t272 = 2.0 * t265 * point_11_rear_elbow_down_alike + 2.0 * t268 * point_21_rear_elbow_down_alike
-    t273 = t269 + t272
-    t274 = np.where(t260, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    t275 = gap_rear_elbow_down_alike + t46 * t274
-    t276 = t275 - t272
-    t277 = t269 - t272
-    t278 = t170 & (t45 <= t273) & (t45 <= t276) & (t45 <= t277)
-    t279 = t272 + t275
-    unreachable_4 = np.logical_not(t278 & (t45 <= t279))
-    t280 = _runtime.poison(invalid | unreachable_4)
-    t281 = t164 + t280
-    t282 = t268 - point_21_rear_elbow_down_alike
-    t283 = t265 - point_11_rear_elbow_down_alike
-    folded_right_rear_elbow_down_alike = np.sqrt(t282 * t282 + t283 * t283) <= t81
-    t284 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    t285 = 2.0 * np.where(0.0 <= -t261, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t273, t84)
+    t253 = t243 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t253 / whole_left_rear_elbow_up_alike)
+    t254 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t255 = r_left_rear_elbow_up_alike * t254
+    t256 = t91 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = np.where(short_right, t43, t70 + t256)
+    t257 = t235 * ahead_1_left_rear_elbow_up_alike
+    t258 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t259 = t235 * t254
+    t260 = np.where(folded_left_rear_elbow_up_alike, t241, -np.arctan2(t255 - t257, t258 + t259))
+    t261 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t262 = np.where(short_right, 0.0, t243 * t261)
+    t263 = t108 + t239
+    t264 = np.where(folded_left_rear_elbow_up_alike, t241, -np.arctan2(-(t257 + t255), t258 - t259))
+    stheta2A_rear_elbow_down_alike = t186 + t190
+    ctheta2A_rear_elbow_down_alike = t191 - t192
+    c_relative_rear_elbow_down_alike = t196 + t198
+    t265 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t200 - t201
+    t266 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t265 - t266
+    t267 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t268 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    t269 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t268 + t269
+    t270 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t271 = t267 - t270
+    t272 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t273 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t272 + t273
+    t274 = L2 * t271 - a3 * c_elbow_rear_elbow_down_alike
+    t275 = 0.0 <= -t274
+    t276 = L2 * c_elbow_rear_elbow_down_alike + a3 * t271
+    large_rear_elbow_down_alike = fore_arm + np.where(t275, -t274, t274)
+    small_rear_elbow_down_alike = t276 * t276 / large_rear_elbow_down_alike
+    t277 = np.where(t275, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    t278 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t279 = t278 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t280 = d * t279
+    t281 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t282 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t281
+    t283 = d * t282
+    gap_rear_elbow_down_alike = t280 * t280 + t283 * t283
+    t284 = t46 * t277 - gap_rear_elbow_down_alike
+    end_rear_elbow_down_alike = np.where(t275, t43 - small_rear_elbow_down_alike, t70 + small_rear_elbow_down_alike)
+    t285 = ctheta2A_rear_elbow_down_alike * end_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = stheta2A_rear_elbow_down_alike * t276 + t285
+    t286 = stheta2A_rear_elbow_down_alike * end_rear_elbow_down_alike
+    t287 = ctheta2A_rear_elbow_down_alike * t276 - t286
+    t288 = 2.0 * t280 * point_11_rear_elbow_down_alike - 2.0 * t283 * t287
+    t289 = t284 + t288
+    t290 = t283 + t287
+    t291 = t280 - point_11_rear_elbow_down_alike
+    t292 = t290 * t290 + t291 * t291
+    t293 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t294 = np.where(t275, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    t295 = gap_rear_elbow_down_alike + t46 * t294
+    t296 = np.where(t74 * t292 < t293, t79 - t292, t288 - t295)
+    t297 = t284 - t288
+    t298 = t181 & (t45 <= t289) & (t45 <= -t296) & (t45 <= t297)
+    t299 = t283 - t287
+    r_left_rear_elbow_down_alike = t280 + point_11_rear_elbow_down_alike
+    t300 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t301 = t299 * t299 + t300
+    t302 = np.where(t74 * t301 < t293, t301 - t79, t288 + t295)
+    unreachable_4 = np.logical_not(t298 & (t45 <= t302))
+    t303 = _runtime.poison(invalid | unreachable_4)
+    t304 = t175 + t303
+    folded_right_rear_elbow_down_alike = np.sqrt(t292) <= t89
+    t305 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    M_right_rear_elbow_down_alike = np.maximum(-t296, t92)
+    N_right_rear_elbow_down_alike = np.maximum(t289, t92)
+    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
+    t306 = t91 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = np.where(short_right, t43, t70 + t306)
+    t307 = 2.0 * np.where(0.0 <= -t276, 1.0, -1.0)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(t276, t84)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t286 = t285 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    whole_right_rear_elbow_down_alike = N_right_rear_elbow_down_alike + M_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t286 / whole_right_rear_elbow_down_alike)
-    t287 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t288 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
-    c_bend_right_rear_elbow_down_alike = np.where(short_right, 1.0, -(t288 / whole_right_rear_elbow_down_alike))
-    t289 = fore_arm * c_bend_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = L1 + t289
-    up_right_rear_elbow_down_alike = t283 * t287 - t282 * ahead_1_right_rear_elbow_down_alike
-    t290 = t283 * ahead_1_right_rear_elbow_down_alike + t282 * t287
-    t291 = np.arctan2(up_right_rear_elbow_down_alike, -t290)
-    t292 = np.where(folded_right_rear_elbow_down_alike, t284, t291)
-    t293 = _runtime.wrap(t292) + t280
-    t294 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t295 = t89 + np.where(short_right, 0.0, t285 * t294)
-    t296 = _runtime.wrap(t295) + t280
-    h_left_rear_elbow_down_alike = t268 + point_21_rear_elbow_down_alike
-    t297 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = t265 + point_11_rear_elbow_down_alike
-    t298 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    folded_left_rear_elbow_down_alike = np.sqrt(t297 + t298) <= t81
-    N_left_rear_elbow_down_alike = np.maximum(t277, 0.0)
-    M_left_rear_elbow_down_alike = np.maximum(t279, 0.0)
-    t299 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
-    whole_left_rear_elbow_down_alike = N_left_rear_elbow_down_alike + M_left_rear_elbow_down_alike
-    c_bend_left_rear_elbow_down_alike = np.where(short_right, 1.0, -(t299 / whole_left_rear_elbow_down_alike))
-    ahead_1_left_rear_elbow_down_alike = L1 + fore_arm * c_bend_left_rear_elbow_down_alike
-    t300 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t308 = t307 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t308 / whole_right_rear_elbow_down_alike)
+    t309 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t310 = t290 * ahead_1_right_rear_elbow_down_alike - t291 * t309
+    t311 = t291 * ahead_1_right_rear_elbow_down_alike + t290 * t309
+    t312 = np.where(folded_right_rear_elbow_down_alike, t305, -np.arctan2(t310, -t311))
+    t313 = _runtime.wrap(t312) + t303
+    t314 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t315 = t98 + np.where(short_right, 0.0, t307 * t314)
+    t316 = _runtime.wrap(t315) + t303
+    folded_left_rear_elbow_down_alike = np.sqrt(t301) <= t89
+    N_left_rear_elbow_down_alike = np.maximum(t297, 0.0)
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
+    M_left_rear_elbow_down_alike = np.maximum(t302, 0.0)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t301 = t285 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t301 / whole_left_rear_elbow_down_alike)
-    t302 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t303 = r_left_rear_elbow_down_alike * t302
-    t304 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t305 = h_left_rear_elbow_down_alike * t302
-    t306 = np.where(folded_left_rear_elbow_down_alike, t284, np.arctan2(t300 - t303, t304 + t305))
-    t307 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t308 = np.where(short_right, 0.0, t285 * t307)
-    t309 = t99 + t280
-    t310 = np.where(folded_left_rear_elbow_down_alike, t284, np.arctan2(t300 + t303, t304 - t305))
-    t311 = nowhere | folded | short
-    t312 = t311 | folded_right | short_right | folded_left
-    t313 = _runtime.status(invalid, unreachable, t312)
-    t314 = t311 | folded_right_front_elbow_down_alike | short_right
-    t315 = _runtime.status(invalid, unreachable_2, t314 | folded_left_front_elbow_down_alike)
-    t316 = nowhere | folded_rear_elbow_up_alike | short
-    t317 = t316 | folded_right_rear_elbow_up_alike | short_right
-    t318 = _runtime.status(invalid, unreachable_3, t317 | folded_left_rear_elbow_up_alike)
-    t319 = t316 | folded_right_rear_elbow_down_alike | short_right
-    t320 = _runtime.status(invalid, unreachable_4, t319 | folded_left_rear_elbow_down_alike)
+    t317 = t307 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t317 / whole_left_rear_elbow_down_alike)
+    t318 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t319 = r_left_rear_elbow_down_alike * t318
+    t320 = t91 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = np.where(short_right, t43, t70 + t320)
+    t321 = t299 * ahead_1_left_rear_elbow_down_alike
+    t322 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t323 = t299 * t318
+    t324 = np.where(folded_left_rear_elbow_down_alike, t305, -np.arctan2(t319 - t321, t322 + t323))
+    t325 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t326 = np.where(short_right, 0.0, t307 * t325)
+    t327 = t108 + t303
+    t328 = np.where(folded_left_rear_elbow_down_alike, t305, -np.arctan2(-(t321 + t319), t322 - t323))
+    t329 = nowhere | folded | short
+    t330 = t329 | folded_right | short_right | folded_left
+    t331 = _runtime.status(invalid, unreachable, t330)
+    t332 = t329 | folded_right_front_elbow_down_alike | short_right
+    t333 = _runtime.status(invalid, unreachable_2, t332 | folded_left_front_elbow_down_alike)
+    t334 = nowhere | folded_rear_elbow_up_alike | short
+    t335 = t334 | folded_right_rear_elbow_up_alike | short_right
+    t336 = _runtime.status(invalid, unreachable_3, t335 | folded_left_rear_elbow_up_alike)
+    t337 = t334 | folded_right_rear_elbow_down_alike | short_right
+    t338 = _runtime.status(invalid, unreachable_4, t337 | folded_left_rear_elbow_down_alike)
     return (
-        t78,
         t88,
-        t91,
-        _runtime.wrap(t97) + t77,
-        _runtime.wrap(t89 + t98) + t77,
+        t97,
         t100,
-        t78,
+        _runtime.wrap(t106) + t87,
+        _runtime.wrap(t98 + t107) + t87,
+        t109,
         t88,
-        t91,
-        _runtime.wrap(t101) + t77,
-        _runtime.wrap(t89 - t98) + t77,
+        t97,
         t100,
-        t133,
-        t145,
-        t148,
-        _runtime.wrap(t159) + t132,
-        _runtime.wrap(t89 + t161) + t132,
+        _runtime.wrap(t110) + t87,
+        _runtime.wrap(t98 - t107) + t87,
+        t109,
+        t150,
+        t159,
         t162,
-        t133,
-        t145,
-        t148,
-        _runtime.wrap(t163) + t132,
-        _runtime.wrap(t89 - t161) + t132,
+        _runtime.wrap(t170) + t149,
+        _runtime.wrap(t98 + t172) + t149,
+        t173,
+        t150,
+        t159,
         t162,
-        t221,
-        t232,
-        t235,
-        _runtime.wrap(t245) + t220,
-        _runtime.wrap(t89 + t247) + t220,
-        t248,
-        t221,
-        t232,
-        t235,
-        _runtime.wrap(t249) + t220,
-        _runtime.wrap(t89 - t247) + t220,
-        t248,
-        t281,
-        t293,
-        t296,
-        _runtime.wrap(t306) + t280,
-        _runtime.wrap(t89 + t308) + t280,
-        t309,
-        t281,
-        t293,
-        t296,
-        _runtime.wrap(t310) + t280,
-        _runtime.wrap(t89 - t308) + t280,
-        t309,
+        _runtime.wrap(t174) + t149,
+        _runtime.wrap(t98 - t172) + t149,
+        t173,
+        t240,
+        t249,
+        t252,
+        _runtime.wrap(t260) + t239,
+        _runtime.wrap(t98 + t262) + t239,
+        t263,
+        t240,
+        t249,
+        t252,
+        _runtime.wrap(t264) + t239,
+        _runtime.wrap(t98 - t262) + t239,
+        t263,
+        t304,
         t313,
+        t316,
+        _runtime.wrap(t324) + t303,
+        _runtime.wrap(t98 + t326) + t303,
+        t327,
+        t304,
         t313,
-        t315,
-        t315,
-        t318,
-        t318,
-        t320,
-        t320,
+        t316,
+        _runtime.wrap(t328) + t303,
+        _runtime.wrap(t98 - t326) + t303,
+        t327,
+        t331,
+        t331,
+        t333,
+        t333,
+        t336,
+        t336,
+        t338,
+        t338,
     )
 
 

@@ -412,12 +412,38 @@ point = p.matrix("point", sp.Matrix(seen_from(upper, reached)))
 shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pairs))
 gap = p.let("gap", shift.dot(shift))
 cross = p.let("twice", 2 * point.dot(shift))
+
+# Where the virtual arm with the wrist is straight, the rounding of the target decides how far it is
+# bent, and a real arm that is straight too may seem out of reach.  Among the postures that reach
+# the target alike, which differ by a turn of the virtual fore-arm, the one in reach is taken.  For
+# exact numbers the turn is zero: a bound that is kept is what it bounds.
+along, across = real("L_2W"), real("a_3W")
+tilt = p.let("tilt", along * bend[0] - across * bend[1])
+drawn = p.let("drawn", m.L1 + along * bend[1] + across * bend[0])
+size = p.let("size", m.L1 + second)
+nothing = Rational(1, 10**5)  # a turn that is free where tilt is zero: its square is below rounding
+ends, slopes, turns = {}, {}, []
+for name, sign in (("right", 1), ("left", -1)):
+    r, h = (p.let(f"{c}_{name}_0", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
+    slope = p.let(f"slope_{name}", 2 * drawn * (h * upper.c - r * upper.s))
+    loose = sp.Abs(slope) * size / (sp.Abs(tilt) + nothing * size)
+    beyond_reach = p.let(f"N_{name}_0", N - sign * cross - gap)
+    kept = p.bound(f"slack_{name}", beyond_reach, size * m.d + loose, "nearer than full stretch")
+    turns.append((kept - beyond_reach) * slope / (slope**2 + (nothing * size**2) ** 2))
+    ends[name], slopes[name] = (r, h), slope
+turn = p.let("turn", sum(turns))
+swing = p.let("swing", -drawn * turn)
 arms = []
 for name, sigma, sign, unknowns in (
     ("right", side, 1, (theta2R, theta23R)),
     ("left", opposite, -1, (theta2L, theta23L)),
 ):
-    end = tuple(p.let(f"{c}_{name}", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
+    r, h = ends[name]
+    end = (
+        p.let(f"r_{name}", r - turn * h - swing * upper.s),
+        p.let(f"h_{name}", h + turn * r + swing * upper.c),
+    )
+    eased = slopes[name] * turn
     arms.append(
         two_link_arm_beside(
             p,
@@ -426,7 +452,7 @@ for name, sigma, sign, unknowns in (
             end,
             unknowns,
             sigma,
-            (N - sign * cross - gap, M + sign * cross + gap),
+            (N - sign * cross - gap + eased, M + sign * cross + gap - eased),
             m.d,
             apart=gap,
             suffix=f"_{name}",

@@ -11,7 +11,7 @@
  *   jacobian: 215 add, 82 compare and select, 61 divide, 326 multiply, 6 sincos, 9 sqrt
  *   determinant: 93 add, 82 compare and select, 30 divide, 159 multiply, 5 sincos, 9 sqrt
  *   singularities: 98 add, 82 compare and select, 29 divide, 149 multiply, 5 sincos, 9 sqrt
- *   ik: 266 add, 305 compare and select, 28 atan2, 60 divide, 315 multiply, 3 sincos, 41 sqrt
+ *   ik: 341 compare and select, 366 add, 28 atan2, 78 divide, 428 multiply, 3 sincos, 41 sqrt
  *   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt

@@ -10,7 +10,7 @@
 #   jacobian: 215 add, 82 compare and select, 61 divide, 326 multiply, 6 sincos, 9 sqrt
 #   determinant: 93 add, 82 compare and select, 30 divide, 159 multiply, 5 sincos, 9 sqrt
 #   singularities: 98 add, 82 compare and select, 29 divide, 149 multiply, 5 sincos, 9 sqrt
-#   ik: 266 add, 305 compare and select, 28 atan2, 60 divide, 315 multiply, 3 sincos, 41 sqrt
+#   ik: 341 compare and select, 366 add, 28 atan2, 78 divide, 428 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -1201,515 +1201,637 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t41 = reach - t39
     t42 = t27 & (t29 <= t38) & (t29 <= t40) & (t29 <= t41)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
-    t43 = L1 + fore_arm
-    t44 = d * t43
-    t45 = -(_runtime.FEASIBILITY * t44)
-    t46 = L1 * 2.0
-    t47 = _runtime.VANISHING * t28
-    folded = reach <= t47
+    size = L1 + fore_arm
+    t43 = d * size
+    t44 = _runtime.VANISHING * t28
+    folded = reach <= t44
     s_sight = np.where(folded, 0.0, t30 / reach)
     short = L1 * fore <= _runtime.VANISHING * (t28 * t28)
-    t48 = folded | short
+    t45 = folded | short
     A = np.maximum(t38, 0.0)
     C = np.maximum(t41, 0.0)
-    t49 = A * C
+    t46 = A * C
     S = t28 + reach
     B = np.maximum(t40, 0.0)
-    t50 = S * B
-    at_base = t49 + t50
-    c_base = np.where(t48, 1.0, -((t49 - t50) / at_base))
-    t51 = s_sight * c_base
+    t47 = S * B
+    at_base = t46 + t47
+    c_base = np.where(t45, 1.0, -((t46 - t47) / at_base))
+    t48 = s_sight * c_base
     c_sight = np.where(folded, 1.0, outward / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = np.where(t48, 0.0, area_front_elbow_down_alike / at_base)
-    t52 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t51 + t52
-    t53 = c_sight * c_base
-    t54 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t53 - t54
-    bare = fore <= t47
+    s_base_front_elbow_down_alike = np.where(t45, 0.0, area_front_elbow_down_alike / at_base)
+    t49 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t48 + t49
+    t50 = c_sight * c_base
+    t51 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t50 - t51
+    bare = fore <= t44
     c_lag = np.where(bare, 1.0, a_3W / fore)
-    t55 = A * S
-    t56 = C * B
-    at_elbow = t55 + t56
-    c_bend = np.where(short, 1.0, -((t55 - t56) / at_elbow))
-    t57 = c_lag * c_bend
+    t52 = A * S
+    t53 = C * B
+    at_elbow = t52 + t53
+    c_bend = np.where(short, 1.0, -((t52 - t53) / at_elbow))
+    t54 = c_lag * c_bend
     s_lag = np.where(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down_alike = np.where(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t58 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t57 + t58
-    t59 = s_lag * c_bend
-    t60 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t59 - t60
+    t55 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t54 + t55
+    t56 = s_lag * c_bend
+    t57 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t56 - t57
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    t61 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t58 = stheta2A * ctheta23A - ctheta2A * stheta23A
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t62 = L2 * t61 - a3 * c_elbow
-    t63 = 0.0 <= -t62
-    t64 = L2 * c_elbow + a3 * t61
-    large = fore_arm + np.where(t63, -t62, t62)
-    small = t64 * t64 / large
-    t65 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    drawn = L1 - L_2W * t58 + a_3W * c_elbow
+    t59 = 2.0 * drawn
+    t60 = L2 * c_elbow + a3 * t58
+    t61 = L2 * t58 - a3 * c_elbow
+    t62 = 0.0 <= -t61
+    large = fore_arm + np.where(t62, -t61, t61)
+    small = t60 * t60 / large
+    t63 = L1 - fore_arm
+    end = np.where(t62, size - small, t63 + small)
+    t64 = ctheta2A * t60 - stheta2A * end
+    t65 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
     t66 = d * t65
-    t67 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t68 = d * t67
-    gap = t66 * t66 + t68 * t68
-    t69 = t46 * np.where(t63, small, large) - gap
-    t70 = L1 - fore_arm
-    end = np.where(t63, t43 - small, t70 + small)
-    point_11 = stheta2A * t64 + ctheta2A * end
-    t71 = ctheta2A * t64 - stheta2A * end
-    t72 = 2.0 * t66 * point_11 - 2.0 * t68 * t71
-    t73 = t69 + t72
-    t74 = t43 * t43
-    t75 = t68 + t71
-    t76 = t66 - point_11
-    t77 = t75 * t75 + t76 * t76
-    t78 = gap * gap
-    t79 = t70 * t70
-    t80 = gap + t46 * np.where(t63, large, small)
-    t81 = np.where(t74 * t77 < t78, t79 - t77, t72 - t80)
-    t82 = t69 - t72
-    t83 = t42 & (t45 <= t73) & (t45 <= -t81) & (t45 <= t82)
-    t84 = t68 - t71
-    r_left = t66 + point_11
-    t85 = t84 * t84 + r_left * r_left
-    t86 = np.where(t74 * t85 < t78, t85 - t79, t72 + t80)
-    unreachable = np.logical_not(t83 & (t45 <= t86))
-    t87 = _runtime.poison(invalid | unreachable)
-    t88 = t16 + t87
-    t89 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.sqrt(t77) <= t89
-    t90 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t74
-    t91 = 2.0 * fore_arm
-    t92 = _runtime.VANISHING * (_runtime.VANISHING * (t44 * 16.0))
-    M_right = np.maximum(-t81, t92)
-    N_right = np.maximum(t73, t92)
+    t67 = t64 + t66
+    point_11 = stheta2A * t60 + ctheta2A * end
+    t68 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t69 = d * t68
+    r_right_0 = point_11 - t69
+    t70 = t59 * (ctheta2A * t67 + stheta2A * r_right_0)
+    t71 = size / 100000.0
+    t72 = t71 + np.abs(L_2W * c_elbow + a_3W * t58)
+    t73 = _runtime.FEASIBILITY * (t43 + size * np.abs(t70) / t72)
+    t74 = L1 * 2.0
+    gap = t69 * t69 + t66 * t66
+    t75 = t74 * np.where(t62, small, large) - gap
+    t76 = 2.0 * point_11 * t69 - 2.0 * t64 * t66
+    N_right_0 = t75 + t76
+    t77 = t64 - t66
+    r_left_0 = point_11 + t69
+    t78 = t59 * (ctheta2A * t77 + stheta2A * r_left_0)
+    t79 = _runtime.FEASIBILITY * (t43 + size * np.abs(t78) / t72)
+    N_left_0 = t75 - t76
+    t80 = t42 & (-t73 <= N_right_0) & (-t79 <= N_left_0)
+    t81 = -(_runtime.FEASIBILITY * t43)
+    t82 = size * size
+    t83 = t82 * t82 / 10000000000.0
+    t84 = t78 * (N_left_0 - np.maximum(N_left_0, 0.0)) / (t83 + t78 * t78)
+    t85 = t70 * (N_right_0 - np.maximum(N_right_0, 0.0))
+    turn = t84 + t85 / (t83 + t70 * t70)
+    t86 = t76 - t70 * turn
+    t87 = t75 + t86
+    t88 = drawn * turn
+    t89 = ctheta2A * t88
+    t90 = t67 + t89 - r_right_0 * turn
+    t91 = stheta2A * t88
+    r_right = r_right_0 + t67 * turn + t91
+    t92 = t90 * t90 + r_right * r_right
+    t93 = gap * gap
+    t94 = t63 * t63
+    t95 = gap + t74 * np.where(t62, large, small)
+    t96 = np.where(t82 * t92 < t93, t94 - t92, t86 - t95)
+    t97 = t76 + t78 * turn
+    t98 = t75 - t97
+    t99 = t80 & (t81 <= t87) & (t81 <= -t96) & (t81 <= t98)
+    t100 = t77 + t89 - r_left_0 * turn
+    r_left = r_left_0 + t91 + t77 * turn
+    t101 = t100 * t100 + r_left * r_left
+    t102 = np.where(t82 * t101 < t93, t101 - t94, t95 + t97)
+    unreachable = np.logical_not(t99 & (t81 <= t102))
+    t103 = _runtime.poison(invalid | unreachable)
+    t104 = t16 + t103
+    t105 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.sqrt(t92) <= t105
+    t106 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t82
+    t107 = 2.0 * fore_arm
+    t108 = _runtime.VANISHING * (_runtime.VANISHING * (t43 * 16.0))
+    M_right = np.maximum(-t96, t108)
+    N_right = np.maximum(t87, t108)
     whole_right = M_right + N_right
-    ahead_1_right = np.where(short_right, t43, t70 + t91 * M_right / whole_right)
-    t93 = 2.0 * np.where(0.0 <= -t64, 1.0, -1.0)
+    ahead_1_right = np.where(short_right, size, t63 + t107 * M_right / whole_right)
+    t109 = 2.0 * np.where(0.0 <= -t60, 1.0, -1.0)
     rN_right = np.sqrt(N_right)
     rM_right = np.sqrt(M_right)
-    s_bend_right = np.where(short_right, 0.0, t93 * rN_right * rM_right / whole_right)
-    t94 = fore_arm * s_bend_right
-    t95 = np.arctan2(t75 * ahead_1_right - t76 * t94, -(t76 * ahead_1_right + t75 * t94))
-    t96 = _runtime.wrap(np.where(folded_right, t90, -t95))
-    t97 = t96 + t87
-    bare_right = fore_arm <= _runtime.VANISHING * t43
-    t98 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
-    t99 = np.where(short_right, 0.0, t93 * np.arctan2(rN_right, rM_right))
-    t100 = _runtime.wrap(t98 + t99) + t87
-    folded_left = np.sqrt(t85) <= t89
-    N_left = np.maximum(t82, 0.0)
-    rN_left = np.sqrt(N_left)
-    M_left = np.maximum(t86, 0.0)
-    rM_left = np.sqrt(M_left)
+    s_bend_right = np.where(short_right, 0.0, t109 * rN_right * rM_right / whole_right)
+    t110 = fore_arm * s_bend_right
+    t111 = np.arctan2(t90 * ahead_1_right + r_right * t110, r_right * ahead_1_right - t90 * t110)
+    t112 = _runtime.wrap(np.where(folded_right, t106, -t111))
+    t113 = t112 + t103
+    bare_right = fore_arm <= _runtime.VANISHING * size
+    t114 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
+    t115 = np.where(short_right, 0.0, t109 * np.arctan2(rN_right, rM_right))
+    t116 = _runtime.wrap(t114 + t115) + t103
+    folded_left = np.sqrt(t101) <= t105
+    M_left = np.maximum(t102, 0.0)
+    N_left = np.maximum(t98, 0.0)
     whole_left = M_left + N_left
-    s_bend_left = np.where(short_right, 0.0, t93 * rN_left * rM_left / whole_left)
-    t101 = fore_arm * s_bend_left
-    t102 = r_left * t101
-    ahead_1_left = np.where(short_right, t43, t70 + t91 * M_left / whole_left)
-    t103 = t84 * ahead_1_left
-    t104 = r_left * ahead_1_left
-    t105 = t84 * t101
-    t106 = np.where(folded_left, t90, -np.arctan2(t102 - t103, t104 + t105))
-    t107 = np.where(short_right, 0.0, t93 * np.arctan2(rN_left, rM_left))
-    t108 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    t109 = t108 + t87
-    t110 = np.where(folded_left, t90, -np.arctan2(-(t103 + t102), t104 - t105))
-    stheta2A_front_elbow_down_alike = t51 - t52
-    ctheta2A_front_elbow_down_alike = t53 + t54
-    c_relative_front_elbow_down_alike = t57 - t58
-    t111 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t59 + t60
-    t112 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t111 - t112
-    t113 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t114 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t115 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t114 + t115
-    t116 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t117 = t113 - t116
-    t118 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t119 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t118 + t119
-    t120 = L2 * t117 - a3 * c_elbow_front_elbow_down_alike
-    t121 = 0.0 <= -t120
-    t122 = L2 * c_elbow_front_elbow_down_alike + a3 * t117
-    large_front_elbow_down_alike = fore_arm + np.where(t121, -t120, t120)
-    small_front_elbow_down_alike = t122 * t122 / large_front_elbow_down_alike
-    t123 = np.where(t121, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    t124 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t125 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t126 = d * (t124 - t125)
-    t127 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t128 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t129 = d * (t127 + t128)
-    gap_front_elbow_down_alike = t126 * t126 + t129 * t129
-    t130 = t46 * t123 - gap_front_elbow_down_alike
-    end_front_elbow_down_alike = np.where(t121, t43 - small_front_elbow_down_alike, t70 + small_front_elbow_down_alike)
-    t131 = ctheta2A_front_elbow_down_alike * end_front_elbow_down_alike
-    point_11_front_elbow_down_alike = stheta2A_front_elbow_down_alike * t122 + t131
-    t132 = stheta2A_front_elbow_down_alike * end_front_elbow_down_alike
-    t133 = ctheta2A_front_elbow_down_alike * t122 - t132
-    t134 = 2.0 * t126 * point_11_front_elbow_down_alike - 2.0 * t129 * t133
-    t135 = t130 + t134
-    t136 = t129 + t133
-    t137 = t126 - point_11_front_elbow_down_alike
-    t138 = t136 * t136 + t137 * t137
-    t139 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t140 = np.where(t121, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    t141 = gap_front_elbow_down_alike + t46 * t140
-    t142 = np.where(t74 * t138 < t139, t79 - t138, t134 - t141)
-    t143 = t130 - t134
-    t144 = t42 & (t45 <= t135) & (t45 <= -t142) & (t45 <= t143)
-    t145 = t129 - t133
-    r_left_front_elbow_down_alike = t126 + point_11_front_elbow_down_alike
-    t146 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t147 = t145 * t145 + t146
-    t148 = np.where(t74 * t147 < t139, t147 - t79, t134 + t141)
-    unreachable_2 = np.logical_not(t144 & (t45 <= t148))
-    t149 = _runtime.poison(invalid | unreachable_2)
-    t150 = t16 + t149
-    folded_right_front_elbow_down_alike = np.sqrt(t138) <= t89
-    t151 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(-t142, t92)
-    N_right_front_elbow_down_alike = np.maximum(t135, t92)
+    ahead_1_left = np.where(short_right, size, t63 + t107 * M_left / whole_left)
+    t117 = t100 * ahead_1_left
+    rN_left = np.sqrt(N_left)
+    rM_left = np.sqrt(M_left)
+    s_bend_left = np.where(short_right, 0.0, t109 * rN_left * rM_left / whole_left)
+    t118 = fore_arm * s_bend_left
+    t119 = r_left * t118
+    t120 = r_left * ahead_1_left
+    t121 = t100 * t118
+    t122 = np.where(folded_left, t106, -np.arctan2(t117 + t119, t120 - t121))
+    t123 = np.where(short_right, 0.0, t109 * np.arctan2(rN_left, rM_left))
+    t124 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
+    t125 = t124 + t103
+    t126 = np.where(folded_left, t106, -np.arctan2(t117 - t119, t120 + t121))
+    stheta2A_front_elbow_down_alike = t48 - t49
+    ctheta2A_front_elbow_down_alike = t50 + t51
+    c_relative_front_elbow_down_alike = t54 - t55
+    t127 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t56 + t57
+    t128 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t127 - t128
+    t129 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t130 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t131 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t130 + t131
+    t132 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t133 = t129 - t132
+    t134 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t135 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t134 + t135
+    drawn_front_elbow_down_alike = L1 - L_2W * t133 + a_3W * c_elbow_front_elbow_down_alike
+    t136 = 2.0 * drawn_front_elbow_down_alike
+    t137 = L2 * c_elbow_front_elbow_down_alike + a3 * t133
+    t138 = L2 * t133 - a3 * c_elbow_front_elbow_down_alike
+    t139 = 0.0 <= -t138
+    large_front_elbow_down_alike = fore_arm + np.where(t139, -t138, t138)
+    small_front_elbow_down_alike = t137 * t137 / large_front_elbow_down_alike
+    end_front_elbow_down_alike = np.where(t139, size - small_front_elbow_down_alike, t63 + small_front_elbow_down_alike)
+    t140 = stheta2A_front_elbow_down_alike * end_front_elbow_down_alike
+    t141 = ctheta2A_front_elbow_down_alike * t137 - t140
+    t142 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t143 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t144 = d * (t142 + t143)
+    t145 = t141 + t144
+    t146 = ctheta2A_front_elbow_down_alike * end_front_elbow_down_alike
+    point_11_front_elbow_down_alike = stheta2A_front_elbow_down_alike * t137 + t146
+    t147 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t148 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t149 = d * (t147 - t148)
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t149
+    t150 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t151 = ctheta2A_front_elbow_down_alike * t145 + t150
+    t152 = t136 * t151
+    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t133
+    t153 = t71 + np.abs(tilt_front_elbow_down_alike)
+    t154 = _runtime.FEASIBILITY * (t43 + size * np.abs(t152) / t153)
+    t155 = np.where(t139, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    gap_front_elbow_down_alike = t149 * t149 + t144 * t144
+    t156 = t74 * t155 - gap_front_elbow_down_alike
+    t157 = 2.0 * point_11_front_elbow_down_alike * t149 - 2.0 * t141 * t144
+    N_right_0_front_elbow_down_alike = t156 + t157
+    t158 = t42 & (-t154 <= N_right_0_front_elbow_down_alike)
+    t159 = t141 - t144
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t149
+    t160 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t161 = ctheta2A_front_elbow_down_alike * t159 + t160
+    t162 = t136 * t161
+    t163 = _runtime.FEASIBILITY * (t43 + size * np.abs(t162) / t153)
+    N_left_0_front_elbow_down_alike = t156 - t157
+    t164 = t158 & (-t163 <= N_left_0_front_elbow_down_alike)
+    slack_left_front_elbow_down_alike = np.maximum(N_left_0_front_elbow_down_alike, 0.0)
+    t165 = N_left_0_front_elbow_down_alike - slack_left_front_elbow_down_alike
+    slack_right_front_elbow_down_alike = np.maximum(N_right_0_front_elbow_down_alike, 0.0)
+    t166 = N_right_0_front_elbow_down_alike - slack_right_front_elbow_down_alike
+    turn_front_elbow_down_alike = t162 * t165 / (t83 + t162 * t162) + t152 * t166 / (t83 + t152 * t152)
+    t167 = t157 - t152 * turn_front_elbow_down_alike
+    t168 = t156 + t167
+    t169 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    t170 = ctheta2A_front_elbow_down_alike * t169
+    t171 = r_right_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    t172 = t145 + t170 - t171
+    t173 = r_right_0_front_elbow_down_alike + t145 * turn_front_elbow_down_alike
+    t174 = stheta2A_front_elbow_down_alike * t169
+    r_right_front_elbow_down_alike = t173 + t174
+    t175 = r_right_front_elbow_down_alike * r_right_front_elbow_down_alike
+    t176 = t172 * t172 + t175
+    t177 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t178 = np.where(t139, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    t179 = gap_front_elbow_down_alike + t74 * t178
+    t180 = np.where(t82 * t176 < t177, t94 - t176, t167 - t179)
+    t181 = t157 + t162 * turn_front_elbow_down_alike
+    t182 = t156 - t181
+    t183 = t164 & (t81 <= t168) & (t81 <= -t180) & (t81 <= t182)
+    t184 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    t185 = t159 + t170 - t184
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike + t174 + t159 * turn_front_elbow_down_alike
+    t186 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t187 = t185 * t185 + t186
+    t188 = np.where(t82 * t187 < t177, t187 - t94, t179 + t181)
+    unreachable_2 = np.logical_not(t183 & (t81 <= t188))
+    t189 = _runtime.poison(invalid | unreachable_2)
+    t190 = t16 + t189
+    folded_right_front_elbow_down_alike = np.sqrt(t176) <= t105
+    t191 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    M_right_front_elbow_down_alike = np.maximum(-t180, t108)
+    N_right_front_elbow_down_alike = np.maximum(t168, t108)
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t152 = t91 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = np.where(short_right, t43, t70 + t152)
-    t153 = 2.0 * np.where(0.0 <= -t122, 1.0, -1.0)
+    t192 = t107 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = np.where(short_right, size, t63 + t192)
+    t193 = 2.0 * np.where(0.0 <= -t137, 1.0, -1.0)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t154 = t153 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t154 / whole_right_front_elbow_down_alike)
-    t155 = fore_arm * s_bend_right_front_elbow_down_alike
-    t156 = t136 * ahead_1_right_front_elbow_down_alike - t137 * t155
-    t157 = t137 * ahead_1_right_front_elbow_down_alike + t136 * t155
-    t158 = np.where(folded_right_front_elbow_down_alike, t151, -np.arctan2(t156, -t157))
-    t159 = _runtime.wrap(t158) + t149
-    t160 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t161 = t98 + np.where(short_right, 0.0, t153 * t160)
-    t162 = _runtime.wrap(t161) + t149
-    folded_left_front_elbow_down_alike = np.sqrt(t147) <= t89
-    N_left_front_elbow_down_alike = np.maximum(t143, 0.0)
-    rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
-    M_left_front_elbow_down_alike = np.maximum(t148, 0.0)
-    rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t163 = t153 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    t194 = t193 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t194 / whole_right_front_elbow_down_alike)
+    t195 = fore_arm * s_bend_right_front_elbow_down_alike
+    t196 = t172 * ahead_1_right_front_elbow_down_alike + r_right_front_elbow_down_alike * t195
+    t197 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t198 = np.where(folded_right_front_elbow_down_alike, t191, -np.arctan2(t196, t197 - t172 * t195))
+    t199 = _runtime.wrap(t198) + t189
+    t200 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t201 = t114 + np.where(short_right, 0.0, t193 * t200)
+    t202 = _runtime.wrap(t201) + t189
+    folded_left_front_elbow_down_alike = np.sqrt(t187) <= t105
+    M_left_front_elbow_down_alike = np.maximum(t188, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t182, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t163 / whole_left_front_elbow_down_alike)
-    t164 = fore_arm * s_bend_left_front_elbow_down_alike
-    t165 = r_left_front_elbow_down_alike * t164
-    t166 = t91 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = np.where(short_right, t43, t70 + t166)
-    t167 = t145 * ahead_1_left_front_elbow_down_alike
-    t168 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t169 = t145 * t164
-    t170 = np.where(folded_left_front_elbow_down_alike, t151, -np.arctan2(t165 - t167, t168 + t169))
-    t171 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t172 = np.where(short_right, 0.0, t153 * t171)
-    t173 = t108 + t149
-    t174 = np.where(folded_left_front_elbow_down_alike, t151, -np.arctan2(-(t167 + t165), t168 - t169))
-    t175 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
-    t176 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
-    outward_rear_elbow_up_alike = t176 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
-    t177 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t31 + t177)
-    t178 = t28 - reach_rear_elbow_up_alike
-    t179 = reach_rear_elbow_up_alike + t39
-    t180 = reach_rear_elbow_up_alike - t39
-    t181 = t27 & (t29 <= t178) & (t29 <= t179) & (t29 <= t180)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t47
+    t203 = t107 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = np.where(short_right, size, t63 + t203)
+    t204 = t185 * ahead_1_left_front_elbow_down_alike
+    rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
+    rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
+    t205 = t193 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t205 / whole_left_front_elbow_down_alike)
+    t206 = fore_arm * s_bend_left_front_elbow_down_alike
+    t207 = r_left_front_elbow_down_alike * t206
+    t208 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t209 = t185 * t206
+    t210 = np.where(folded_left_front_elbow_down_alike, t191, -np.arctan2(t204 + t207, t208 - t209))
+    t211 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t212 = np.where(short_right, 0.0, t193 * t211)
+    t213 = t124 + t189
+    t214 = np.where(folded_left_front_elbow_down_alike, t191, -np.arctan2(t204 - t207, t208 + t209))
+    t215 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
+    t216 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
+    outward_rear_elbow_up_alike = t216 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
+    t217 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t31 + t217)
+    t218 = t28 - reach_rear_elbow_up_alike
+    t219 = reach_rear_elbow_up_alike + t39
+    t220 = reach_rear_elbow_up_alike - t39
+    t221 = t27 & (t29 <= t218) & (t29 <= t219) & (t29 <= t220)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t44
     s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t30 / reach_rear_elbow_up_alike)
-    t182 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t178, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t180, 0.0)
-    t183 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    t222 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t218, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t220, 0.0)
+    t223 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
     S_rear_elbow_up_alike = t28 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t179, 0.0)
-    t184 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t183 + t184
-    t185 = -((t183 - t184) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = np.where(t182, 1.0, t185)
-    t186 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t187 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t187)
-    t188 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t188 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t189 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = np.where(t182, 0.0, t189)
-    t190 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t186 - t190
-    t191 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t192 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t191 + t192
-    t193 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t194 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t193 + t194
-    t195 = -((t193 - t194) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t195)
-    t196 = c_lag * c_bend_rear_elbow_up_alike
-    t197 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t197)
-    t198 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t196 - t198
-    t199 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t200 = s_lag * c_bend_rear_elbow_up_alike
-    t201 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t200 + t201
-    t202 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t199 - t202
-    t203 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t204 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t205 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t204 + t205
-    t206 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t207 = t203 - t206
-    t208 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t209 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t208 + t209
-    t210 = L2 * t207 - a3 * c_elbow_rear_elbow_up_alike
-    t211 = 0.0 <= -t210
-    t212 = L2 * c_elbow_rear_elbow_up_alike + a3 * t207
-    large_rear_elbow_up_alike = fore_arm + np.where(t211, -t210, t210)
-    small_rear_elbow_up_alike = t212 * t212 / large_rear_elbow_up_alike
-    t213 = np.where(t211, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    t214 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t215 = t214 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t216 = d * t215
-    t217 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t218 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t217
-    t219 = d * t218
-    gap_rear_elbow_up_alike = t216 * t216 + t219 * t219
-    t220 = t46 * t213 - gap_rear_elbow_up_alike
-    end_rear_elbow_up_alike = np.where(t211, t43 - small_rear_elbow_up_alike, t70 + small_rear_elbow_up_alike)
-    t221 = ctheta2A_rear_elbow_up_alike * end_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = stheta2A_rear_elbow_up_alike * t212 + t221
-    t222 = stheta2A_rear_elbow_up_alike * end_rear_elbow_up_alike
-    t223 = ctheta2A_rear_elbow_up_alike * t212 - t222
-    t224 = 2.0 * t216 * point_11_rear_elbow_up_alike - 2.0 * t219 * t223
-    t225 = t220 + t224
-    t226 = t219 + t223
-    t227 = t216 - point_11_rear_elbow_up_alike
-    t228 = t226 * t226 + t227 * t227
-    t229 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t230 = np.where(t211, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    t231 = gap_rear_elbow_up_alike + t46 * t230
-    t232 = np.where(t74 * t228 < t229, t79 - t228, t224 - t231)
-    t233 = t220 - t224
-    t234 = t181 & (t45 <= t225) & (t45 <= -t232) & (t45 <= t233)
-    t235 = t219 - t223
-    r_left_rear_elbow_up_alike = t216 + point_11_rear_elbow_up_alike
-    t236 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t237 = t235 * t235 + t236
-    t238 = np.where(t74 * t237 < t229, t237 - t79, t224 + t231)
-    unreachable_3 = np.logical_not(t234 & (t45 <= t238))
-    t239 = _runtime.poison(invalid | unreachable_3)
-    t240 = t175 + t239
-    folded_right_rear_elbow_up_alike = np.sqrt(t228) <= t89
-    t241 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(-t232, t92)
-    N_right_rear_elbow_up_alike = np.maximum(t225, t92)
+    B_rear_elbow_up_alike = np.maximum(t219, 0.0)
+    t224 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t223 + t224
+    t225 = -((t223 - t224) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = np.where(t222, 1.0, t225)
+    t226 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t227 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t227)
+    t228 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t228 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t229 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = np.where(t222, 0.0, t229)
+    t230 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t226 - t230
+    t231 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t232 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t231 + t232
+    t233 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t234 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t233 + t234
+    t235 = -((t233 - t234) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t235)
+    t236 = c_lag * c_bend_rear_elbow_up_alike
+    t237 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t237)
+    t238 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t236 - t238
+    t239 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t240 = s_lag * c_bend_rear_elbow_up_alike
+    t241 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t240 + t241
+    t242 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t239 - t242
+    t243 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t244 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t245 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t244 + t245
+    t246 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t247 = t243 - t246
+    t248 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t249 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t248 + t249
+    drawn_rear_elbow_up_alike = L1 - L_2W * t247 + a_3W * c_elbow_rear_elbow_up_alike
+    t250 = 2.0 * drawn_rear_elbow_up_alike
+    t251 = L2 * c_elbow_rear_elbow_up_alike + a3 * t247
+    t252 = L2 * t247 - a3 * c_elbow_rear_elbow_up_alike
+    t253 = 0.0 <= -t252
+    large_rear_elbow_up_alike = fore_arm + np.where(t253, -t252, t252)
+    small_rear_elbow_up_alike = t251 * t251 / large_rear_elbow_up_alike
+    end_rear_elbow_up_alike = np.where(t253, size - small_rear_elbow_up_alike, t63 + small_rear_elbow_up_alike)
+    t254 = stheta2A_rear_elbow_up_alike * end_rear_elbow_up_alike
+    t255 = ctheta2A_rear_elbow_up_alike * t251 - t254
+    t256 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t257 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t256
+    t258 = d * t257
+    t259 = t255 + t258
+    t260 = ctheta2A_rear_elbow_up_alike * end_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = stheta2A_rear_elbow_up_alike * t251 + t260
+    t261 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t262 = t261 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t263 = d * t262
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t263
+    t264 = stheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t265 = t250 * (ctheta2A_rear_elbow_up_alike * t259 + t264)
+    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t247
+    t266 = t71 + np.abs(tilt_rear_elbow_up_alike)
+    t267 = _runtime.FEASIBILITY * (t43 + size * np.abs(t265) / t266)
+    t268 = np.where(t253, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    gap_rear_elbow_up_alike = t263 * t263 + t258 * t258
+    t269 = t74 * t268 - gap_rear_elbow_up_alike
+    t270 = 2.0 * point_11_rear_elbow_up_alike * t263 - 2.0 * t255 * t258
+    N_right_0_rear_elbow_up_alike = t269 + t270
+    t271 = t221 & (-t267 <= N_right_0_rear_elbow_up_alike)
+    t272 = t255 - t258
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t263
+    t273 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t274 = t250 * (ctheta2A_rear_elbow_up_alike * t272 + t273)
+    t275 = _runtime.FEASIBILITY * (t43 + size * np.abs(t274) / t266)
+    N_left_0_rear_elbow_up_alike = t269 - t270
+    t276 = t271 & (-t275 <= N_left_0_rear_elbow_up_alike)
+    slack_left_rear_elbow_up_alike = np.maximum(N_left_0_rear_elbow_up_alike, 0.0)
+    t277 = N_left_0_rear_elbow_up_alike - slack_left_rear_elbow_up_alike
+    slack_right_rear_elbow_up_alike = np.maximum(N_right_0_rear_elbow_up_alike, 0.0)
+    t278 = N_right_0_rear_elbow_up_alike - slack_right_rear_elbow_up_alike
+    turn_rear_elbow_up_alike = t274 * t277 / (t83 + t274 * t274) + t265 * t278 / (t83 + t265 * t265)
+    t279 = t270 - t265 * turn_rear_elbow_up_alike
+    t280 = t269 + t279
+    t281 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t282 = ctheta2A_rear_elbow_up_alike * t281
+    t283 = r_right_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t284 = t259 + t282 - t283
+    t285 = r_right_0_rear_elbow_up_alike + t259 * turn_rear_elbow_up_alike
+    t286 = stheta2A_rear_elbow_up_alike * t281
+    r_right_rear_elbow_up_alike = t285 + t286
+    t287 = r_right_rear_elbow_up_alike * r_right_rear_elbow_up_alike
+    t288 = t284 * t284 + t287
+    t289 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t290 = np.where(t253, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    t291 = gap_rear_elbow_up_alike + t74 * t290
+    t292 = np.where(t82 * t288 < t289, t94 - t288, t279 - t291)
+    t293 = t270 + t274 * turn_rear_elbow_up_alike
+    t294 = t269 - t293
+    t295 = t276 & (t81 <= t280) & (t81 <= -t292) & (t81 <= t294)
+    t296 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t297 = t272 + t282 - t296
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t286 + t272 * turn_rear_elbow_up_alike
+    t298 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t299 = t297 * t297 + t298
+    t300 = np.where(t82 * t299 < t289, t299 - t94, t291 + t293)
+    unreachable_3 = np.logical_not(t295 & (t81 <= t300))
+    t301 = _runtime.poison(invalid | unreachable_3)
+    t302 = t215 + t301
+    folded_right_rear_elbow_up_alike = np.sqrt(t288) <= t105
+    t303 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    M_right_rear_elbow_up_alike = np.maximum(-t292, t108)
+    N_right_rear_elbow_up_alike = np.maximum(t280, t108)
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t242 = t91 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = np.where(short_right, t43, t70 + t242)
-    t243 = 2.0 * np.where(0.0 <= -t212, 1.0, -1.0)
+    t304 = t107 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = np.where(short_right, size, t63 + t304)
+    t305 = 2.0 * np.where(0.0 <= -t251, 1.0, -1.0)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t244 = t243 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t244 / whole_right_rear_elbow_up_alike)
-    t245 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t246 = t226 * ahead_1_right_rear_elbow_up_alike - t227 * t245
-    t247 = t227 * ahead_1_right_rear_elbow_up_alike + t226 * t245
-    t248 = np.where(folded_right_rear_elbow_up_alike, t241, -np.arctan2(t246, -t247))
-    t249 = _runtime.wrap(t248) + t239
-    t250 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t251 = t98 + np.where(short_right, 0.0, t243 * t250)
-    t252 = _runtime.wrap(t251) + t239
-    folded_left_rear_elbow_up_alike = np.sqrt(t237) <= t89
-    N_left_rear_elbow_up_alike = np.maximum(t233, 0.0)
-    rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
-    M_left_rear_elbow_up_alike = np.maximum(t238, 0.0)
-    rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t253 = t243 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    t306 = t305 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t306 / whole_right_rear_elbow_up_alike)
+    t307 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t308 = t284 * ahead_1_right_rear_elbow_up_alike + r_right_rear_elbow_up_alike * t307
+    t309 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t310 = np.where(folded_right_rear_elbow_up_alike, t303, -np.arctan2(t308, t309 - t284 * t307))
+    t311 = _runtime.wrap(t310) + t301
+    t312 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t313 = t114 + np.where(short_right, 0.0, t305 * t312)
+    t314 = _runtime.wrap(t313) + t301
+    folded_left_rear_elbow_up_alike = np.sqrt(t299) <= t105
+    M_left_rear_elbow_up_alike = np.maximum(t300, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t294, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t253 / whole_left_rear_elbow_up_alike)
-    t254 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t255 = r_left_rear_elbow_up_alike * t254
-    t256 = t91 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = np.where(short_right, t43, t70 + t256)
-    t257 = t235 * ahead_1_left_rear_elbow_up_alike
-    t258 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t259 = t235 * t254
-    t260 = np.where(folded_left_rear_elbow_up_alike, t241, -np.arctan2(t255 - t257, t258 + t259))
-    t261 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t262 = np.where(short_right, 0.0, t243 * t261)
-    t263 = t108 + t239
-    t264 = np.where(folded_left_rear_elbow_up_alike, t241, -np.arctan2(-(t257 + t255), t258 - t259))
-    stheta2A_rear_elbow_down_alike = t186 + t190
-    ctheta2A_rear_elbow_down_alike = t191 - t192
-    c_relative_rear_elbow_down_alike = t196 + t198
-    t265 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t200 - t201
-    t266 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t265 - t266
-    t267 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t268 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t269 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t268 + t269
-    t270 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t271 = t267 - t270
-    t272 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t273 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t272 + t273
-    t274 = L2 * t271 - a3 * c_elbow_rear_elbow_down_alike
-    t275 = 0.0 <= -t274
-    t276 = L2 * c_elbow_rear_elbow_down_alike + a3 * t271
-    large_rear_elbow_down_alike = fore_arm + np.where(t275, -t274, t274)
-    small_rear_elbow_down_alike = t276 * t276 / large_rear_elbow_down_alike
-    t277 = np.where(t275, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    t278 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t279 = t278 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t280 = d * t279
-    t281 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t282 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t281
-    t283 = d * t282
-    gap_rear_elbow_down_alike = t280 * t280 + t283 * t283
-    t284 = t46 * t277 - gap_rear_elbow_down_alike
-    end_rear_elbow_down_alike = np.where(t275, t43 - small_rear_elbow_down_alike, t70 + small_rear_elbow_down_alike)
-    t285 = ctheta2A_rear_elbow_down_alike * end_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = stheta2A_rear_elbow_down_alike * t276 + t285
-    t286 = stheta2A_rear_elbow_down_alike * end_rear_elbow_down_alike
-    t287 = ctheta2A_rear_elbow_down_alike * t276 - t286
-    t288 = 2.0 * t280 * point_11_rear_elbow_down_alike - 2.0 * t283 * t287
-    t289 = t284 + t288
-    t290 = t283 + t287
-    t291 = t280 - point_11_rear_elbow_down_alike
-    t292 = t290 * t290 + t291 * t291
-    t293 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t294 = np.where(t275, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    t295 = gap_rear_elbow_down_alike + t46 * t294
-    t296 = np.where(t74 * t292 < t293, t79 - t292, t288 - t295)
-    t297 = t284 - t288
-    t298 = t181 & (t45 <= t289) & (t45 <= -t296) & (t45 <= t297)
-    t299 = t283 - t287
-    r_left_rear_elbow_down_alike = t280 + point_11_rear_elbow_down_alike
-    t300 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t301 = t299 * t299 + t300
-    t302 = np.where(t74 * t301 < t293, t301 - t79, t288 + t295)
-    unreachable_4 = np.logical_not(t298 & (t45 <= t302))
-    t303 = _runtime.poison(invalid | unreachable_4)
-    t304 = t175 + t303
-    folded_right_rear_elbow_down_alike = np.sqrt(t292) <= t89
-    t305 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(-t296, t92)
-    N_right_rear_elbow_down_alike = np.maximum(t289, t92)
+    t315 = t107 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = np.where(short_right, size, t63 + t315)
+    t316 = t297 * ahead_1_left_rear_elbow_up_alike
+    rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
+    rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
+    t317 = t305 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t317 / whole_left_rear_elbow_up_alike)
+    t318 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t319 = r_left_rear_elbow_up_alike * t318
+    t320 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t321 = t297 * t318
+    t322 = np.where(folded_left_rear_elbow_up_alike, t303, -np.arctan2(t316 + t319, t320 - t321))
+    t323 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t324 = np.where(short_right, 0.0, t305 * t323)
+    t325 = t124 + t301
+    t326 = np.where(folded_left_rear_elbow_up_alike, t303, -np.arctan2(t316 - t319, t320 + t321))
+    stheta2A_rear_elbow_down_alike = t226 + t230
+    ctheta2A_rear_elbow_down_alike = t231 - t232
+    c_relative_rear_elbow_down_alike = t236 + t238
+    t327 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t240 - t241
+    t328 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t327 - t328
+    t329 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t330 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    t331 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t330 + t331
+    t332 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t333 = t329 - t332
+    t334 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t335 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t334 + t335
+    drawn_rear_elbow_down_alike = L1 - L_2W * t333 + a_3W * c_elbow_rear_elbow_down_alike
+    t336 = 2.0 * drawn_rear_elbow_down_alike
+    t337 = L2 * c_elbow_rear_elbow_down_alike + a3 * t333
+    t338 = L2 * t333 - a3 * c_elbow_rear_elbow_down_alike
+    t339 = 0.0 <= -t338
+    large_rear_elbow_down_alike = fore_arm + np.where(t339, -t338, t338)
+    small_rear_elbow_down_alike = t337 * t337 / large_rear_elbow_down_alike
+    end_rear_elbow_down_alike = np.where(t339, size - small_rear_elbow_down_alike, t63 + small_rear_elbow_down_alike)
+    t340 = stheta2A_rear_elbow_down_alike * end_rear_elbow_down_alike
+    t341 = ctheta2A_rear_elbow_down_alike * t337 - t340
+    t342 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t343 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t342
+    t344 = d * t343
+    t345 = t341 + t344
+    t346 = ctheta2A_rear_elbow_down_alike * end_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = stheta2A_rear_elbow_down_alike * t337 + t346
+    t347 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t348 = t347 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t349 = d * t348
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t349
+    t350 = stheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t351 = t336 * (ctheta2A_rear_elbow_down_alike * t345 + t350)
+    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t333
+    t352 = t71 + np.abs(tilt_rear_elbow_down_alike)
+    t353 = _runtime.FEASIBILITY * (t43 + size * np.abs(t351) / t352)
+    t354 = np.where(t339, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    gap_rear_elbow_down_alike = t349 * t349 + t344 * t344
+    t355 = t74 * t354 - gap_rear_elbow_down_alike
+    t356 = 2.0 * point_11_rear_elbow_down_alike * t349 - 2.0 * t341 * t344
+    N_right_0_rear_elbow_down_alike = t355 + t356
+    t357 = t221 & (-t353 <= N_right_0_rear_elbow_down_alike)
+    t358 = t341 - t344
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t349
+    t359 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t360 = t336 * (ctheta2A_rear_elbow_down_alike * t358 + t359)
+    t361 = _runtime.FEASIBILITY * (t43 + size * np.abs(t360) / t352)
+    N_left_0_rear_elbow_down_alike = t355 - t356
+    t362 = t357 & (-t361 <= N_left_0_rear_elbow_down_alike)
+    slack_left_rear_elbow_down_alike = np.maximum(N_left_0_rear_elbow_down_alike, 0.0)
+    t363 = N_left_0_rear_elbow_down_alike - slack_left_rear_elbow_down_alike
+    slack_right_rear_elbow_down_alike = np.maximum(N_right_0_rear_elbow_down_alike, 0.0)
+    t364 = N_right_0_rear_elbow_down_alike - slack_right_rear_elbow_down_alike
+    turn_rear_elbow_down_alike = t360 * t363 / (t83 + t360 * t360) + t351 * t364 / (t83 + t351 * t351)
+    t365 = t356 - t351 * turn_rear_elbow_down_alike
+    t366 = t355 + t365
+    t367 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t368 = ctheta2A_rear_elbow_down_alike * t367
+    t369 = r_right_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t370 = t345 + t368 - t369
+    t371 = r_right_0_rear_elbow_down_alike + t345 * turn_rear_elbow_down_alike
+    t372 = stheta2A_rear_elbow_down_alike * t367
+    r_right_rear_elbow_down_alike = t371 + t372
+    t373 = r_right_rear_elbow_down_alike * r_right_rear_elbow_down_alike
+    t374 = t370 * t370 + t373
+    t375 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t376 = np.where(t339, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    t377 = gap_rear_elbow_down_alike + t74 * t376
+    t378 = np.where(t82 * t374 < t375, t94 - t374, t365 - t377)
+    t379 = t356 + t360 * turn_rear_elbow_down_alike
+    t380 = t355 - t379
+    t381 = t362 & (t81 <= t366) & (t81 <= -t378) & (t81 <= t380)
+    t382 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t383 = t358 + t368 - t382
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t372 + t358 * turn_rear_elbow_down_alike
+    t384 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t385 = t383 * t383 + t384
+    t386 = np.where(t82 * t385 < t375, t385 - t94, t377 + t379)
+    unreachable_4 = np.logical_not(t381 & (t81 <= t386))
+    t387 = _runtime.poison(invalid | unreachable_4)
+    t388 = t215 + t387
+    folded_right_rear_elbow_down_alike = np.sqrt(t374) <= t105
+    t389 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    M_right_rear_elbow_down_alike = np.maximum(-t378, t108)
+    N_right_rear_elbow_down_alike = np.maximum(t366, t108)
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t306 = t91 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = np.where(short_right, t43, t70 + t306)
-    t307 = 2.0 * np.where(0.0 <= -t276, 1.0, -1.0)
+    t390 = t107 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = np.where(short_right, size, t63 + t390)
+    t391 = 2.0 * np.where(0.0 <= -t337, 1.0, -1.0)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t308 = t307 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t308 / whole_right_rear_elbow_down_alike)
-    t309 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t310 = t290 * ahead_1_right_rear_elbow_down_alike - t291 * t309
-    t311 = t291 * ahead_1_right_rear_elbow_down_alike + t290 * t309
-    t312 = np.where(folded_right_rear_elbow_down_alike, t305, -np.arctan2(t310, -t311))
-    t313 = _runtime.wrap(t312) + t303
-    t314 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t315 = t98 + np.where(short_right, 0.0, t307 * t314)
-    t316 = _runtime.wrap(t315) + t303
-    folded_left_rear_elbow_down_alike = np.sqrt(t301) <= t89
-    N_left_rear_elbow_down_alike = np.maximum(t297, 0.0)
-    rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
-    M_left_rear_elbow_down_alike = np.maximum(t302, 0.0)
-    rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t317 = t307 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    t392 = t391 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t392 / whole_right_rear_elbow_down_alike)
+    t393 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t394 = t370 * ahead_1_right_rear_elbow_down_alike + r_right_rear_elbow_down_alike * t393
+    t395 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t396 = np.where(folded_right_rear_elbow_down_alike, t389, -np.arctan2(t394, t395 - t370 * t393))
+    t397 = _runtime.wrap(t396) + t387
+    t398 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t399 = t114 + np.where(short_right, 0.0, t391 * t398)
+    t400 = _runtime.wrap(t399) + t387
+    folded_left_rear_elbow_down_alike = np.sqrt(t385) <= t105
+    M_left_rear_elbow_down_alike = np.maximum(t386, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t380, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t317 / whole_left_rear_elbow_down_alike)
-    t318 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t319 = r_left_rear_elbow_down_alike * t318
-    t320 = t91 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = np.where(short_right, t43, t70 + t320)
-    t321 = t299 * ahead_1_left_rear_elbow_down_alike
-    t322 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t323 = t299 * t318
-    t324 = np.where(folded_left_rear_elbow_down_alike, t305, -np.arctan2(t319 - t321, t322 + t323))
-    t325 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t326 = np.where(short_right, 0.0, t307 * t325)
-    t327 = t108 + t303
-    t328 = np.where(folded_left_rear_elbow_down_alike, t305, -np.arctan2(-(t321 + t319), t322 - t323))
-    t329 = nowhere | folded | short
-    t330 = t329 | folded_right | short_right | folded_left
-    t331 = _runtime.status(invalid, unreachable, t330)
-    t332 = t329 | folded_right_front_elbow_down_alike | short_right
-    t333 = _runtime.status(invalid, unreachable_2, t332 | folded_left_front_elbow_down_alike)
-    t334 = nowhere | folded_rear_elbow_up_alike | short
-    t335 = t334 | folded_right_rear_elbow_up_alike | short_right
-    t336 = _runtime.status(invalid, unreachable_3, t335 | folded_left_rear_elbow_up_alike)
-    t337 = t334 | folded_right_rear_elbow_down_alike | short_right
-    t338 = _runtime.status(invalid, unreachable_4, t337 | folded_left_rear_elbow_down_alike)
+    t401 = t107 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = np.where(short_right, size, t63 + t401)
+    t402 = t383 * ahead_1_left_rear_elbow_down_alike
+    rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
+    rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
+    t403 = t391 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t403 / whole_left_rear_elbow_down_alike)
+    t404 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t405 = r_left_rear_elbow_down_alike * t404
+    t406 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t407 = t383 * t404
+    t408 = np.where(folded_left_rear_elbow_down_alike, t389, -np.arctan2(t402 + t405, t406 - t407))
+    t409 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t410 = np.where(short_right, 0.0, t391 * t409)
+    t411 = t124 + t387
+    t412 = np.where(folded_left_rear_elbow_down_alike, t389, -np.arctan2(t402 - t405, t406 + t407))
+    t413 = nowhere | folded | short
+    t414 = t413 | folded_right | short_right | folded_left
+    t415 = _runtime.status(invalid, unreachable, t414)
+    t416 = t413 | folded_right_front_elbow_down_alike | short_right
+    t417 = _runtime.status(invalid, unreachable_2, t416 | folded_left_front_elbow_down_alike)
+    t418 = nowhere | folded_rear_elbow_up_alike | short
+    t419 = t418 | folded_right_rear_elbow_up_alike | short_right
+    t420 = _runtime.status(invalid, unreachable_3, t419 | folded_left_rear_elbow_up_alike)
+    t421 = t418 | folded_right_rear_elbow_down_alike | short_right
+    t422 = _runtime.status(invalid, unreachable_4, t421 | folded_left_rear_elbow_down_alike)
     return (
-        t88,
-        t97,
-        t100,
-        _runtime.wrap(t106) + t87,
-        _runtime.wrap(t98 + t107) + t87,
-        t109,
-        t88,
-        t97,
-        t100,
-        _runtime.wrap(t110) + t87,
-        _runtime.wrap(t98 - t107) + t87,
-        t109,
-        t150,
-        t159,
-        t162,
-        _runtime.wrap(t170) + t149,
-        _runtime.wrap(t98 + t172) + t149,
-        t173,
-        t150,
-        t159,
-        t162,
-        _runtime.wrap(t174) + t149,
-        _runtime.wrap(t98 - t172) + t149,
-        t173,
-        t240,
-        t249,
-        t252,
-        _runtime.wrap(t260) + t239,
-        _runtime.wrap(t98 + t262) + t239,
-        t263,
-        t240,
-        t249,
-        t252,
-        _runtime.wrap(t264) + t239,
-        _runtime.wrap(t98 - t262) + t239,
-        t263,
-        t304,
-        t313,
-        t316,
-        _runtime.wrap(t324) + t303,
-        _runtime.wrap(t98 + t326) + t303,
-        t327,
-        t304,
-        t313,
-        t316,
-        _runtime.wrap(t328) + t303,
-        _runtime.wrap(t98 - t326) + t303,
-        t327,
-        t331,
-        t331,
-        t333,
-        t333,
-        t336,
-        t336,
-        t338,
-        t338,
+        t104,
+        t113,
+        t116,
+        _runtime.wrap(t122) + t103,
+        _runtime.wrap(t114 + t123) + t103,
+        t125,
+        t104,
+        t113,
+        t116,
+        _runtime.wrap(t126) + t103,
+        _runtime.wrap(t114 - t123) + t103,
+        t125,
+        t190,
+        t199,
+        t202,
+        _runtime.wrap(t210) + t189,
+        _runtime.wrap(t114 + t212) + t189,
+        t213,
+        t190,
+        t199,
+        t202,
+        _runtime.wrap(t214) + t189,
+        _runtime.wrap(t114 - t212) + t189,
+        t213,
+        t302,
+        t311,
+        t314,
+        _runtime.wrap(t322) + t301,
+        _runtime.wrap(t114 + t324) + t301,
+        t325,
+        t302,
+        t311,
+        t314,
+        _runtime.wrap(t326) + t301,
+        _runtime.wrap(t114 - t324) + t301,
+        t325,
+        t388,
+        t397,
+        t400,
+        _runtime.wrap(t408) + t387,
+        _runtime.wrap(t114 + t410) + t387,
+        t411,
+        t388,
+        t397,
+        t400,
+        _runtime.wrap(t412) + t387,
+        _runtime.wrap(t114 - t410) + t387,
+        t411,
+        t415,
+        t415,
+        t417,
+        t417,
+        t420,
+        t420,
+        t422,
+        t422,
     )
 
 

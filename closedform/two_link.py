@@ -144,12 +144,11 @@ def elbow_squares(
     elbow: tuple[sp.Expr, sp.Expr],
     *,
     suffix: str = "",
-) -> tuple[tuple[sp.Symbol, sp.Symbol], tuple[sp.Symbol, sp.Symbol]]:
-    """N and M of an arm, and its end seen from the upper arm, from cosine and sine of y - x.
+) -> tuple[tuple[sp.Symbol, sp.Symbol], sp.Symbol]:
+    """N and M of an arm from cosine and sine of y - x, and the sine of its bend times ``second``.
 
     N = 2 l (f - f cos(bend)) and M = 2 l (f + f cos(bend)); of f - |..| and f + |..| the smaller
-    one is the square of f sin(bend) over the larger one.  The end is l + f cos(bend) along the
-    upper arm, which keeps its digits where the arm is folded, and f sin(bend) across it.
+    one is the square of f sin(bend) over the larger one.
     """
     upper, along, across = lengths
     c, s = elbow
@@ -162,8 +161,7 @@ def elbow_squares(
     small = program.let(f"small{suffix}", bent**2 / large)
     N = program.let(f"N{suffix}", 2 * upper * sp.Piecewise((small, stretched), (large, True)))
     M = program.let(f"M{suffix}", 2 * upper * sp.Piecewise((large, stretched), (small, True)))
-    end = sp.Piecewise((upper + second - small, stretched), (upper - second + small, True))
-    return (N, M), (program.let(f"end{suffix}", end), bent)
+    return (N, M), bent
 
 
 def _degenerate(

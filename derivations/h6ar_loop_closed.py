@@ -140,39 +140,15 @@ d.step(
         (line.subs({ahead: given_ahead, higher: given_higher}), wrist_line),
     ],
 )
-
-
-def seen_from(upper: Pair, end: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
-    """(r, h) of a point that is seen from an upper arm: along it and to its left."""
-    return upper.c * end[0] - upper.s * end[1], upper.s * end[0] + upper.c * end[1]
-
-
 reaches = [e.dot(e) for e in (right, left, middle)]
 d.step(
     "How far the virtual arm is bent",
     "The square of the reach of the virtual arm is the mean of those of both arms less half the "
     "distance of the tips squared.  So N = (L1 + f)^2 - R^2 of the virtual arm, whose f is the "
     "length of a fore-arm, is a sum of terms that are not negative and keeps its digits where the "
-    "arms are straight.  Seen from its upper arm, a tip is L1 + L2 sin(theta3) + a3 cos(theta3) "
-    "along it and a3 sin(theta3) - L2 cos(theta3) across it, which keeps the digits of a tip that "
-    "is folded onto its shoulder.",
+    "arms are straight.",
     {"R_I^2": (reaches[0] + reaches[1]) / 2 - apart.dot(apart)},
     equal=[
-        *(
-            (
-                sp.Matrix(
-                    seen_from(
-                        pair(shoulder),
-                        (
-                            m.L1 + m.L2 * sin(elbow) + m.a3 * cos(elbow),
-                            m.a3 * sin(elbow) - m.L2 * cos(elbow),
-                        ),
-                    )
-                ),
-                end,
-            )
-            for end, shoulder, elbow in ((right, theta2R, theta3R), (left, theta2L, theta3L))
-        ),
         (reaches[2], (reaches[0] + reaches[1]) / 2 - apart.dot(apart)),
         *(
             (
@@ -209,14 +185,13 @@ d.step(
 def stand(p: Program) -> Posture:
     """The posture of the joints: the middle of the tips, the virtual arm, yaw, roll, wrist."""
     second = p.let("fore", forearm_length, nonnegative=True)
-    squares, ends = {}, {}
+    squares, bent = {}, {}
     for name, angle in (("right", theta3R), ("left", theta3L)):
-        squares[name], ends[name] = elbow_squares(
+        squares[name], bent[name] = elbow_squares(
             p, lengths, second, pair(angle), suffix=f"_{name}"
         )
-    side = p.let("sigma_side", sp.Piecewise((1, ends["right"][1] >= 0), (-1, True)))
-    both = (seen_from(pair(theta2R), ends["right"]), seen_from(pair(theta2L), ends["left"]))
-    point = tuple(p.let(n, (a + b) / 2) for n, a, b in zip(("r_I", "h_I"), *both, strict=True))
+    side = p.let("sigma_side", sp.Piecewise((1, bent["right"] >= 0), (-1, True)))
+    point = tuple(p.let(n, e) for n, e in zip(("r_I", "h_I"), midway, strict=True))
     p.let("ahead", gap_half[0])
     p.let("higher", gap_half[1])
     gap = p.let("gap", ahead**2 + higher**2)
@@ -403,12 +378,12 @@ upper, fore = mid.posture.upper, mid.posture.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
 bend = (upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
 bend = tuple(p.let(f"{f}_elbow", e) for f, e in zip("cs", bend, strict=True))
-(N, M), reached = elbow_squares(p, lengths, second, bend)
-side = p.let("sigma_right", sp.Piecewise((1, reached[1] >= 0), (-1, True)))
+(N, M), bent = elbow_squares(p, lengths, second, bend)
+side = p.let("sigma_right", sp.Piecewise((1, bent >= 0), (-1, True)))
 opposite = p.let("sigma_other", side * sigma_left)
 by_pairs = {cos(theta23A): fore.c, sin(theta23A): fore.s}
 by_pairs |= {tan(e): sin(e) / cos(e) for e in (psi, phi)}
-point = p.matrix("point", sp.Matrix(seen_from(upper, reached)))
+point = p.matrix("point", reach(m, upper, fore, m.L2, m.a3))
 shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pairs))
 gap = p.let("gap", shift.dot(shift))
 cross = p.let("twice", 2 * point.dot(shift))

@@ -4,14 +4,14 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 90 add, 89 compare and select, 3 atan2, 29 divide, 130 multiply, 6 sincos, 9 sqrt
- *   pose: 117 add, 86 compare and select, 29 divide, 171 multiply, 6 sincos, 9 sqrt
+ *   fk: 82 add, 87 compare and select, 3 atan2, 21 divide, 126 multiply, 6 sincos, 9 sqrt
+ *   pose: 109 add, 84 compare and select, 21 divide, 167 multiply, 6 sincos, 9 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
- *   jacobian: 215 add, 82 compare and select, 61 divide, 326 multiply, 6 sincos, 9 sqrt
- *   determinant: 93 add, 82 compare and select, 30 divide, 159 multiply, 5 sincos, 9 sqrt
- *   singularities: 98 add, 82 compare and select, 29 divide, 149 multiply, 5 sincos, 9 sqrt
- *   ik: 341 compare and select, 366 add, 28 atan2, 78 divide, 428 multiply, 3 sincos, 41 sqrt
+ *   jacobian: 209 add, 80 compare and select, 53 divide, 325 multiply, 6 sincos, 9 sqrt
+ *   determinant: 87 add, 80 compare and select, 22 divide, 158 multiply, 5 sincos, 9 sqrt
+ *   singularities: 92 add, 80 compare and select, 21 divide, 148 multiply, 5 sincos, 9 sqrt
+ *   ik: 337 compare and select, 366 add, 28 atan2, 78 divide, 436 multiply, 3 sincos, 41 sqrt
  *   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt

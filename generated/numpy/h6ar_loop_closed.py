@@ -3,14 +3,14 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 90 add, 89 compare and select, 3 atan2, 29 divide, 130 multiply, 6 sincos, 9 sqrt
-#   pose: 117 add, 86 compare and select, 29 divide, 171 multiply, 6 sincos, 9 sqrt
+#   fk: 82 add, 87 compare and select, 3 atan2, 21 divide, 126 multiply, 6 sincos, 9 sqrt
+#   pose: 109 add, 84 compare and select, 21 divide, 167 multiply, 6 sincos, 9 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 215 add, 82 compare and select, 61 divide, 326 multiply, 6 sincos, 9 sqrt
-#   determinant: 93 add, 82 compare and select, 30 divide, 159 multiply, 5 sincos, 9 sqrt
-#   singularities: 98 add, 82 compare and select, 29 divide, 149 multiply, 5 sincos, 9 sqrt
-#   ik: 341 compare and select, 366 add, 28 atan2, 78 divide, 428 multiply, 3 sincos, 41 sqrt
+#   jacobian: 209 add, 80 compare and select, 53 divide, 325 multiply, 6 sincos, 9 sqrt
+#   determinant: 87 add, 80 compare and select, 22 divide, 158 multiply, 5 sincos, 9 sqrt
+#   singularities: 92 add, 80 compare and select, 21 divide, 148 multiply, 5 sincos, 9 sqrt
+#   ik: 337 compare and select, 366 add, 28 atan2, 78 divide, 436 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -104,128 +104,128 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     s, c = _runtime.sincos(theta)
     t1 = c3R_half * c3L_half
     t2 = s3R_half * s3L_half
-    t3 = t1 - t2
+    t3 = t1 + t2
     t4 = c3R_half * s3L_half
     t5 = s3R_half * c3L_half
-    t6 = t4 + t5
-    t7 = c2R_half * t3 - s2R_half * t6
-    t8 = s2R_half * t3 + c2R_half * t6
-    t9 = c2L_half * t7 - s2L_half * t8
-    t10 = s2L_half * t7 + c2L_half * t8
-    t11 = t1 + t2
-    t12 = t4 - t5
-    t13 = s2L_half * (c2R_half * t11 + s2R_half * t12) - c2L_half * (s2R_half * t11 - c2R_half * t12)
-    t14 = s2L_half * c2R_half
-    t15 = c2L_half * s2R_half
-    t16 = L1 * (t14 - t15)
-    t17 = (L2 * t9 - a3 * t10) * t13 - (t14 + t15) * t16
-    t18 = c3L_half * c3L_half - s3L_half * s3L_half
-    t19 = s3L_half * c3L_half
-    t20 = t19 + t19
-    t21 = L2 * t18 - a3 * t20
-    t22 = c2L_half * c2L_half - s2L_half * s2L_half
-    t23 = c3R_half * c3R_half - s3R_half * s3R_half
-    t24 = s3R_half * c3R_half
-    t25 = t24 + t24
-    t26 = L2 * t23 - a3 * t25
-    t27 = c2R_half * c2R_half - s2R_half * s2R_half
-    t28 = s2L_half * c2L_half
-    t29 = t28 + t28
-    straight_left = L2 * t20 + a3 * t18
-    t30 = 0.0 <= straight_left
+    t6 = t4 - t5
+    t7 = c2R_half * t3 + s2R_half * t6
+    t8 = s2R_half * t3 - c2R_half * t6
+    t9 = s2L_half * t7 - c2L_half * t8
+    t10 = t1 - t2
+    t11 = t4 + t5
+    t12 = c2R_half * t10 - s2R_half * t11
+    t13 = s2R_half * t10 + c2R_half * t11
+    t14 = c2L_half * t12 - s2L_half * t13
+    t15 = s2L_half * t12 + c2L_half * t13
+    t16 = L2 * t14 - a3 * t15
+    t17 = s2L_half * c2R_half
+    t18 = c2L_half * s2R_half
+    t19 = t17 + t18
+    t20 = L1 * (t17 - t18)
+    t21 = t9 * t16 - t19 * t20
+    t22 = c2L_half * t7 + s2L_half * t8
+    t23 = c2L_half * c2R_half
+    t24 = s2L_half * s2R_half
+    t25 = L1 * (t23 + t24)
+    t26 = t22 * t16 - t19 * t25
+    t27 = L2 * t15 + a3 * t14
+    t28 = t23 - t24
+    r_I = t27 * t22 + t28 * t25
+    t29 = t26 * t26 + r_I * r_I
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t31 = L1 + fore
-    large_left = fore + np.where(t30, straight_left, -straight_left)
-    small_left = t21 * t21 / large_left
-    t32 = L1 - fore
-    end_left = np.where(t30, t31 - small_left, small_left + t32)
-    t33 = t21 * t22 / 2.0 + t26 * t27 / 2.0 - t29 * end_left / 2.0
-    t34 = s2R_half * c2R_half
-    t35 = t34 + t34
-    straight_right = L2 * t25 + a3 * t23
-    t36 = 0.0 <= straight_right
-    t37 = np.where(t36, straight_right, -straight_right)
-    large_right = fore + t37
-    small_right = t26 * t26 / large_right
-    end_right = np.where(t36, t31 - small_right, small_right + t32)
-    t38 = t33 - t35 * end_right / 2.0
-    t39 = t21 * t29 / 2.0 + t26 * t35 / 2.0 + t22 * end_left / 2.0
-    r_I = t39 + t27 * end_right / 2.0
-    t40 = t38 * t38 + r_I * r_I
-    t41 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t40) <= t41
-    t42 = t31 * t31
-    short_virtual = L1 * fore <= t42 * _runtime.VANISHING
-    t43 = (c2L_half * c2R_half - s2L_half * s2R_half) * t16
-    t44 = t13 * (L2 * t10 + a3 * t9) + t43
-    gap = t17 * t17 + t44 * t44
-    t45 = L1 * 2.0
-    t46 = np.where(t30, large_left, small_left) * t45 / 2.0
-    M_right = np.where(t36, large_right, small_right) * t45
-    t47 = np.where(t42 * t40 < gap * gap, t32 * t32 - t40, gap - t46 - M_right / 2.0)
-    M_virtual = np.maximum(-t47, 0.0)
-    t48 = np.where(t30, small_left, large_left) * t45 / 2.0
-    N_right = np.where(t36, small_right, large_right) * t45
-    t49 = gap + t48 + N_right / 2.0
-    N_virtual = np.maximum(t49, 0.0)
+    t30 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t29) <= t30
+    t31 = s2R_half * c2R_half
+    t32 = L1 + fore
+    t33 = t32 * t32
+    short_virtual = L1 * fore <= t33 * _runtime.VANISHING
+    t34 = L1 - fore
+    t35 = t27 * t9 + t28 * t20
+    gap = t21 * t21 + t35 * t35
+    t36 = s3L_half * c3L_half
+    t37 = t36 + t36
+    t38 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t37 + a3 * t38
+    t39 = 0.0 <= straight_left
+    large_left = fore + np.where(t39, straight_left, -straight_left)
+    t40 = L2 * t38 - a3 * t37
+    small_left = t40 * t40 / large_left
+    t41 = L1 * 2.0
+    t42 = np.where(t39, large_left, small_left) * t41 / 2.0
+    t43 = s3R_half * c3R_half
+    t44 = t43 + t43
+    t45 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t44 + a3 * t45
+    t46 = 0.0 <= straight_right
+    t47 = np.where(t46, straight_right, -straight_right)
+    large_right = fore + t47
+    t48 = L2 * t45 - a3 * t44
+    small_right = t48 * t48 / large_right
+    M_right = np.where(t46, large_right, small_right) * t41
+    t49 = np.where(t33 * t29 < gap * gap, t34 * t34 - t29, gap - t42 - M_right / 2.0)
+    M_virtual = np.maximum(-t49, 0.0)
+    t50 = np.where(t39, small_left, large_left) * t41 / 2.0
+    N_right = np.where(t46, small_right, large_right) * t41
+    t51 = gap + t50 + N_right / 2.0
+    N_virtual = np.maximum(t51, 0.0)
     whole_virtual = N_virtual + M_virtual
-    ahead_1_virtual = np.where(short_virtual, t31, t32 + fore * 2.0 * M_virtual / whole_virtual)
-    t50 = 2.0 * np.where(0.0 <= -t26, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t50 * np.sqrt(M_virtual) / whole_virtual)
-    t51 = fore * s_bend_virtual
-    t52 = t38 * ahead_1_virtual + r_I * t51
-    out_virtual = r_I * ahead_1_virtual - t38 * t51
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
-    stheta2A = np.where(folded_virtual, t35, -(t52 / norm_virtual))
-    bare_virtual = fore <= t31 * _runtime.VANISHING
+    ahead_1_virtual = np.where(short_virtual, t32, t34 + fore * 2.0 * M_virtual / whole_virtual)
+    t52 = 2.0 * np.where(0.0 <= -t48, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t52 * np.sqrt(M_virtual) / whole_virtual)
+    t53 = fore * s_bend_virtual
+    t54 = t26 * ahead_1_virtual + r_I * t53
+    out_virtual = r_I * ahead_1_virtual - t26 * t53
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
+    stheta2A = np.where(folded_virtual, t31 + t31, -(t54 / norm_virtual))
+    bare_virtual = fore <= t32 * _runtime.VANISHING
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    ctheta2A = np.where(folded_virtual, t27, out_virtual / norm_virtual)
+    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
-    t53 = d * d
-    base = np.sqrt(t53 + gap)
-    t54 = (t17 * stheta23A - t44 * ctheta23A) / base
-    t55 = base - (gs - al)
-    t56 = gs + al
-    t57 = t56 - base
-    wrist = np.sqrt(np.maximum(t55, 0.0)) * np.sqrt(np.maximum(t57, 0.0))
-    t58 = loff + lp * c + wrist
-    t59 = t54 * t58
-    t60 = t17 * ctheta23A + t44 * stheta23A
-    tilted = np.sqrt(t53 + t60 * t60)
+    t55 = d * d
+    base = np.sqrt(t55 + gap)
+    t56 = (t21 * stheta23A - t35 * ctheta23A) / base
+    t57 = base - (gs - al)
+    t58 = gs + al
+    t59 = t58 - base
+    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
+    t60 = loff + lp * c + wrist
+    t61 = t56 * t60
+    t62 = t21 * ctheta23A + t35 * stheta23A
+    tilted = np.sqrt(t55 + t62 * t62)
     c_phi = d / tilted
-    t61 = lp * s
-    t62 = t60 / tilted
-    t63 = t59 * c_phi + t61 * t62
-    t64 = a3 + t61 * c_phi - t59 * t62
+    t63 = lp * s
+    t64 = t62 / tilted
+    t65 = t61 * c_phi + t63 * t64
+    t66 = a3 + t63 * c_phi - t61 * t64
     c_psi = tilted / base
-    t65 = L2 + t58 * c_psi
-    t66 = L1 * ctheta2A + ctheta23A * t64 + stheta23A * t65
-    t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t68 = t67 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t69 = t68 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t70 = t69 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t71 = t70 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t72 = t71 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t73 = t72 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t74 = t73 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t75 = -(_runtime.FEASIBILITY * (d * t31))
-    t76 = -(_runtime.FEASIBILITY * t56)
-    t77 = (t75 <= t49) & (t75 <= -t47) & (t76 <= t57) & (t76 <= t55)
-    t78 = _runtime.poison(np.logical_not(t74) | np.logical_not(t77))
-    t79 = d1 + L1 * stheta2A - ctheta23A * t65 + stheta23A * t64
-    t80 = _runtime.wrap(-np.arctan2(-t62, c_phi)) + t78
+    t67 = L2 + t60 * c_psi
+    t68 = L1 * ctheta2A + ctheta23A * t66 + stheta23A * t67
+    t69 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t70 = t69 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t71 = t70 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t72 = t71 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t73 = t72 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t74 = t73 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t75 = t74 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t76 = t75 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t77 = -(_runtime.FEASIBILITY * (d * t32))
+    t78 = -(_runtime.FEASIBILITY * t58)
+    t79 = (t77 <= t51) & (t77 <= -t49) & (t78 <= t59) & (t78 <= t57)
+    t80 = _runtime.poison(np.logical_not(t76) | np.logical_not(t79))
+    t81 = d1 + L1 * stheta2A - ctheta23A * t67 + stheta23A * t66
+    t82 = _runtime.wrap(-np.arctan2(-t64, c_phi)) + t80
     return (
-        s1 * t63 + c1 * t66 + t78,
-        s1 * t66 - c1 * t63 + t78,
-        t79 + t78,
-        _runtime.wrap(np.arctan2(-t54, c_psi)) + t78,
-        t80,
-        _runtime.wrap(np.arctan2(s, c)) + t78,
+        s1 * t65 + c1 * t68 + t80,
+        s1 * t68 - c1 * t65 + t80,
+        t81 + t80,
+        _runtime.wrap(np.arctan2(-t56, c_psi)) + t80,
+        t82,
+        _runtime.wrap(np.arctan2(s, c)) + t80,
     )
 
 
@@ -258,163 +258,163 @@ def _pose(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp
 ):
     s1, c1 = _runtime.sincos(theta1)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     s, c = _runtime.sincos(theta)
-    t1 = c3L_half * c3L_half - s3L_half * s3L_half
-    t2 = s3L_half * c3L_half
-    t3 = t2 + t2
-    t4 = L2 * t1 - a3 * t3
-    t5 = c2L_half * c2L_half - s2L_half * s2L_half
-    t6 = c3R_half * c3R_half - s3R_half * s3R_half
-    t7 = s3R_half * c3R_half
-    t8 = t7 + t7
-    t9 = L2 * t6 - a3 * t8
-    t10 = c2R_half * c2R_half - s2R_half * s2R_half
-    t11 = s2L_half * c2L_half
-    t12 = t11 + t11
-    straight_left = L2 * t3 + a3 * t1
-    t13 = 0.0 <= straight_left
+    t1 = c3R_half * c3L_half
+    t2 = s3R_half * s3L_half
+    t3 = t1 + t2
+    t4 = c3R_half * s3L_half
+    t5 = s3R_half * c3L_half
+    t6 = t4 - t5
+    t7 = c2R_half * t3 + s2R_half * t6
+    t8 = s2R_half * t3 - c2R_half * t6
+    t9 = c2L_half * t7 + s2L_half * t8
+    t10 = t1 - t2
+    t11 = t4 + t5
+    t12 = c2R_half * t10 - s2R_half * t11
+    t13 = s2R_half * t10 + c2R_half * t11
+    t14 = c2L_half * t12 - s2L_half * t13
+    t15 = s2L_half * t12 + c2L_half * t13
+    t16 = L2 * t14 - a3 * t15
+    t17 = s2L_half * c2R_half
+    t18 = c2L_half * s2R_half
+    t19 = t17 + t18
+    t20 = c2L_half * c2R_half
+    t21 = s2L_half * s2R_half
+    t22 = L1 * (t20 + t21)
+    t23 = t9 * t16 - t19 * t22
+    t24 = L2 * t15 + a3 * t14
+    t25 = t20 - t21
+    r_I = t24 * t9 + t25 * t22
+    t26 = t23 * t23 + r_I * r_I
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t14 = L1 + fore
-    large_left = fore + np.where(t13, straight_left, -straight_left)
-    small_left = t4 * t4 / large_left
-    t15 = L1 - fore
-    end_left = np.where(t13, t14 - small_left, small_left + t15)
-    t16 = t4 * t5 / 2.0 + t9 * t10 / 2.0 - t12 * end_left / 2.0
-    t17 = s2R_half * c2R_half
-    t18 = t17 + t17
-    straight_right = L2 * t8 + a3 * t6
-    t19 = 0.0 <= straight_right
-    t20 = np.where(t19, straight_right, -straight_right)
-    large_right = fore + t20
-    small_right = t9 * t9 / large_right
-    end_right = np.where(t19, t14 - small_right, small_right + t15)
-    t21 = t16 - t18 * end_right / 2.0
-    t22 = t4 * t12 / 2.0 + t9 * t18 / 2.0 + t5 * end_left / 2.0
-    r_I = t22 + t10 * end_right / 2.0
-    t23 = t21 * t21 + r_I * r_I
-    t24 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t23) <= t24
-    t25 = t14 * t14
-    short_virtual = L1 * fore <= t25 * _runtime.VANISHING
-    t26 = c3R_half * c3L_half
-    t27 = s3R_half * s3L_half
-    t28 = t26 - t27
-    t29 = c3R_half * s3L_half
-    t30 = s3R_half * c3L_half
-    t31 = t29 + t30
-    t32 = c2R_half * t28 - s2R_half * t31
-    t33 = s2R_half * t28 + c2R_half * t31
-    t34 = c2L_half * t32 - s2L_half * t33
-    t35 = s2L_half * t32 + c2L_half * t33
-    t36 = t26 + t27
-    t37 = t29 - t30
-    t38 = s2L_half * (c2R_half * t36 + s2R_half * t37) - c2L_half * (s2R_half * t36 - c2R_half * t37)
-    t39 = s2L_half * c2R_half
-    t40 = c2L_half * s2R_half
-    t41 = L1 * (t39 - t40)
-    t42 = (L2 * t34 - a3 * t35) * t38 - (t39 + t40) * t41
-    t43 = (c2L_half * c2R_half - s2L_half * s2R_half) * t41
-    t44 = t38 * (L2 * t35 + a3 * t34) + t43
-    gap = t42 * t42 + t44 * t44
-    t45 = L1 * 2.0
-    t46 = np.where(t13, large_left, small_left) * t45 / 2.0
-    M_right = np.where(t19, large_right, small_right) * t45
-    t47 = np.where(t25 * t23 < gap * gap, t15 * t15 - t23, gap - t46 - M_right / 2.0)
-    M_virtual = np.maximum(-t47, 0.0)
-    t48 = np.where(t13, small_left, large_left) * t45 / 2.0
-    N_right = np.where(t19, small_right, large_right) * t45
-    t49 = gap + t48 + N_right / 2.0
-    N_virtual = np.maximum(t49, 0.0)
+    t27 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t26) <= t27
+    t28 = L1 + fore
+    t29 = t28 * t28
+    short_virtual = L1 * fore <= t29 * _runtime.VANISHING
+    t30 = L1 - fore
+    t31 = s2L_half * t7 - c2L_half * t8
+    t32 = L1 * (t17 - t18)
+    t33 = t31 * t16 - t19 * t32
+    t34 = t24 * t31 + t25 * t32
+    gap = t33 * t33 + t34 * t34
+    t35 = s3L_half * c3L_half
+    t36 = t35 + t35
+    t37 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t36 + a3 * t37
+    t38 = 0.0 <= straight_left
+    large_left = fore + np.where(t38, straight_left, -straight_left)
+    t39 = L2 * t37 - a3 * t36
+    small_left = t39 * t39 / large_left
+    t40 = L1 * 2.0
+    t41 = np.where(t38, large_left, small_left) * t40 / 2.0
+    t42 = s3R_half * c3R_half
+    t43 = t42 + t42
+    t44 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t43 + a3 * t44
+    t45 = 0.0 <= straight_right
+    t46 = np.where(t45, straight_right, -straight_right)
+    large_right = fore + t46
+    t47 = L2 * t44 - a3 * t43
+    small_right = t47 * t47 / large_right
+    M_right = np.where(t45, large_right, small_right) * t40
+    t48 = np.where(t29 * t26 < gap * gap, t30 * t30 - t26, gap - t41 - M_right / 2.0)
+    M_virtual = np.maximum(-t48, 0.0)
+    t49 = np.where(t38, small_left, large_left) * t40 / 2.0
+    N_right = np.where(t45, small_right, large_right) * t40
+    t50 = gap + t49 + N_right / 2.0
+    N_virtual = np.maximum(t50, 0.0)
     whole_virtual = N_virtual + M_virtual
-    ahead_1_virtual = np.where(short_virtual, t14, t15 + fore * 2.0 * M_virtual / whole_virtual)
-    t50 = 2.0 * np.where(0.0 <= -t9, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t50 * np.sqrt(M_virtual) / whole_virtual)
-    t51 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t21 * t51
-    t52 = t21 * ahead_1_virtual + r_I * t51
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
-    ctheta2A = np.where(folded_virtual, t10, out_virtual / norm_virtual)
-    bare_virtual = fore <= t14 * _runtime.VANISHING
+    ahead_1_virtual = np.where(short_virtual, t28, t30 + fore * 2.0 * M_virtual / whole_virtual)
+    t51 = 2.0 * np.where(0.0 <= -t47, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t51 * np.sqrt(M_virtual) / whole_virtual)
+    t52 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t23 * t52
+    t53 = t23 * ahead_1_virtual + r_I * t52
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t53 * t53)
+    ctheta2A = np.where(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
+    bare_virtual = fore <= t28 * _runtime.VANISHING
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    stheta2A = np.where(folded_virtual, t18, -(t52 / norm_virtual))
+    t54 = s2R_half * c2R_half
+    stheta2A = np.where(folded_virtual, t54 + t54, -(t53 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t53 = c1 * ctheta23A
-    t54 = d * d
+    t55 = c1 * ctheta23A
+    t56 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t55 = t42 * ctheta23A + t44 * stheta23A
-    tilted = np.sqrt(t54 + t55 * t55)
+    t57 = t33 * ctheta23A + t34 * stheta23A
+    tilted = np.sqrt(t56 + t57 * t57)
     c_phi = d / tilted
-    base = np.sqrt(t54 + gap)
-    t56 = (t42 * stheta23A - t44 * ctheta23A) / base
-    t57 = t55 / tilted
-    t58 = t56 * t57
-    hand_11 = c * c_phi + s * t58
-    t59 = c_phi * t56
-    t60 = s * t59 - c * t57
-    t61 = c1 * stheta23A
+    base = np.sqrt(t56 + gap)
+    t58 = (t33 * stheta23A - t34 * ctheta23A) / base
+    t59 = t57 / tilted
+    t60 = t58 * t59
+    hand_11 = c * c_phi + s * t60
+    t61 = c_phi * t58
+    t62 = s * t61 - c * t59
+    t63 = c1 * stheta23A
     c_psi = tilted / base
-    t62 = s * c_psi
-    t63 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t64 = t63 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t65 = t64 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t66 = t65 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
-    t67 = t66 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
-    t68 = t67 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
-    t69 = t68 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    t70 = t69 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    t71 = -(_runtime.FEASIBILITY * (d * t14))
-    t72 = gs + al
-    t73 = -(_runtime.FEASIBILITY * t72)
-    t74 = t72 - base
-    t75 = base - (gs - al)
-    t76 = (t71 <= t49) & (t71 <= -t47) & (t73 <= t74) & (t73 <= t75)
-    t77 = _runtime.poison(np.logical_not(t70) | np.logical_not(t76))
-    t78 = t57 * c_psi
+    t64 = s * c_psi
+    t65 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t66 = t65 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t67 = t66 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t68 = t67 & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d)
+    t69 = t68 & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff)
+    t70 = t69 & np.isfinite(lp) & (0.0 <= L1) & (0.0 <= L2)
+    t71 = t70 & (0.0 <= a3) & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t72 = t71 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t73 = -(_runtime.FEASIBILITY * (d * t28))
+    t74 = gs + al
+    t75 = -(_runtime.FEASIBILITY * t74)
+    t76 = t74 - base
+    t77 = base - (gs - al)
+    t78 = (t73 <= t50) & (t73 <= -t48) & (t75 <= t76) & (t75 <= t77)
+    t79 = _runtime.poison(np.logical_not(t72) | np.logical_not(t78))
+    t80 = t59 * c_psi
     hand_22 = c_phi * c_psi
-    t79 = -(t53 * t78 - s1 * hand_22 + t56 * t61) + t77
-    hand_13 = s * c_phi - c * t58
-    t80 = c * t59 + s * t57
+    t81 = -(t55 * t80 - s1 * hand_22 + t58 * t63) + t79
+    hand_13 = s * c_phi - c * t60
+    t82 = c * t61 + s * t59
     hand_33 = c * c_psi
-    t81 = t53 * hand_13 + s1 * t80 + t61 * hand_33 + t77
-    wrist = np.sqrt(np.maximum(t75, 0.0)) * np.sqrt(np.maximum(t74, 0.0))
-    t82 = loff + lp * c + wrist
-    t83 = lp * s
-    t84 = t59 * t82 + t83 * t57
-    t85 = a3 + t83 * c_phi - t58 * t82
-    t86 = L2 + c_psi * t82
-    t87 = L1 * ctheta2A + ctheta23A * t85 + stheta23A * t86
-    t88 = s1 * ctheta23A
-    t89 = s1 * stheta23A
-    t90 = -(t78 * t88 + c1 * hand_22 + t56 * t89) + t77
-    t91 = hand_13 * t88 - c1 * t80 + hand_33 * t89 + t77
-    t92 = stheta23A * hand_13 - ctheta23A * hand_33 + t77
-    t93 = d1 + L1 * stheta2A - ctheta23A * t86 + stheta23A * t85
-    t94 = 0.0 + t77
+    t83 = t55 * hand_13 + s1 * t82 + t63 * hand_33 + t79
+    wrist = np.sqrt(np.maximum(t77, 0.0)) * np.sqrt(np.maximum(t76, 0.0))
+    t84 = loff + lp * c + wrist
+    t85 = lp * s
+    t86 = t61 * t84 + t85 * t59
+    t87 = a3 + t85 * c_phi - t60 * t84
+    t88 = L2 + c_psi * t84
+    t89 = L1 * ctheta2A + ctheta23A * t87 + stheta23A * t88
+    t90 = s1 * ctheta23A
+    t91 = s1 * stheta23A
+    t92 = -(t80 * t90 + c1 * hand_22 + t58 * t91) + t79
+    t93 = hand_13 * t90 - c1 * t82 + hand_33 * t91 + t79
+    t94 = stheta23A * hand_13 - ctheta23A * hand_33 + t79
+    t95 = d1 + L1 * stheta2A - ctheta23A * t88 + stheta23A * t87
+    t96 = 0.0 + t79
     return (
-        t53 * hand_11 - s1 * t60 - t61 * t62 + t77,
-        t79,
+        t55 * hand_11 - s1 * t62 - t63 * t64 + t79,
         t81,
-        s1 * t84 + c1 * t87 + t77,
-        hand_11 * t88 + c1 * t60 - t62 * t89 + t77,
-        t90,
-        t91,
-        s1 * t87 - c1 * t84 + t77,
-        ctheta23A * t62 + stheta23A * hand_11 + t77,
-        ctheta23A * t56 - stheta23A * t78 + t77,
+        t83,
+        s1 * t86 + c1 * t89 + t79,
+        hand_11 * t90 + c1 * t62 - t64 * t91 + t79,
         t92,
-        t93 + t77,
+        t93,
+        s1 * t89 - c1 * t86 + t79,
+        ctheta23A * t64 + stheta23A * hand_11 + t79,
+        ctheta23A * t58 - stheta23A * t80 + t79,
         t94,
-        t94,
-        t94,
-        1.0 + t77,
+        t95 + t79,
+        t96,
+        t96,
+        t96,
+        1.0 + t79,
     )
 
 
@@ -551,254 +551,259 @@ def _jacobian(
     s, c = _runtime.sincos(theta)
     t1 = c3R_half * c3L_half
     t2 = s3R_half * s3L_half
-    t3 = t1 - t2
+    t3 = t1 + t2
     t4 = c3R_half * s3L_half
     t5 = s3R_half * c3L_half
-    t6 = t4 + t5
-    t7 = c2R_half * t3 - s2R_half * t6
-    t8 = s2R_half * t3 + c2R_half * t6
-    t9 = c2L_half * t7 - s2L_half * t8
-    t10 = s2L_half * t7 + c2L_half * t8
-    t11 = t1 + t2
-    t12 = t4 - t5
-    t13 = s2L_half * (c2R_half * t11 + s2R_half * t12) - c2L_half * (s2R_half * t11 - c2R_half * t12)
-    t14 = s2L_half * c2R_half
-    t15 = c2L_half * s2R_half
-    t16 = L1 * (t14 - t15)
-    t17 = (L2 * t9 - a3 * t10) * t13 - (t14 + t15) * t16
-    t18 = c3L_half * c3L_half - s3L_half * s3L_half
-    t19 = s3L_half * c3L_half
-    t20 = t19 + t19
-    t21 = L2 * t18 - a3 * t20
-    t22 = c2L_half * c2L_half - s2L_half * s2L_half
-    t23 = c3R_half * c3R_half - s3R_half * s3R_half
-    t24 = s3R_half * c3R_half
-    t25 = t24 + t24
-    t26 = L2 * t23 - a3 * t25
-    t27 = c2R_half * c2R_half - s2R_half * s2R_half
-    t28 = s2L_half * c2L_half
-    t29 = t28 + t28
-    straight_left = L2 * t20 + a3 * t18
-    t30 = 0.0 <= straight_left
+    t6 = t4 - t5
+    t7 = c2R_half * t3 + s2R_half * t6
+    t8 = s2R_half * t3 - c2R_half * t6
+    t9 = s2L_half * t7 - c2L_half * t8
+    t10 = t1 - t2
+    t11 = t4 + t5
+    t12 = c2R_half * t10 - s2R_half * t11
+    t13 = s2R_half * t10 + c2R_half * t11
+    t14 = c2L_half * t12 - s2L_half * t13
+    t15 = s2L_half * t12 + c2L_half * t13
+    t16 = L2 * t14 - a3 * t15
+    t17 = s2L_half * c2R_half
+    t18 = c2L_half * s2R_half
+    t19 = t17 + t18
+    t20 = L1 * (t17 - t18)
+    t21 = t9 * t16 - t19 * t20
+    t22 = c2L_half * t7 + s2L_half * t8
+    t23 = c2L_half * c2R_half
+    t24 = s2L_half * s2R_half
+    t25 = L1 * (t23 + t24)
+    t26 = t22 * t16 - t19 * t25
+    t27 = L2 * t15 + a3 * t14
+    t28 = t23 - t24
+    r_I = t27 * t22 + t28 * t25
+    t29 = t26 * t26 + r_I * r_I
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t31 = L1 + fore
-    large_left = fore + np.where(t30, straight_left, -straight_left)
-    small_left = t21 * t21 / large_left
-    t32 = L1 - fore
-    end_left = np.where(t30, t31 - small_left, small_left + t32)
-    t33 = t21 * t22 / 2.0 + t26 * t27 / 2.0 - t29 * end_left / 2.0
-    t34 = s2R_half * c2R_half
-    t35 = t34 + t34
-    straight_right = L2 * t25 + a3 * t23
-    t36 = 0.0 <= straight_right
-    t37 = np.where(t36, straight_right, -straight_right)
-    large_right = fore + t37
-    small_right = t26 * t26 / large_right
-    end_right = np.where(t36, t31 - small_right, small_right + t32)
-    t38 = t33 - t35 * end_right / 2.0
-    t39 = t21 * t29 / 2.0 + t26 * t35 / 2.0 + t22 * end_left / 2.0
-    r_I = t39 + t27 * end_right / 2.0
-    t40 = t38 * t38 + r_I * r_I
-    t41 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t40) <= t41
-    t42 = t31 * t31
-    short_virtual = L1 * fore <= t42 * _runtime.VANISHING
-    t43 = (c2L_half * c2R_half - s2L_half * s2R_half) * t16
-    t44 = t13 * (L2 * t10 + a3 * t9) + t43
-    gap = t17 * t17 + t44 * t44
-    t45 = L1 * 2.0
-    t46 = np.where(t30, large_left, small_left) * t45 / 2.0
-    M_right = np.where(t36, large_right, small_right) * t45
-    t47 = np.where(t42 * t40 < gap * gap, t32 * t32 - t40, gap - t46 - M_right / 2.0)
-    M_virtual = np.maximum(-t47, 0.0)
-    t48 = np.where(t30, small_left, large_left) * t45 / 2.0
-    N_right = np.where(t36, small_right, large_right) * t45
-    t49 = gap + t48 + N_right / 2.0
-    N_virtual = np.maximum(t49, 0.0)
+    t30 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t29) <= t30
+    t31 = s2R_half * c2R_half
+    t32 = t31 + t31
+    t33 = L1 + fore
+    t34 = t33 * t33
+    short_virtual = L1 * fore <= t34 * _runtime.VANISHING
+    t35 = L1 - fore
+    t36 = t27 * t9 + t28 * t20
+    gap = t21 * t21 + t36 * t36
+    t37 = s3L_half * c3L_half
+    t38 = t37 + t37
+    t39 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t38 + a3 * t39
+    t40 = 0.0 <= straight_left
+    large_left = fore + np.where(t40, straight_left, -straight_left)
+    t41 = L2 * t39 - a3 * t38
+    small_left = t41 * t41 / large_left
+    t42 = L1 * 2.0
+    t43 = np.where(t40, large_left, small_left) * t42 / 2.0
+    t44 = s3R_half * c3R_half
+    t45 = t44 + t44
+    t46 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t45 + a3 * t46
+    t47 = 0.0 <= straight_right
+    t48 = np.where(t47, straight_right, -straight_right)
+    large_right = fore + t48
+    t49 = L2 * t46 - a3 * t45
+    small_right = t49 * t49 / large_right
+    M_right = np.where(t47, large_right, small_right) * t42
+    t50 = np.where(t34 * t29 < gap * gap, t35 * t35 - t29, gap - t43 - M_right / 2.0)
+    M_virtual = np.maximum(-t50, 0.0)
+    t51 = np.where(t40, small_left, large_left) * t42 / 2.0
+    N_right = np.where(t47, small_right, large_right) * t42
+    t52 = gap + t51 + N_right / 2.0
+    N_virtual = np.maximum(t52, 0.0)
     whole_virtual = N_virtual + M_virtual
-    ahead_1_virtual = np.where(short_virtual, t31, t32 + fore * 2.0 * M_virtual / whole_virtual)
-    t50 = 2.0 * np.where(0.0 <= -t26, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t50 * np.sqrt(M_virtual) / whole_virtual)
-    t51 = fore * s_bend_virtual
-    t52 = t38 * ahead_1_virtual + r_I * t51
-    out_virtual = r_I * ahead_1_virtual - t38 * t51
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
-    stheta2A = np.where(folded_virtual, t35, -(t52 / norm_virtual))
-    bare_virtual = fore <= t31 * _runtime.VANISHING
+    ahead_1_virtual = np.where(short_virtual, t33, t35 + fore * 2.0 * M_virtual / whole_virtual)
+    t53 = 2.0 * np.where(0.0 <= -t49, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t53 * np.sqrt(M_virtual) / whole_virtual)
+    t54 = fore * s_bend_virtual
+    t55 = t26 * ahead_1_virtual + r_I * t54
+    out_virtual = r_I * ahead_1_virtual - t26 * t54
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t55 * t55)
+    stheta2A = np.where(folded_virtual, t32, -(t55 / norm_virtual))
+    bare_virtual = fore <= t33 * _runtime.VANISHING
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    ctheta2A = np.where(folded_virtual, t27, out_virtual / norm_virtual)
+    t56 = c2R_half * c2R_half - s2R_half * s2R_half
+    ctheta2A = np.where(folded_virtual, t56, out_virtual / norm_virtual)
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
-    t53 = t17 * stheta23A - t44 * ctheta23A
-    t54 = d * d
-    base = np.sqrt(t54 + gap)
-    t55 = t53 / base
-    t56 = t17 * ctheta23A + t44 * stheta23A
-    t57 = t56 * t56
-    tilted = np.sqrt(t54 + t57)
+    t57 = t21 * stheta23A - t36 * ctheta23A
+    t58 = d * d
+    base = np.sqrt(t58 + gap)
+    t59 = t57 / base
+    t60 = t21 * ctheta23A + t36 * stheta23A
+    t61 = t60 * t60
+    tilted = np.sqrt(t58 + t61)
     c_phi = d / tilted
-    t58 = t55 * c_phi
-    t59 = lp * c
-    t60 = base - (gs - al)
-    t61 = gs + al
-    t62 = t61 - base
-    wrist = np.sqrt(np.maximum(t60, 0.0)) * np.sqrt(np.maximum(t62, 0.0))
-    t63 = loff + t59 + wrist
-    t64 = lp * s
-    t65 = t56 / tilted
-    t66 = t58 * t63 + t64 * t65
-    t67 = t55 * t65
-    t68 = t64 * c_phi - t63 * t67
-    t69 = a3 + t68
+    t62 = t59 * c_phi
+    t63 = lp * c
+    t64 = base - (gs - al)
+    t65 = gs + al
+    t66 = t65 - base
+    wrist = np.sqrt(np.maximum(t64, 0.0)) * np.sqrt(np.maximum(t66, 0.0))
+    t67 = loff + t63 + wrist
+    t68 = lp * s
+    t69 = t60 / tilted
+    t70 = t62 * t67 + t68 * t69
+    t71 = t59 * t69
+    t72 = t68 * c_phi - t67 * t71
+    t73 = a3 + t72
     c_psi = tilted / base
-    t70 = t63 * c_psi
-    t71 = L2 + t70
-    outer_33 = ctheta23A * t69 + stheta23A * t71
+    t74 = t67 * c_psi
+    t75 = L2 + t74
+    outer_33 = ctheta23A * t73 + stheta23A * t75
     outer_32 = L1 * ctheta2A
-    t72 = outer_33 + outer_32
-    t73 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t74 = t73 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t75 = t74 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t76 = t75 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t77 = t76 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t78 = t77 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t79 = t78 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t80 = -(_runtime.FEASIBILITY * (d * t31))
-    t81 = -(_runtime.FEASIBILITY * t61)
-    t82 = (t80 <= t49) & (t80 <= -t47) & (t81 <= t62) & (t81 <= t60)
-    failed = np.logical_not(t79 & (0.0 <= lp)) | np.logical_not(t82)
-    t83 = _runtime.poison(failed)
-    t84 = c_phi * t70
-    t85 = t65 * t70
-    t86 = t55 * t63
-    t87 = ctheta23A * t85 + stheta23A * t86
-    t88 = d * (gs - d / (c_phi * c_psi))
-    t89 = t55 * t88
-    t90 = stheta23A * c_psi
-    t91 = t90 - ctheta23A * t67
-    t92 = s1 * t58 + c1 * t91
-    t93 = c_phi * wrist * (c_psi * c_psi)
-    t94 = s1 * t84 - c1 * t87 + t89 * t92 / t93
-    c2R3R = t23 * t27 - t25 * t35
-    s2R3R = t23 * t35 + t25 * t27
+    t76 = outer_33 + outer_32
+    t77 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t78 = t77 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t79 = t78 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t80 = t79 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t81 = t80 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t82 = t81 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t83 = t82 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t84 = -(_runtime.FEASIBILITY * (d * t33))
+    t85 = -(_runtime.FEASIBILITY * t65)
+    t86 = (t84 <= t52) & (t84 <= -t50) & (t85 <= t66) & (t85 <= t64)
+    failed = np.logical_not(t83 & (0.0 <= lp)) | np.logical_not(t86)
+    t87 = _runtime.poison(failed)
+    t88 = c_phi * t74
+    t89 = t69 * t74
+    t90 = t59 * t67
+    t91 = ctheta23A * t89 + stheta23A * t90
+    t92 = d * (gs - d / (c_phi * c_psi))
+    t93 = t59 * t92
+    t94 = stheta23A * c_psi
+    t95 = t94 - ctheta23A * t71
+    t96 = s1 * t62 + c1 * t95
+    t97 = c_phi * wrist * (c_psi * c_psi)
+    t98 = s1 * t88 - c1 * t91 + t93 * t96 / t97
+    c2R3R = t46 * t56 - t45 * t32
+    s2R3R = t46 * t32 + t45 * t56
     mid_13 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
-    t95 = L1 * t35 / 2.0 - mid_13
+    t99 = L1 * t32 / 2.0 - mid_13
     mid_23 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
-    mid_22 = L1 * t27 / 2.0 + mid_23
-    t96 = L1 * stheta2A
-    t97 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t98 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t99 = L1 * (t97 + t98)
-    t100 = (outer_32 * t95 - mid_22 * t96) / t99
-    t101 = ctheta23A * t95 - stheta23A * mid_22 + t53 * t100
-    t102 = tilted * tilted
-    t103 = 1.0 + t53 * t53 / t102
-    t104 = t53 * t56 / (tilted * t102 * t103)
-    t105 = ctheta23A * mid_22 + stheta23A * t95 - t56 * t100
-    turn_12 = 1.0 / (tilted * t103)
-    inner_42 = t101 * t104 - t105 * turn_12
-    t106 = ctheta23A * t66
-    t107 = t65 * t88
-    t108 = wrist * c_psi * (c_phi * c_phi)
-    t109 = c1 * t106 - s1 * t68 - t92 * t107 / t108
-    t110 = 1.0 / (d * (1.0 + t57 / t54))
-    inner_52 = t101 * t110
+    mid_22 = L1 * t56 / 2.0 + mid_23
+    t100 = L1 * stheta2A
+    t101 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t102 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t103 = L1 * (t101 + t102)
+    t104 = (outer_32 * t99 - mid_22 * t100) / t103
+    t105 = ctheta23A * t99 - stheta23A * mid_22 + t57 * t104
+    t106 = tilted * tilted
+    t107 = 1.0 + t57 * t57 / t106
+    t108 = t57 * t60 / (tilted * t106 * t107)
+    t109 = ctheta23A * mid_22 + stheta23A * t99 - t60 * t104
+    turn_12 = 1.0 / (tilted * t107)
+    inner_42 = t105 * t108 - t109 * turn_12
+    t110 = ctheta23A * t70
+    t111 = t69 * t92
+    t112 = wrist * c_psi * (c_phi * c_phi)
+    t113 = c1 * t110 - s1 * t72 - t96 * t111 / t112
+    t114 = 1.0 / (d * (1.0 + t61 / t58))
+    inner_52 = t105 * t114
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t111 = L2 * ctheta23A - a3 * stheta23A
-    rate_12 = (t95 * virtual_11 + mid_22 * t111) / t99
-    t112 = c1 * t96
-    t113 = t94 * inner_42 + t109 * inner_52 + rate_12 * t112
-    t114 = ctheta23A * t71 - stheta23A * t69
-    outer_13 = c1 * t114
-    rate_23 = (mid_13 * outer_32 + mid_23 * t96) / t99
-    line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t53 * rate_23
-    t115 = mid_23 * ctheta23A - mid_13 * stheta23A + t56 * rate_23
-    t116 = t104 * line_13 + turn_12 * t115
-    t117 = t110 * line_13
-    t118 = (mid_13 * virtual_11 - mid_23 * t111) / t99
-    t119 = t94 * t116 + t109 * t117 + t112 * t118 + outer_13 * rate_23
-    c2L3L = t18 * t22 - t20 * t29
-    s2L3L = t18 * t29 + t20 * t22
+    t115 = L2 * ctheta23A - a3 * stheta23A
+    rate_12 = (t99 * virtual_11 + mid_22 * t115) / t103
+    t116 = c1 * t100
+    t117 = t98 * inner_42 + t113 * inner_52 + rate_12 * t116
+    t118 = ctheta23A * t75 - stheta23A * t73
+    outer_13 = c1 * t118
+    rate_23 = (mid_13 * outer_32 + mid_23 * t100) / t103
+    line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t57 * rate_23
+    t119 = mid_23 * ctheta23A - mid_13 * stheta23A + t60 * rate_23
+    t120 = t108 * line_13 + turn_12 * t119
+    t121 = t114 * line_13
+    t122 = (mid_13 * virtual_11 - mid_23 * t115) / t103
+    t123 = t98 * t120 + t113 * t121 + t116 * t122 + outer_13 * rate_23
+    t124 = s2L_half * c2L_half
+    t125 = t124 + t124
+    t126 = c2L_half * c2L_half - s2L_half * s2L_half
+    c2L3L = t39 * t126 - t38 * t125
+    s2L3L = t39 * t125 + t38 * t126
     mid_15 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
-    gap_14 = L1 * t29 / 2.0 - mid_15
+    gap_14 = L1 * t125 / 2.0 - mid_15
     mid_25 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
-    mid_24 = L1 * t22 / 2.0 + mid_25
-    t120 = (outer_32 * gap_14 - t96 * mid_24) / t99
-    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t53 * t120
-    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t56 * t120
-    t121 = t104 * line_14 - turn_12 * line_24
-    t122 = t110 * line_14
-    rate_14 = (virtual_11 * gap_14 + t111 * mid_24) / t99
-    t123 = t94 * t121 + t109 * t122 - t112 * rate_14 - outer_13 * t120
-    rate_25 = (mid_15 * outer_32 + mid_25 * t96) / t99
-    t124 = mid_15 * ctheta23A + mid_25 * stheta23A - t53 * rate_25
-    line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t56 * rate_25
-    inner_45 = t104 * t124 + turn_12 * line_25
-    inner_55 = t110 * t124
-    t125 = (mid_15 * virtual_11 - mid_25 * t111) / t99
-    t126 = t94 * inner_45 + t109 * inner_55 - t112 * t125
-    t127 = t64 * t58 - t59 * t65
-    t128 = t59 * c_phi + t64 * t67
-    t129 = t64 * t90 - ctheta23A * t128
-    t130 = c1 * t58 - s1 * t91
-    outer_24 = c1 * t84 + s1 * t87 + t89 * t130 / t93
-    t131 = s1 * t106 + c1 * t68 + t107 * t130 / t108
-    t132 = s1 * t96
-    t133 = inner_42 * outer_24 - inner_52 * t131 - rate_12 * t132
-    outer_23 = s1 * t114
-    t134 = rate_23 * outer_23 - (t116 * outer_24 - t117 * t131 - t118 * t132)
-    t135 = t121 * outer_24 - t122 * t131 + rate_14 * t132
-    t136 = inner_45 * outer_24 - inner_55 * t131 + t125 * t132
-    t137 = 0.0 + t83
-    t138 = ctheta23A * c_psi
-    t139 = t138 + stheta23A * t67
-    t140 = stheta23A * t85 - ctheta23A * t86 + t89 * t139 / t93
-    t141 = stheta23A * t66 + t107 * t139 / t108
-    t142 = inner_42 * t140 - inner_52 * t141 + outer_32 * rate_12
-    t143 = outer_33 * rate_23 - (t116 * t140 - t117 * t141 + outer_32 * t118)
-    t144 = t121 * t140 - t122 * t141 - outer_32 * rate_14
-    t145 = inner_45 * t140 - inner_55 * t141 - outer_32 * t125
+    mid_24 = L1 * t126 / 2.0 + mid_25
+    t127 = (outer_32 * gap_14 - t100 * mid_24) / t103
+    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t57 * t127
+    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t60 * t127
+    t128 = t108 * line_14 - turn_12 * line_24
+    t129 = t114 * line_14
+    rate_14 = (virtual_11 * gap_14 + t115 * mid_24) / t103
+    t130 = t98 * t128 + t113 * t129 - t116 * rate_14 - outer_13 * t127
+    rate_25 = (mid_15 * outer_32 + mid_25 * t100) / t103
+    t131 = mid_15 * ctheta23A + mid_25 * stheta23A - t57 * rate_25
+    line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t60 * rate_25
+    inner_45 = t108 * t131 + turn_12 * line_25
+    inner_55 = t114 * t131
+    t132 = (mid_15 * virtual_11 - mid_25 * t115) / t103
+    t133 = t98 * inner_45 + t113 * inner_55 - t116 * t132
+    t134 = t68 * t62 - t63 * t69
+    t135 = t63 * c_phi + t68 * t71
+    t136 = t68 * t94 - ctheta23A * t135
+    t137 = c1 * t62 - s1 * t95
+    outer_24 = c1 * t88 + s1 * t91 + t93 * t137 / t97
+    t138 = s1 * t110 + c1 * t72 + t111 * t137 / t112
+    t139 = s1 * t100
+    t140 = inner_42 * outer_24 - inner_52 * t138 - rate_12 * t139
+    outer_23 = s1 * t118
+    t141 = rate_23 * outer_23 - (t120 * outer_24 - t121 * t138 - t122 * t139)
+    t142 = t128 * outer_24 - t129 * t138 + rate_14 * t139
+    t143 = inner_45 * outer_24 - inner_55 * t138 + t132 * t139
+    t144 = 0.0 + t87
+    t145 = ctheta23A * c_psi
+    t146 = t145 + stheta23A * t71
+    t147 = stheta23A * t89 - ctheta23A * t90 + t93 * t146 / t97
+    t148 = stheta23A * t70 + t111 * t146 / t112
+    t149 = inner_42 * t147 - inner_52 * t148 + outer_32 * rate_12
+    t150 = outer_33 * rate_23 - (t120 * t147 - t121 * t148 + outer_32 * t122)
+    t151 = t128 * t147 - t129 * t148 - outer_32 * rate_14
+    t152 = inner_45 * t147 - inner_55 * t148 - outer_32 * t132
     return (
-        c1 * t66 - s1 * t72 + t83,
-        -(t113 + t100 * outer_13) + t83,
-        t119 + t83,
-        t123 + t83,
-        outer_13 * rate_25 - t126 + t83,
-        -(s1 * t127 + c1 * t129) + t83,
-        s1 * t66 + c1 * t72 + t83,
-        t133 - t100 * outer_23 + t83,
-        t134 + t83,
-        -(t135 + t120 * outer_23) + t83,
-        t136 + rate_25 * outer_23 + t83,
-        c1 * t127 - s1 * t129 + t83,
-        t137,
-        t142 - outer_33 * t100 + t83,
-        t143 + t83,
-        -(t144 + outer_33 * t120) + t83,
-        t145 + outer_33 * rate_25 + t83,
-        t64 * t138 + stheta23A * t128 + t83,
-        t137,
-        inner_42 + t83,
-        -t116 + t83,
-        -t121 + t83,
-        inner_45 + t83,
-        t137,
-        t137,
-        inner_52 + t83,
-        -t117 + t83,
-        -t122 + t83,
-        inner_55 + t83,
-        t137,
-        t137,
-        t137,
-        t137,
-        t137,
-        t137,
-        1.0 + t83,
+        c1 * t70 - s1 * t76 + t87,
+        -(t117 + t104 * outer_13) + t87,
+        t123 + t87,
+        t130 + t87,
+        outer_13 * rate_25 - t133 + t87,
+        -(s1 * t134 + c1 * t136) + t87,
+        s1 * t70 + c1 * t76 + t87,
+        t140 - t104 * outer_23 + t87,
+        t141 + t87,
+        -(t142 + t127 * outer_23) + t87,
+        t143 + rate_25 * outer_23 + t87,
+        c1 * t134 - s1 * t136 + t87,
+        t144,
+        t149 - outer_33 * t104 + t87,
+        t150 + t87,
+        -(t151 + outer_33 * t127) + t87,
+        t152 + outer_33 * rate_25 + t87,
+        t68 * t145 + stheta23A * t135 + t87,
+        t144,
+        inner_42 + t87,
+        -t120 + t87,
+        -t128 + t87,
+        inner_45 + t87,
+        t144,
+        t144,
+        inner_52 + t87,
+        -t121 + t87,
+        -t129 + t87,
+        inner_55 + t87,
+        t144,
+        t144,
+        t144,
+        t144,
+        t144,
+        t144,
+        1.0 + t87,
     )
 
 
@@ -854,108 +859,113 @@ def _determinant(
     s2R3R = t10 * t9 + t12 * t13
     c2R3R = t10 * t13 - t12 * t9
     t14 = L2 * (t9 * s2R3R + t13 * c2R3R) + a3 * (t9 * c2R3R - t13 * s2R3R)
-    t15 = L2 * t3 - a3 * t5
-    t16 = L2 * t10 - a3 * t12
-    straight_left = L2 * t5 + a3 * t3
-    t17 = 0.0 <= straight_left
-    fore = np.sqrt(L2 * L2 + a3 * a3)
-    t18 = L1 + fore
-    large_left = fore + np.where(t17, straight_left, -straight_left)
-    small_left = t15 * t15 / large_left
-    t19 = L1 - fore
-    end_left = np.where(t17, t18 - small_left, small_left + t19)
-    t20 = t15 * t6 / 2.0 + t16 * t13 / 2.0 - t2 * end_left / 2.0
-    straight_right = L2 * t12 + a3 * t10
-    t21 = 0.0 <= straight_right
-    t22 = np.where(t21, straight_right, -straight_right)
-    large_right = fore + t22
-    small_right = t16 * t16 / large_right
-    end_right = np.where(t21, t18 - small_right, small_right + t19)
-    t23 = t20 - t9 * end_right / 2.0
-    t24 = t15 * t2 / 2.0 + t16 * t9 / 2.0 + t6 * end_left / 2.0
-    r_I = t24 + t13 * end_right / 2.0
-    t25 = t23 * t23 + r_I * r_I
-    t26 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t25) <= t26
-    t27 = t18 * t18
-    short_virtual = L1 * fore <= t27 * _runtime.VANISHING
-    t28 = c3R_half * c3L_half
-    t29 = s3R_half * s3L_half
-    t30 = t28 - t29
-    t31 = c3R_half * s3L_half
-    t32 = s3R_half * c3L_half
+    t15 = c3R_half * c3L_half
+    t16 = s3R_half * s3L_half
+    t17 = t15 + t16
+    t18 = c3R_half * s3L_half
+    t19 = s3R_half * c3L_half
+    t20 = t18 - t19
+    t21 = c2R_half * t17 + s2R_half * t20
+    t22 = s2R_half * t17 - c2R_half * t20
+    t23 = c2L_half * t21 + s2L_half * t22
+    t24 = t15 - t16
+    t25 = t18 + t19
+    t26 = c2R_half * t24 - s2R_half * t25
+    t27 = s2R_half * t24 + c2R_half * t25
+    t28 = c2L_half * t26 - s2L_half * t27
+    t29 = s2L_half * t26 + c2L_half * t27
+    t30 = L2 * t28 - a3 * t29
+    t31 = s2L_half * c2R_half
+    t32 = c2L_half * s2R_half
     t33 = t31 + t32
-    t34 = c2R_half * t30 - s2R_half * t33
-    t35 = s2R_half * t30 + c2R_half * t33
-    t36 = c2L_half * t34 - s2L_half * t35
-    t37 = s2L_half * t34 + c2L_half * t35
-    t38 = t28 + t29
-    t39 = t31 - t32
-    t40 = s2L_half * (c2R_half * t38 + s2R_half * t39) - c2L_half * (s2R_half * t38 - c2R_half * t39)
-    t41 = s2L_half * c2R_half
-    t42 = c2L_half * s2R_half
-    t43 = L1 * (t41 - t42)
-    t44 = (L2 * t36 - a3 * t37) * t40 - (t41 + t42) * t43
-    t45 = (c2L_half * c2R_half - s2L_half * s2R_half) * t43
-    t46 = t40 * (L2 * t37 + a3 * t36) + t45
-    gap = t44 * t44 + t46 * t46
-    t47 = L1 * 2.0
-    t48 = np.where(t17, large_left, small_left) * t47 / 2.0
-    M_right = np.where(t21, large_right, small_right) * t47
-    t49 = np.where(t27 * t25 < gap * gap, t19 * t19 - t25, gap - t48 - M_right / 2.0)
-    M_virtual = np.maximum(-t49, 0.0)
-    t50 = np.where(t17, small_left, large_left) * t47 / 2.0
-    N_right = np.where(t21, small_right, large_right) * t47
-    t51 = gap + t50 + N_right / 2.0
-    N_virtual = np.maximum(t51, 0.0)
+    t34 = c2L_half * c2R_half
+    t35 = s2L_half * s2R_half
+    t36 = L1 * (t34 + t35)
+    t37 = t23 * t30 - t33 * t36
+    t38 = L2 * t29 + a3 * t28
+    t39 = t34 - t35
+    r_I = t38 * t23 + t39 * t36
+    t40 = t37 * t37 + r_I * r_I
+    fore = np.sqrt(L2 * L2 + a3 * a3)
+    t41 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t40) <= t41
+    t42 = L1 + fore
+    t43 = t42 * t42
+    short_virtual = L1 * fore <= t43 * _runtime.VANISHING
+    t44 = L1 - fore
+    t45 = s2L_half * t21 - c2L_half * t22
+    t46 = L1 * (t31 - t32)
+    t47 = t45 * t30 - t33 * t46
+    t48 = t38 * t45 + t39 * t46
+    gap = t47 * t47 + t48 * t48
+    straight_left = L2 * t5 + a3 * t3
+    t49 = 0.0 <= straight_left
+    large_left = fore + np.where(t49, straight_left, -straight_left)
+    t50 = L2 * t3 - a3 * t5
+    small_left = t50 * t50 / large_left
+    t51 = L1 * 2.0
+    t52 = np.where(t49, large_left, small_left) * t51 / 2.0
+    straight_right = L2 * t12 + a3 * t10
+    t53 = 0.0 <= straight_right
+    t54 = np.where(t53, straight_right, -straight_right)
+    large_right = fore + t54
+    t55 = L2 * t10 - a3 * t12
+    small_right = t55 * t55 / large_right
+    M_right = np.where(t53, large_right, small_right) * t51
+    t56 = np.where(t43 * t40 < gap * gap, t44 * t44 - t40, gap - t52 - M_right / 2.0)
+    M_virtual = np.maximum(-t56, 0.0)
+    t57 = np.where(t49, small_left, large_left) * t51 / 2.0
+    N_right = np.where(t53, small_right, large_right) * t51
+    t58 = gap + t57 + N_right / 2.0
+    N_virtual = np.maximum(t58, 0.0)
     whole_virtual = N_virtual + M_virtual
-    ahead_1_virtual = np.where(short_virtual, t18, t19 + fore * 2.0 * M_virtual / whole_virtual)
-    t52 = 2.0 * np.where(0.0 <= -t16, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t52 * np.sqrt(M_virtual) / whole_virtual)
-    t53 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t23 * t53
-    t54 = t23 * ahead_1_virtual + r_I * t53
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
+    ahead_1_virtual = np.where(short_virtual, t42, t44 + fore * 2.0 * M_virtual / whole_virtual)
+    t59 = 2.0 * np.where(0.0 <= -t55, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t59 * np.sqrt(M_virtual) / whole_virtual)
+    t60 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t37 * t60
+    t61 = t37 * ahead_1_virtual + r_I * t60
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t61 * t61)
     ctheta2A = np.where(folded_virtual, t13, out_virtual / norm_virtual)
-    bare_virtual = fore <= t18 * _runtime.VANISHING
+    bare_virtual = fore <= t42 * _runtime.VANISHING
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    stheta2A = np.where(folded_virtual, t9, -(t54 / norm_virtual))
+    stheta2A = np.where(folded_virtual, t9, -(t61 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t55 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t56 = d * d
-    t57 = t44 * ctheta23A + t46 * stheta23A
-    tilted = np.sqrt(t56 + t57 * t57)
-    base = np.sqrt(t56 + gap)
-    t58 = base - (gs - al)
-    t59 = gs + al
-    t60 = t59 - base
-    wrist = np.sqrt(np.maximum(t58, 0.0)) * np.sqrt(np.maximum(t60, 0.0))
-    t61 = loff + lp * c + wrist
-    t62 = L2 + tilted / base * t61
-    t63 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    t64 = t61 * ((t44 * stheta23A - t46 * ctheta23A) / base)
-    t65 = a3 + lp * s * (d / tilted) - t64 * (t57 / tilted)
-    t66 = d * (L1 * L1) * t7 * t14 * (t55 * t62 + t63 * t65)
-    t67 = L1 * ctheta2A + ctheta23A * t65 + stheta23A * t62
-    t68 = 4.0 * tilted * (base * base) * (L2 * t55 + a3 * t63)
-    t69 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t70 = t69 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t71 = t70 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t72 = t71 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t73 = t72 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t74 = t73 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t75 = t74 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t76 = -(_runtime.FEASIBILITY * (d * t18))
-    t77 = -(_runtime.FEASIBILITY * t59)
-    t78 = (t76 <= t51) & (t76 <= -t49) & (t77 <= t60) & (t77 <= t58)
-    failed = np.logical_not(t75 & (0.0 <= lp)) | np.logical_not(t78)
+    t62 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t63 = d * d
+    t64 = t47 * ctheta23A + t48 * stheta23A
+    tilted = np.sqrt(t63 + t64 * t64)
+    base = np.sqrt(t63 + gap)
+    t65 = base - (gs - al)
+    t66 = gs + al
+    t67 = t66 - base
+    wrist = np.sqrt(np.maximum(t65, 0.0)) * np.sqrt(np.maximum(t67, 0.0))
+    t68 = loff + lp * c + wrist
+    t69 = L2 + tilted / base * t68
+    t70 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t71 = t68 * ((t47 * stheta23A - t48 * ctheta23A) / base)
+    t72 = a3 + lp * s * (d / tilted) - t71 * (t64 / tilted)
+    t73 = d * (L1 * L1) * t7 * t14 * (t62 * t69 + t70 * t72)
+    t74 = L1 * ctheta2A + ctheta23A * t72 + stheta23A * t69
+    t75 = 4.0 * tilted * (base * base) * (L2 * t62 + a3 * t70)
+    t76 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t77 = t76 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t78 = t77 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t79 = t78 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t80 = t79 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t81 = t80 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t82 = t81 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t83 = -(_runtime.FEASIBILITY * (d * t42))
+    t84 = -(_runtime.FEASIBILITY * t66)
+    t85 = (t83 <= t58) & (t83 <= -t56) & (t84 <= t67) & (t84 <= t65)
+    failed = np.logical_not(t82 & (0.0 <= lp)) | np.logical_not(t85)
     return (
-        t66 * t67 / t68 + _runtime.poison(failed),
+        t73 * t74 / t75 + _runtime.poison(failed),
     )
 
 
@@ -986,135 +996,140 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 def _singularities(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
+    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     s, c = _runtime.sincos(theta)
-    t1 = c3L_half * c3L_half - s3L_half * s3L_half
-    t2 = s3L_half * c3L_half
-    t3 = t2 + t2
-    t4 = L2 * t1 - a3 * t3
-    t5 = c2L_half * c2L_half - s2L_half * s2L_half
-    t6 = c3R_half * c3R_half - s3R_half * s3R_half
-    t7 = s3R_half * c3R_half
-    t8 = t7 + t7
-    t9 = L2 * t6 - a3 * t8
-    t10 = c2R_half * c2R_half - s2R_half * s2R_half
-    t11 = s2L_half * c2L_half
-    t12 = t11 + t11
-    straight_left = L2 * t3 + a3 * t1
-    t13 = 0.0 <= straight_left
+    t1 = c3R_half * c3L_half
+    t2 = s3R_half * s3L_half
+    t3 = t1 + t2
+    t4 = c3R_half * s3L_half
+    t5 = s3R_half * c3L_half
+    t6 = t4 - t5
+    t7 = c2R_half * t3 + s2R_half * t6
+    t8 = s2R_half * t3 - c2R_half * t6
+    t9 = c2L_half * t7 + s2L_half * t8
+    t10 = t1 - t2
+    t11 = t4 + t5
+    t12 = c2R_half * t10 - s2R_half * t11
+    t13 = s2R_half * t10 + c2R_half * t11
+    t14 = c2L_half * t12 - s2L_half * t13
+    t15 = s2L_half * t12 + c2L_half * t13
+    t16 = L2 * t14 - a3 * t15
+    t17 = s2L_half * c2R_half
+    t18 = c2L_half * s2R_half
+    t19 = t17 + t18
+    t20 = c2L_half * c2R_half
+    t21 = s2L_half * s2R_half
+    t22 = L1 * (t20 + t21)
+    t23 = t9 * t16 - t19 * t22
+    t24 = L2 * t15 + a3 * t14
+    t25 = t20 - t21
+    r_I = t24 * t9 + t25 * t22
+    t26 = t23 * t23 + r_I * r_I
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t14 = L1 + fore
-    large_left = fore + np.where(t13, straight_left, -straight_left)
-    small_left = t4 * t4 / large_left
-    t15 = L1 - fore
-    end_left = np.where(t13, t14 - small_left, small_left + t15)
-    t16 = t4 * t5 / 2.0 + t9 * t10 / 2.0 - t12 * end_left / 2.0
-    t17 = s2R_half * c2R_half
-    t18 = t17 + t17
-    straight_right = L2 * t8 + a3 * t6
-    t19 = 0.0 <= straight_right
-    t20 = np.where(t19, straight_right, -straight_right)
-    large_right = fore + t20
-    small_right = t9 * t9 / large_right
-    end_right = np.where(t19, t14 - small_right, small_right + t15)
-    t21 = t16 - t18 * end_right / 2.0
-    t22 = t4 * t12 / 2.0 + t9 * t18 / 2.0 + t5 * end_left / 2.0
-    r_I = t22 + t10 * end_right / 2.0
-    t23 = t21 * t21 + r_I * r_I
-    t24 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t23) <= t24
-    t25 = t14 * t14
-    short_virtual = L1 * fore <= t25 * _runtime.VANISHING
-    t26 = c3R_half * c3L_half
-    t27 = s3R_half * s3L_half
-    t28 = t26 - t27
-    t29 = c3R_half * s3L_half
-    t30 = s3R_half * c3L_half
-    t31 = t29 + t30
-    t32 = c2R_half * t28 - s2R_half * t31
-    t33 = s2R_half * t28 + c2R_half * t31
-    t34 = c2L_half * t32 - s2L_half * t33
-    t35 = s2L_half * t32 + c2L_half * t33
-    t36 = t26 + t27
-    t37 = t29 - t30
-    t38 = s2L_half * (c2R_half * t36 + s2R_half * t37) - c2L_half * (s2R_half * t36 - c2R_half * t37)
-    t39 = s2L_half * c2R_half
-    t40 = c2L_half * s2R_half
-    t41 = L1 * (t39 - t40)
-    t42 = (L2 * t34 - a3 * t35) * t38 - (t39 + t40) * t41
-    t43 = (c2L_half * c2R_half - s2L_half * s2R_half) * t41
-    t44 = t38 * (L2 * t35 + a3 * t34) + t43
-    gap = t42 * t42 + t44 * t44
-    t45 = L1 * 2.0
-    t46 = np.where(t13, large_left, small_left) * t45 / 2.0
-    M_right = np.where(t19, large_right, small_right) * t45
-    t47 = np.where(t25 * t23 < gap * gap, t15 * t15 - t23, gap - t46 - M_right / 2.0)
-    M_virtual = np.maximum(-t47, 0.0)
-    t48 = np.where(t13, small_left, large_left) * t45 / 2.0
-    N_right = np.where(t19, small_right, large_right) * t45
-    t49 = gap + t48 + N_right / 2.0
-    N_virtual = np.maximum(t49, 0.0)
+    t27 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t26) <= t27
+    t28 = c2R_half * c2R_half - s2R_half * s2R_half
+    t29 = L1 + fore
+    t30 = t29 * t29
+    short_virtual = L1 * fore <= t30 * _runtime.VANISHING
+    t31 = L1 - fore
+    t32 = s2L_half * t7 - c2L_half * t8
+    t33 = L1 * (t17 - t18)
+    t34 = t32 * t16 - t19 * t33
+    t35 = t24 * t32 + t25 * t33
+    gap = t34 * t34 + t35 * t35
+    t36 = s3L_half * c3L_half
+    t37 = t36 + t36
+    t38 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t37 + a3 * t38
+    t39 = 0.0 <= straight_left
+    large_left = fore + np.where(t39, straight_left, -straight_left)
+    t40 = L2 * t38 - a3 * t37
+    small_left = t40 * t40 / large_left
+    t41 = L1 * 2.0
+    t42 = np.where(t39, large_left, small_left) * t41 / 2.0
+    t43 = s3R_half * c3R_half
+    t44 = t43 + t43
+    t45 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t44 + a3 * t45
+    t46 = 0.0 <= straight_right
+    t47 = np.where(t46, straight_right, -straight_right)
+    large_right = fore + t47
+    t48 = L2 * t45 - a3 * t44
+    small_right = t48 * t48 / large_right
+    M_right = np.where(t46, large_right, small_right) * t41
+    t49 = np.where(t30 * t26 < gap * gap, t31 * t31 - t26, gap - t42 - M_right / 2.0)
+    M_virtual = np.maximum(-t49, 0.0)
+    t50 = np.where(t39, small_left, large_left) * t41 / 2.0
+    N_right = np.where(t46, small_right, large_right) * t41
+    t51 = gap + t50 + N_right / 2.0
+    N_virtual = np.maximum(t51, 0.0)
     whole_virtual = N_virtual + M_virtual
-    ahead_1_virtual = np.where(short_virtual, t14, t15 + fore * 2.0 * M_virtual / whole_virtual)
-    t50 = 2.0 * np.where(0.0 <= -t9, 1.0, -1.0) * np.sqrt(N_virtual)
-    s_bend_virtual = np.where(short_virtual, 0.0, t50 * np.sqrt(M_virtual) / whole_virtual)
-    t51 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t21 * t51
-    t52 = t21 * ahead_1_virtual + r_I * t51
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
-    ctheta2A = np.where(folded_virtual, t10, out_virtual / norm_virtual)
-    bare_virtual = fore <= t14 * _runtime.VANISHING
+    ahead_1_virtual = np.where(short_virtual, t29, t31 + fore * 2.0 * M_virtual / whole_virtual)
+    t52 = 2.0 * np.where(0.0 <= -t48, 1.0, -1.0) * np.sqrt(N_virtual)
+    s_bend_virtual = np.where(short_virtual, 0.0, t52 * np.sqrt(M_virtual) / whole_virtual)
+    t53 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t23 * t53
+    t54 = t23 * ahead_1_virtual + r_I * t53
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
+    ctheta2A = np.where(folded_virtual, t28, out_virtual / norm_virtual)
+    bare_virtual = fore <= t29 * _runtime.VANISHING
     c_lag_virtual = np.where(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = np.where(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
     s_lag_virtual = np.where(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    stheta2A = np.where(folded_virtual, t18, -(t52 / norm_virtual))
+    t55 = s2R_half * c2R_half
+    t56 = t55 + t55
+    stheta2A = np.where(folded_virtual, t56, -(t54 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t53 = d * d
+    t57 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t54 = t42 * ctheta23A + t44 * stheta23A
-    tilted = np.sqrt(t53 + t54 * t54)
-    base = np.sqrt(t53 + gap)
-    t55 = (t42 * stheta23A - t44 * ctheta23A) / base * (t54 / tilted)
-    t56 = base - (gs - al)
-    t57 = gs + al
-    t58 = t57 - base
-    wrist = np.sqrt(np.maximum(t56, 0.0)) * np.sqrt(np.maximum(t58, 0.0))
-    t59 = loff + lp * c + wrist
-    t60 = a3 + lp * s * (d / tilted) - t55 * t59
-    t61 = L2 + t59 * (tilted / base)
-    t62 = L1 * ctheta2A + ctheta23A * t60 + stheta23A * t61
-    t63 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
-    t64 = t63 & np.isfinite(theta2L) & np.isfinite(theta3L)
-    t65 = t64 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
-    t66 = t65 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
-    t67 = t66 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t68 = t67 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t69 = t68 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    t70 = -(_runtime.FEASIBILITY * (d * t14))
-    t71 = -(_runtime.FEASIBILITY * t57)
-    t72 = (t70 <= t49) & (t70 <= -t47) & (t71 <= t58) & (t71 <= t56)
-    failed = np.logical_not(t69 & (0.0 <= lp)) | np.logical_not(t72)
-    t73 = _runtime.poison(failed)
-    t74 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t75 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    s2R3R = t6 * t18 + t8 * t10
-    c2R3R = t6 * t10 - t8 * t18
-    t76 = L2 * (t18 * s2R3R + t10 * c2R3R) + a3 * (t18 * c2R3R - t10 * s2R3R)
-    s2L3L = t1 * t12 + t3 * t5
-    c2L3L = t1 * t5 - t3 * t12
-    t77 = L2 * (t12 * s2L3L + t5 * c2L3L) + a3 * (t12 * c2L3L - t5 * s2L3L)
+    t58 = t34 * ctheta23A + t35 * stheta23A
+    tilted = np.sqrt(t57 + t58 * t58)
+    base = np.sqrt(t57 + gap)
+    t59 = (t34 * stheta23A - t35 * ctheta23A) / base * (t58 / tilted)
+    t60 = base - (gs - al)
+    t61 = gs + al
+    t62 = t61 - base
+    wrist = np.sqrt(np.maximum(t60, 0.0)) * np.sqrt(np.maximum(t62, 0.0))
+    t63 = loff + lp * c + wrist
+    t64 = a3 + lp * s * (d / tilted) - t59 * t63
+    t65 = L2 + t63 * (tilted / base)
+    t66 = L1 * ctheta2A + ctheta23A * t64 + stheta23A * t65
+    t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R)
+    t68 = t67 & np.isfinite(theta2L) & np.isfinite(theta3L)
+    t69 = t68 & np.isfinite(theta) & np.isfinite(L1) & np.isfinite(L2)
+    t70 = t69 & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs)
+    t71 = t70 & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t72 = t71 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t73 = t72 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t74 = -(_runtime.FEASIBILITY * (d * t29))
+    t75 = -(_runtime.FEASIBILITY * t61)
+    t76 = (t74 <= t51) & (t74 <= -t49) & (t75 <= t62) & (t75 <= t60)
+    failed = np.logical_not(t73 & (0.0 <= lp)) | np.logical_not(t76)
+    t77 = _runtime.poison(failed)
+    t78 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t79 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    s2R3R = t45 * t56 + t44 * t28
+    c2R3R = t45 * t28 - t44 * t56
+    t80 = L2 * (t56 * s2R3R + t28 * c2R3R) + a3 * (t56 * c2R3R - t28 * s2R3R)
+    t81 = s2L_half * c2L_half
+    t82 = t81 + t81
+    t83 = c2L_half * c2L_half - s2L_half * s2L_half
+    s2L3L = t38 * t82 + t37 * t83
+    c2L3L = t38 * t83 - t37 * t82
+    t84 = L2 * (t82 * s2L3L + t83 * c2L3L) + a3 * (t82 * c2L3L - t83 * s2L3L)
     return (
-        t62 + t73,
-        t61 * t74 + t60 * t75 + t73,
-        t76 + t73,
-        t77 + t73,
-        L2 * t74 + a3 * t75 + t73,
-        wrist + t73,
+        t66 + t77,
+        t65 * t78 + t64 * t79 + t77,
+        t80 + t77,
+        t84 + t77,
+        L2 * t78 + a3 * t79 + t77,
+        wrist + t77,
     )
 
 
@@ -1245,593 +1260,614 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
     drawn = L1 - L_2W * t58 + a_3W * c_elbow
     t59 = 2.0 * drawn
-    t60 = L2 * c_elbow + a3 * t58
-    t61 = L2 * t58 - a3 * c_elbow
-    t62 = 0.0 <= -t61
-    large = fore_arm + np.where(t62, -t61, t61)
-    small = t60 * t60 / large
-    t63 = L1 - fore_arm
-    end = np.where(t62, size - small, t63 + small)
-    t64 = ctheta2A * t60 - stheta2A * end
-    t65 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t66 = d * t65
-    t67 = t64 + t66
-    point_11 = stheta2A * t60 + ctheta2A * end
-    t68 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t69 = d * t68
-    r_right_0 = point_11 - t69
-    t70 = t59 * (ctheta2A * t67 + stheta2A * r_right_0)
-    t71 = size / 100000.0
-    t72 = t71 + np.abs(L_2W * c_elbow + a_3W * t58)
-    t73 = _runtime.FEASIBILITY * (t43 + size * np.abs(t70) / t72)
-    t74 = L1 * 2.0
-    gap = t69 * t69 + t66 * t66
-    t75 = t74 * np.where(t62, small, large) - gap
-    t76 = 2.0 * point_11 * t69 - 2.0 * t64 * t66
-    N_right_0 = t75 + t76
-    t77 = t64 - t66
-    r_left_0 = point_11 + t69
-    t78 = t59 * (ctheta2A * t77 + stheta2A * r_left_0)
-    t79 = _runtime.FEASIBILITY * (t43 + size * np.abs(t78) / t72)
-    N_left_0 = t75 - t76
-    t80 = t42 & (-t73 <= N_right_0) & (-t79 <= N_left_0)
-    t81 = -(_runtime.FEASIBILITY * t43)
-    t82 = size * size
-    t83 = t82 * t82 / 10000000000.0
-    t84 = t78 * (N_left_0 - np.maximum(N_left_0, 0.0)) / (t83 + t78 * t78)
-    t85 = t70 * (N_right_0 - np.maximum(N_right_0, 0.0))
-    turn = t84 + t85 / (t83 + t70 * t70)
-    t86 = t76 - t70 * turn
-    t87 = t75 + t86
-    t88 = drawn * turn
-    t89 = ctheta2A * t88
-    t90 = t67 + t89 - r_right_0 * turn
-    t91 = stheta2A * t88
-    r_right = r_right_0 + t67 * turn + t91
-    t92 = t90 * t90 + r_right * r_right
-    t93 = gap * gap
-    t94 = t63 * t63
-    t95 = gap + t74 * np.where(t62, large, small)
-    t96 = np.where(t82 * t92 < t93, t94 - t92, t86 - t95)
-    t97 = t76 + t78 * turn
-    t98 = t75 - t97
-    t99 = t80 & (t81 <= t87) & (t81 <= -t96) & (t81 <= t98)
-    t100 = t77 + t89 - r_left_0 * turn
-    r_left = r_left_0 + t91 + t77 * turn
-    t101 = t100 * t100 + r_left * r_left
-    t102 = np.where(t82 * t101 < t93, t101 - t94, t95 + t97)
-    unreachable = np.logical_not(t99 & (t81 <= t102))
-    t103 = _runtime.poison(invalid | unreachable)
-    t104 = t16 + t103
-    t105 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.sqrt(t92) <= t105
-    t106 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t82
-    t107 = 2.0 * fore_arm
-    t108 = _runtime.VANISHING * (_runtime.VANISHING * (t43 * 16.0))
-    M_right = np.maximum(-t96, t108)
-    N_right = np.maximum(t87, t108)
+    point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
+    t60 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
+    t61 = d * t60
+    h_right_0 = point_21 - t61
+    point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
+    t62 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t63 = d * t62
+    r_right_0 = point_11 - t63
+    slope_right = t59 * (ctheta2A * h_right_0 - stheta2A * r_right_0)
+    t64 = size / 100000.0
+    t65 = t64 + np.abs(L_2W * c_elbow + a_3W * t58)
+    t66 = _runtime.FEASIBILITY * (t43 + size * np.abs(slope_right) / t65)
+    t67 = L1 * 2.0
+    t68 = L2 * t58 - a3 * c_elbow
+    t69 = 0.0 <= -t68
+    t70 = L2 * c_elbow + a3 * t58
+    large = fore_arm + np.where(t69, -t68, t68)
+    small = t70 * t70 / large
+    gap = t63 * t63 + t61 * t61
+    t71 = t67 * np.where(t69, small, large) - gap
+    t72 = 2.0 * point_11 * t63 + 2.0 * point_21 * t61
+    N_right_0 = t71 + t72
+    h_left_0 = point_21 + t61
+    r_left_0 = point_11 + t63
+    slope_left = t59 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    t73 = _runtime.FEASIBILITY * (t43 + size * np.abs(slope_left) / t65)
+    N_left_0 = t71 - t72
+    t74 = t42 & (-t66 <= N_right_0) & (-t73 <= N_left_0)
+    t75 = -(_runtime.FEASIBILITY * t43)
+    t76 = slope_left * (N_left_0 - np.maximum(N_left_0, 0.0))
+    t77 = size * size
+    t78 = t77 * t77 / 10000000000.0
+    t79 = slope_right * (N_right_0 - np.maximum(N_right_0, 0.0))
+    t80 = t76 / (t78 + slope_left * slope_left) + t79 / (t78 + slope_right * slope_right)
+    t81 = t72 - slope_right * t80
+    t82 = t71 + t81
+    swing = drawn * t80
+    t83 = ctheta2A * swing
+    h_right = h_right_0 + t83 - r_right_0 * t80
+    t84 = stheta2A * swing
+    r_right = r_right_0 + h_right_0 * t80 - t84
+    t85 = h_right * h_right + r_right * r_right
+    t86 = gap * gap
+    t87 = L1 - fore_arm
+    t88 = t87 * t87
+    t89 = gap + t67 * np.where(t69, large, small)
+    t90 = np.where(t77 * t85 < t86, t88 - t85, t81 - t89)
+    t91 = t72 + slope_left * t80
+    t92 = t71 - t91
+    t93 = t74 & (t75 <= t82) & (t75 <= -t90) & (t75 <= t92)
+    h_left = h_left_0 + t83 - r_left_0 * t80
+    r_left = r_left_0 - t84 + h_left_0 * t80
+    t94 = h_left * h_left + r_left * r_left
+    t95 = np.where(t77 * t94 < t86, t94 - t88, t89 + t91)
+    unreachable = np.logical_not(t93 & (t75 <= t95))
+    t96 = _runtime.poison(invalid | unreachable)
+    t97 = t16 + t96
+    t98 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.sqrt(t85) <= t98
+    t99 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t77
+    t100 = 2.0 * fore_arm
+    t101 = _runtime.VANISHING * (_runtime.VANISHING * (t43 * 16.0))
+    M_right = np.maximum(-t90, t101)
+    N_right = np.maximum(t82, t101)
     whole_right = M_right + N_right
-    ahead_1_right = np.where(short_right, size, t63 + t107 * M_right / whole_right)
-    t109 = 2.0 * np.where(0.0 <= -t60, 1.0, -1.0)
+    ahead_1_right = np.where(short_right, size, t87 + t100 * M_right / whole_right)
+    t102 = 2.0 * np.where(0.0 <= -t70, 1.0, -1.0)
     rN_right = np.sqrt(N_right)
     rM_right = np.sqrt(M_right)
-    s_bend_right = np.where(short_right, 0.0, t109 * rN_right * rM_right / whole_right)
-    t110 = fore_arm * s_bend_right
-    t111 = np.arctan2(t90 * ahead_1_right + r_right * t110, r_right * ahead_1_right - t90 * t110)
-    t112 = _runtime.wrap(np.where(folded_right, t106, -t111))
-    t113 = t112 + t103
+    s_bend_right = np.where(short_right, 0.0, t102 * rN_right * rM_right / whole_right)
+    t103 = fore_arm * s_bend_right
+    t104 = np.arctan2(h_right * ahead_1_right - r_right * t103, r_right * ahead_1_right + h_right * t103)
+    t105 = _runtime.wrap(np.where(folded_right, t99, t104))
+    t106 = t105 + t96
     bare_right = fore_arm <= _runtime.VANISHING * size
-    t114 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
-    t115 = np.where(short_right, 0.0, t109 * np.arctan2(rN_right, rM_right))
-    t116 = _runtime.wrap(t114 + t115) + t103
-    folded_left = np.sqrt(t101) <= t105
-    M_left = np.maximum(t102, 0.0)
-    N_left = np.maximum(t98, 0.0)
+    t107 = np.arctan2(np.where(bare_right, 0.0, L2 / fore_arm), np.where(bare_right, 1.0, a3 / fore_arm))
+    t108 = np.where(short_right, 0.0, t102 * np.arctan2(rN_right, rM_right))
+    t109 = _runtime.wrap(t107 + t108) + t96
+    folded_left = np.sqrt(t94) <= t98
+    M_left = np.maximum(t95, 0.0)
+    N_left = np.maximum(t92, 0.0)
     whole_left = M_left + N_left
-    ahead_1_left = np.where(short_right, size, t63 + t107 * M_left / whole_left)
-    t117 = t100 * ahead_1_left
+    ahead_1_left = np.where(short_right, size, t87 + t100 * M_left / whole_left)
+    t110 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = np.where(short_right, 0.0, t109 * rN_left * rM_left / whole_left)
-    t118 = fore_arm * s_bend_left
-    t119 = r_left * t118
-    t120 = r_left * ahead_1_left
-    t121 = t100 * t118
-    t122 = np.where(folded_left, t106, -np.arctan2(t117 + t119, t120 - t121))
-    t123 = np.where(short_right, 0.0, t109 * np.arctan2(rN_left, rM_left))
-    t124 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
-    t125 = t124 + t103
-    t126 = np.where(folded_left, t106, -np.arctan2(t117 - t119, t120 + t121))
+    s_bend_left = np.where(short_right, 0.0, t102 * rN_left * rM_left / whole_left)
+    t111 = fore_arm * s_bend_left
+    t112 = r_left * t111
+    t113 = r_left * ahead_1_left
+    t114 = h_left * t111
+    t115 = np.where(folded_left, t99, np.arctan2(t110 - t112, t113 + t114))
+    t116 = np.where(short_right, 0.0, t102 * np.arctan2(rN_left, rM_left))
+    t117 = _runtime.wrap(np.arctan2(s_pitch, c_pitch))
+    t118 = t117 + t96
+    t119 = np.where(folded_left, t99, np.arctan2(t110 + t112, t113 - t114))
     stheta2A_front_elbow_down_alike = t48 - t49
     ctheta2A_front_elbow_down_alike = t50 + t51
     c_relative_front_elbow_down_alike = t54 - t55
-    t127 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t120 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
     s_relative_front_elbow_down_alike = t56 + t57
-    t128 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t127 - t128
-    t129 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t130 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t131 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t130 + t131
-    t132 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t133 = t129 - t132
-    t134 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t135 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t134 + t135
-    drawn_front_elbow_down_alike = L1 - L_2W * t133 + a_3W * c_elbow_front_elbow_down_alike
-    t136 = 2.0 * drawn_front_elbow_down_alike
-    t137 = L2 * c_elbow_front_elbow_down_alike + a3 * t133
-    t138 = L2 * t133 - a3 * c_elbow_front_elbow_down_alike
-    t139 = 0.0 <= -t138
-    large_front_elbow_down_alike = fore_arm + np.where(t139, -t138, t138)
-    small_front_elbow_down_alike = t137 * t137 / large_front_elbow_down_alike
-    end_front_elbow_down_alike = np.where(t139, size - small_front_elbow_down_alike, t63 + small_front_elbow_down_alike)
-    t140 = stheta2A_front_elbow_down_alike * end_front_elbow_down_alike
-    t141 = ctheta2A_front_elbow_down_alike * t137 - t140
-    t142 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t143 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t144 = d * (t142 + t143)
-    t145 = t141 + t144
-    t146 = ctheta2A_front_elbow_down_alike * end_front_elbow_down_alike
-    point_11_front_elbow_down_alike = stheta2A_front_elbow_down_alike * t137 + t146
-    t147 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t148 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t149 = d * (t147 - t148)
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t149
-    t150 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t151 = ctheta2A_front_elbow_down_alike * t145 + t150
-    t152 = t136 * t151
-    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t133
-    t153 = t71 + np.abs(tilt_front_elbow_down_alike)
-    t154 = _runtime.FEASIBILITY * (t43 + size * np.abs(t152) / t153)
-    t155 = np.where(t139, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    gap_front_elbow_down_alike = t149 * t149 + t144 * t144
-    t156 = t74 * t155 - gap_front_elbow_down_alike
-    t157 = 2.0 * point_11_front_elbow_down_alike * t149 - 2.0 * t141 * t144
-    N_right_0_front_elbow_down_alike = t156 + t157
-    t158 = t42 & (-t154 <= N_right_0_front_elbow_down_alike)
-    t159 = t141 - t144
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t149
-    t160 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t161 = ctheta2A_front_elbow_down_alike * t159 + t160
-    t162 = t136 * t161
-    t163 = _runtime.FEASIBILITY * (t43 + size * np.abs(t162) / t153)
-    N_left_0_front_elbow_down_alike = t156 - t157
-    t164 = t158 & (-t163 <= N_left_0_front_elbow_down_alike)
+    t121 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t120 - t121
+    t122 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t123 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t124 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t123 + t124
+    t125 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t126 = t122 - t125
+    t127 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t128 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t127 + t128
+    drawn_front_elbow_down_alike = L1 - L_2W * t126 + a_3W * c_elbow_front_elbow_down_alike
+    t129 = 2.0 * drawn_front_elbow_down_alike
+    t130 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t130 + a3 * stheta23A_front_elbow_down_alike
+    t131 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t132 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t133 = d * (t131 + t132)
+    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t133
+    t134 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t135 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t135 + a3 * ctheta23A_front_elbow_down_alike
+    t136 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t137 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t138 = d * (t136 - t137)
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t138
+    t139 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    slope_right_front_elbow_down_alike = t129 * (t134 - t139)
+    t140 = size * np.abs(slope_right_front_elbow_down_alike)
+    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t126
+    t141 = t64 + np.abs(tilt_front_elbow_down_alike)
+    t142 = -(_runtime.FEASIBILITY * (t43 + t140 / t141))
+    t143 = L2 * t126 - a3 * c_elbow_front_elbow_down_alike
+    t144 = 0.0 <= -t143
+    t145 = L2 * c_elbow_front_elbow_down_alike + a3 * t126
+    large_front_elbow_down_alike = fore_arm + np.where(t144, -t143, t143)
+    small_front_elbow_down_alike = t145 * t145 / large_front_elbow_down_alike
+    t146 = np.where(t144, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    gap_front_elbow_down_alike = t138 * t138 + t133 * t133
+    t147 = t67 * t146 - gap_front_elbow_down_alike
+    t148 = 2.0 * point_11_front_elbow_down_alike * t138 + 2.0 * point_21_front_elbow_down_alike * t133
+    N_right_0_front_elbow_down_alike = t147 + t148
+    t149 = t42 & (t142 <= N_right_0_front_elbow_down_alike)
+    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t133
+    t150 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t138
+    t151 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    slope_left_front_elbow_down_alike = t129 * (t150 - t151)
+    t152 = size * np.abs(slope_left_front_elbow_down_alike)
+    t153 = -(_runtime.FEASIBILITY * (t43 + t152 / t141))
+    N_left_0_front_elbow_down_alike = t147 - t148
+    t154 = t149 & (t153 <= N_left_0_front_elbow_down_alike)
     slack_left_front_elbow_down_alike = np.maximum(N_left_0_front_elbow_down_alike, 0.0)
-    t165 = N_left_0_front_elbow_down_alike - slack_left_front_elbow_down_alike
+    t155 = N_left_0_front_elbow_down_alike - slack_left_front_elbow_down_alike
+    t156 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t157 = slope_left_front_elbow_down_alike * t155 / (t78 + t156)
     slack_right_front_elbow_down_alike = np.maximum(N_right_0_front_elbow_down_alike, 0.0)
-    t166 = N_right_0_front_elbow_down_alike - slack_right_front_elbow_down_alike
-    turn_front_elbow_down_alike = t162 * t165 / (t83 + t162 * t162) + t152 * t166 / (t83 + t152 * t152)
-    t167 = t157 - t152 * turn_front_elbow_down_alike
-    t168 = t156 + t167
-    t169 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
-    t170 = ctheta2A_front_elbow_down_alike * t169
-    t171 = r_right_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    t172 = t145 + t170 - t171
-    t173 = r_right_0_front_elbow_down_alike + t145 * turn_front_elbow_down_alike
-    t174 = stheta2A_front_elbow_down_alike * t169
-    r_right_front_elbow_down_alike = t173 + t174
-    t175 = r_right_front_elbow_down_alike * r_right_front_elbow_down_alike
-    t176 = t172 * t172 + t175
-    t177 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t178 = np.where(t139, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    t179 = gap_front_elbow_down_alike + t74 * t178
-    t180 = np.where(t82 * t176 < t177, t94 - t176, t167 - t179)
-    t181 = t157 + t162 * turn_front_elbow_down_alike
-    t182 = t156 - t181
-    t183 = t164 & (t81 <= t168) & (t81 <= -t180) & (t81 <= t182)
-    t184 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    t185 = t159 + t170 - t184
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike + t174 + t159 * turn_front_elbow_down_alike
-    t186 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t187 = t185 * t185 + t186
-    t188 = np.where(t82 * t187 < t177, t187 - t94, t179 + t181)
-    unreachable_2 = np.logical_not(t183 & (t81 <= t188))
-    t189 = _runtime.poison(invalid | unreachable_2)
-    t190 = t16 + t189
-    folded_right_front_elbow_down_alike = np.sqrt(t176) <= t105
-    t191 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(-t180, t108)
-    N_right_front_elbow_down_alike = np.maximum(t168, t108)
+    t158 = N_right_0_front_elbow_down_alike - slack_right_front_elbow_down_alike
+    t159 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
+    t160 = slope_right_front_elbow_down_alike * t158 / (t78 + t159)
+    t161 = t157 + t160
+    t162 = t148 - slope_right_front_elbow_down_alike * t161
+    t163 = t147 + t162
+    swing_front_elbow_down_alike = drawn_front_elbow_down_alike * t161
+    t164 = ctheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
+    h_right_front_elbow_down_alike = h_right_0_front_elbow_down_alike + t164 - r_right_0_front_elbow_down_alike * t161
+    t165 = h_right_front_elbow_down_alike * h_right_front_elbow_down_alike
+    t166 = r_right_0_front_elbow_down_alike + h_right_0_front_elbow_down_alike * t161
+    t167 = stheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
+    r_right_front_elbow_down_alike = t166 - t167
+    t168 = r_right_front_elbow_down_alike * r_right_front_elbow_down_alike
+    t169 = t165 + t168
+    t170 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t171 = np.where(t144, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    t172 = gap_front_elbow_down_alike + t67 * t171
+    t173 = np.where(t77 * t169 < t170, t88 - t169, t162 - t172)
+    t174 = t148 + slope_left_front_elbow_down_alike * t161
+    t175 = t147 - t174
+    t176 = t154 & (t75 <= t163) & (t75 <= -t173) & (t75 <= t175)
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike + t164 - r_left_0_front_elbow_down_alike * t161
+    t177 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t167 + h_left_0_front_elbow_down_alike * t161
+    t178 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t179 = t177 + t178
+    t180 = np.where(t77 * t179 < t170, t179 - t88, t172 + t174)
+    unreachable_2 = np.logical_not(t176 & (t75 <= t180))
+    t181 = _runtime.poison(invalid | unreachable_2)
+    t182 = t16 + t181
+    folded_right_front_elbow_down_alike = np.sqrt(t169) <= t98
+    t183 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    M_right_front_elbow_down_alike = np.maximum(-t173, t101)
+    N_right_front_elbow_down_alike = np.maximum(t163, t101)
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t192 = t107 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = np.where(short_right, size, t63 + t192)
-    t193 = 2.0 * np.where(0.0 <= -t137, 1.0, -1.0)
+    t184 = t100 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = np.where(short_right, size, t87 + t184)
+    t185 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t186 = 2.0 * np.where(0.0 <= -t145, 1.0, -1.0)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t194 = t193 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t194 / whole_right_front_elbow_down_alike)
-    t195 = fore_arm * s_bend_right_front_elbow_down_alike
-    t196 = t172 * ahead_1_right_front_elbow_down_alike + r_right_front_elbow_down_alike * t195
-    t197 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t198 = np.where(folded_right_front_elbow_down_alike, t191, -np.arctan2(t196, t197 - t172 * t195))
-    t199 = _runtime.wrap(t198) + t189
-    t200 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t201 = t114 + np.where(short_right, 0.0, t193 * t200)
-    t202 = _runtime.wrap(t201) + t189
-    folded_left_front_elbow_down_alike = np.sqrt(t187) <= t105
-    M_left_front_elbow_down_alike = np.maximum(t188, 0.0)
-    N_left_front_elbow_down_alike = np.maximum(t182, 0.0)
+    t187 = t186 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = np.where(short_right, 0.0, t187 / whole_right_front_elbow_down_alike)
+    t188 = fore_arm * s_bend_right_front_elbow_down_alike
+    t189 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t190 = np.arctan2(t185 - r_right_front_elbow_down_alike * t188, t189 + h_right_front_elbow_down_alike * t188)
+    t191 = np.where(folded_right_front_elbow_down_alike, t183, t190)
+    t192 = _runtime.wrap(t191) + t181
+    t193 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t194 = t107 + np.where(short_right, 0.0, t186 * t193)
+    t195 = _runtime.wrap(t194) + t181
+    folded_left_front_elbow_down_alike = np.sqrt(t179) <= t98
+    M_left_front_elbow_down_alike = np.maximum(t180, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t175, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t203 = t107 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = np.where(short_right, size, t63 + t203)
-    t204 = t185 * ahead_1_left_front_elbow_down_alike
+    t196 = t100 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = np.where(short_right, size, t87 + t196)
+    t197 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t205 = t193 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t205 / whole_left_front_elbow_down_alike)
-    t206 = fore_arm * s_bend_left_front_elbow_down_alike
-    t207 = r_left_front_elbow_down_alike * t206
-    t208 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t209 = t185 * t206
-    t210 = np.where(folded_left_front_elbow_down_alike, t191, -np.arctan2(t204 + t207, t208 - t209))
-    t211 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t212 = np.where(short_right, 0.0, t193 * t211)
-    t213 = t124 + t189
-    t214 = np.where(folded_left_front_elbow_down_alike, t191, -np.arctan2(t204 - t207, t208 + t209))
-    t215 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
-    t216 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
-    outward_rear_elbow_up_alike = t216 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
-    t217 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t31 + t217)
-    t218 = t28 - reach_rear_elbow_up_alike
-    t219 = reach_rear_elbow_up_alike + t39
-    t220 = reach_rear_elbow_up_alike - t39
-    t221 = t27 & (t29 <= t218) & (t29 <= t219) & (t29 <= t220)
+    t198 = t186 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = np.where(short_right, 0.0, t198 / whole_left_front_elbow_down_alike)
+    t199 = fore_arm * s_bend_left_front_elbow_down_alike
+    t200 = r_left_front_elbow_down_alike * t199
+    t201 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t202 = h_left_front_elbow_down_alike * t199
+    t203 = np.where(folded_left_front_elbow_down_alike, t183, np.arctan2(t197 - t200, t201 + t202))
+    t204 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t205 = np.where(short_right, 0.0, t186 * t204)
+    t206 = t117 + t181
+    t207 = np.where(folded_left_front_elbow_down_alike, t183, np.arctan2(t197 + t200, t201 - t202))
+    t208 = _runtime.wrap(-np.where(nowhere, 0.0, t2 + t15))
+    t209 = x * np.where(nowhere, 1.0, -((t33 + t34) / h))
+    outward_rear_elbow_up_alike = t209 + y * np.where(nowhere, 0.0, (t36 - t37) / h)
+    t210 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t31 + t210)
+    t211 = t28 - reach_rear_elbow_up_alike
+    t212 = reach_rear_elbow_up_alike + t39
+    t213 = reach_rear_elbow_up_alike - t39
+    t214 = t27 & (t29 <= t211) & (t29 <= t212) & (t29 <= t213)
     folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t44
     s_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 0.0, t30 / reach_rear_elbow_up_alike)
-    t222 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t218, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t220, 0.0)
-    t223 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    t215 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t211, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t213, 0.0)
+    t216 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
     S_rear_elbow_up_alike = t28 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t219, 0.0)
-    t224 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t223 + t224
-    t225 = -((t223 - t224) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = np.where(t222, 1.0, t225)
-    t226 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t227 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t227)
-    t228 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t228 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t229 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = np.where(t222, 0.0, t229)
-    t230 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t226 - t230
-    t231 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t232 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t231 + t232
-    t233 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t234 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t233 + t234
-    t235 = -((t233 - t234) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t235)
-    t236 = c_lag * c_bend_rear_elbow_up_alike
-    t237 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t237)
-    t238 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t236 - t238
-    t239 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t240 = s_lag * c_bend_rear_elbow_up_alike
-    t241 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t240 + t241
-    t242 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t239 - t242
-    t243 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t244 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t245 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t244 + t245
-    t246 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t247 = t243 - t246
-    t248 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t249 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t248 + t249
-    drawn_rear_elbow_up_alike = L1 - L_2W * t247 + a_3W * c_elbow_rear_elbow_up_alike
-    t250 = 2.0 * drawn_rear_elbow_up_alike
-    t251 = L2 * c_elbow_rear_elbow_up_alike + a3 * t247
-    t252 = L2 * t247 - a3 * c_elbow_rear_elbow_up_alike
-    t253 = 0.0 <= -t252
-    large_rear_elbow_up_alike = fore_arm + np.where(t253, -t252, t252)
-    small_rear_elbow_up_alike = t251 * t251 / large_rear_elbow_up_alike
-    end_rear_elbow_up_alike = np.where(t253, size - small_rear_elbow_up_alike, t63 + small_rear_elbow_up_alike)
-    t254 = stheta2A_rear_elbow_up_alike * end_rear_elbow_up_alike
-    t255 = ctheta2A_rear_elbow_up_alike * t251 - t254
-    t256 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t257 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t256
-    t258 = d * t257
-    t259 = t255 + t258
-    t260 = ctheta2A_rear_elbow_up_alike * end_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = stheta2A_rear_elbow_up_alike * t251 + t260
-    t261 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t262 = t261 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t263 = d * t262
-    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t263
-    t264 = stheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t265 = t250 * (ctheta2A_rear_elbow_up_alike * t259 + t264)
-    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t247
-    t266 = t71 + np.abs(tilt_rear_elbow_up_alike)
-    t267 = _runtime.FEASIBILITY * (t43 + size * np.abs(t265) / t266)
-    t268 = np.where(t253, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    gap_rear_elbow_up_alike = t263 * t263 + t258 * t258
-    t269 = t74 * t268 - gap_rear_elbow_up_alike
-    t270 = 2.0 * point_11_rear_elbow_up_alike * t263 - 2.0 * t255 * t258
-    N_right_0_rear_elbow_up_alike = t269 + t270
-    t271 = t221 & (-t267 <= N_right_0_rear_elbow_up_alike)
-    t272 = t255 - t258
-    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t263
-    t273 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t274 = t250 * (ctheta2A_rear_elbow_up_alike * t272 + t273)
-    t275 = _runtime.FEASIBILITY * (t43 + size * np.abs(t274) / t266)
-    N_left_0_rear_elbow_up_alike = t269 - t270
-    t276 = t271 & (-t275 <= N_left_0_rear_elbow_up_alike)
+    B_rear_elbow_up_alike = np.maximum(t212, 0.0)
+    t217 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t216 + t217
+    t218 = -((t216 - t217) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = np.where(t215, 1.0, t218)
+    t219 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t220 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = np.where(folded_rear_elbow_up_alike, 1.0, t220)
+    t221 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t221 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t222 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = np.where(t215, 0.0, t222)
+    t223 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t219 - t223
+    t224 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t225 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t224 + t225
+    t226 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t227 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t226 + t227
+    t228 = -((t226 - t227) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = np.where(short, 1.0, t228)
+    t229 = c_lag * c_bend_rear_elbow_up_alike
+    t230 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = np.where(short, 0.0, t230)
+    t231 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t229 - t231
+    t232 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t233 = s_lag * c_bend_rear_elbow_up_alike
+    t234 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t233 + t234
+    t235 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t232 - t235
+    t236 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t237 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t238 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t237 + t238
+    t239 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t240 = t236 - t239
+    t241 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t242 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t241 + t242
+    drawn_rear_elbow_up_alike = L1 - L_2W * t240 + a_3W * c_elbow_rear_elbow_up_alike
+    t243 = 2.0 * drawn_rear_elbow_up_alike
+    t244 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t244 + a3 * stheta23A_rear_elbow_up_alike
+    t245 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t246 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t245
+    t247 = d * t246
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t247
+    t248 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t249 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t249 + a3 * ctheta23A_rear_elbow_up_alike
+    t250 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t251 = t250 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t252 = d * t251
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t252
+    t253 = stheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    slope_right_rear_elbow_up_alike = t243 * (t248 - t253)
+    t254 = size * np.abs(slope_right_rear_elbow_up_alike)
+    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t240
+    t255 = t64 + np.abs(tilt_rear_elbow_up_alike)
+    t256 = -(_runtime.FEASIBILITY * (t43 + t254 / t255))
+    t257 = L2 * t240 - a3 * c_elbow_rear_elbow_up_alike
+    t258 = 0.0 <= -t257
+    t259 = L2 * c_elbow_rear_elbow_up_alike + a3 * t240
+    large_rear_elbow_up_alike = fore_arm + np.where(t258, -t257, t257)
+    small_rear_elbow_up_alike = t259 * t259 / large_rear_elbow_up_alike
+    t260 = np.where(t258, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    gap_rear_elbow_up_alike = t252 * t252 + t247 * t247
+    t261 = t67 * t260 - gap_rear_elbow_up_alike
+    t262 = 2.0 * point_11_rear_elbow_up_alike * t252 + 2.0 * point_21_rear_elbow_up_alike * t247
+    N_right_0_rear_elbow_up_alike = t261 + t262
+    t263 = t214 & (t256 <= N_right_0_rear_elbow_up_alike)
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t247
+    t264 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t252
+    t265 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t243 * (t264 - t265)
+    t266 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t267 = -(_runtime.FEASIBILITY * (t43 + t266 / t255))
+    N_left_0_rear_elbow_up_alike = t261 - t262
+    t268 = t263 & (t267 <= N_left_0_rear_elbow_up_alike)
     slack_left_rear_elbow_up_alike = np.maximum(N_left_0_rear_elbow_up_alike, 0.0)
-    t277 = N_left_0_rear_elbow_up_alike - slack_left_rear_elbow_up_alike
+    t269 = N_left_0_rear_elbow_up_alike - slack_left_rear_elbow_up_alike
+    t270 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t271 = slope_left_rear_elbow_up_alike * t269 / (t78 + t270)
     slack_right_rear_elbow_up_alike = np.maximum(N_right_0_rear_elbow_up_alike, 0.0)
-    t278 = N_right_0_rear_elbow_up_alike - slack_right_rear_elbow_up_alike
-    turn_rear_elbow_up_alike = t274 * t277 / (t83 + t274 * t274) + t265 * t278 / (t83 + t265 * t265)
-    t279 = t270 - t265 * turn_rear_elbow_up_alike
-    t280 = t269 + t279
-    t281 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t282 = ctheta2A_rear_elbow_up_alike * t281
-    t283 = r_right_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t284 = t259 + t282 - t283
-    t285 = r_right_0_rear_elbow_up_alike + t259 * turn_rear_elbow_up_alike
-    t286 = stheta2A_rear_elbow_up_alike * t281
-    r_right_rear_elbow_up_alike = t285 + t286
-    t287 = r_right_rear_elbow_up_alike * r_right_rear_elbow_up_alike
-    t288 = t284 * t284 + t287
-    t289 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t290 = np.where(t253, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    t291 = gap_rear_elbow_up_alike + t74 * t290
-    t292 = np.where(t82 * t288 < t289, t94 - t288, t279 - t291)
-    t293 = t270 + t274 * turn_rear_elbow_up_alike
-    t294 = t269 - t293
-    t295 = t276 & (t81 <= t280) & (t81 <= -t292) & (t81 <= t294)
-    t296 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t297 = t272 + t282 - t296
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t286 + t272 * turn_rear_elbow_up_alike
-    t298 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t299 = t297 * t297 + t298
-    t300 = np.where(t82 * t299 < t289, t299 - t94, t291 + t293)
-    unreachable_3 = np.logical_not(t295 & (t81 <= t300))
-    t301 = _runtime.poison(invalid | unreachable_3)
-    t302 = t215 + t301
-    folded_right_rear_elbow_up_alike = np.sqrt(t288) <= t105
-    t303 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(-t292, t108)
-    N_right_rear_elbow_up_alike = np.maximum(t280, t108)
+    t272 = N_right_0_rear_elbow_up_alike - slack_right_rear_elbow_up_alike
+    t273 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
+    t274 = slope_right_rear_elbow_up_alike * t272 / (t78 + t273)
+    t275 = t271 + t274
+    t276 = t262 - slope_right_rear_elbow_up_alike * t275
+    t277 = t261 + t276
+    swing_rear_elbow_up_alike = drawn_rear_elbow_up_alike * t275
+    t278 = ctheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
+    h_right_rear_elbow_up_alike = h_right_0_rear_elbow_up_alike + t278 - r_right_0_rear_elbow_up_alike * t275
+    t279 = h_right_rear_elbow_up_alike * h_right_rear_elbow_up_alike
+    t280 = r_right_0_rear_elbow_up_alike + h_right_0_rear_elbow_up_alike * t275
+    t281 = stheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
+    r_right_rear_elbow_up_alike = t280 - t281
+    t282 = r_right_rear_elbow_up_alike * r_right_rear_elbow_up_alike
+    t283 = t279 + t282
+    t284 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t285 = np.where(t258, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    t286 = gap_rear_elbow_up_alike + t67 * t285
+    t287 = np.where(t77 * t283 < t284, t88 - t283, t276 - t286)
+    t288 = t262 + slope_left_rear_elbow_up_alike * t275
+    t289 = t261 - t288
+    t290 = t268 & (t75 <= t277) & (t75 <= -t287) & (t75 <= t289)
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike + t278 - r_left_0_rear_elbow_up_alike * t275
+    t291 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t281 + h_left_0_rear_elbow_up_alike * t275
+    t292 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t293 = t291 + t292
+    t294 = np.where(t77 * t293 < t284, t293 - t88, t286 + t288)
+    unreachable_3 = np.logical_not(t290 & (t75 <= t294))
+    t295 = _runtime.poison(invalid | unreachable_3)
+    t296 = t208 + t295
+    folded_right_rear_elbow_up_alike = np.sqrt(t283) <= t98
+    t297 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    M_right_rear_elbow_up_alike = np.maximum(-t287, t101)
+    N_right_rear_elbow_up_alike = np.maximum(t277, t101)
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t304 = t107 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = np.where(short_right, size, t63 + t304)
-    t305 = 2.0 * np.where(0.0 <= -t251, 1.0, -1.0)
+    t298 = t100 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = np.where(short_right, size, t87 + t298)
+    t299 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t300 = 2.0 * np.where(0.0 <= -t259, 1.0, -1.0)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t306 = t305 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t306 / whole_right_rear_elbow_up_alike)
-    t307 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t308 = t284 * ahead_1_right_rear_elbow_up_alike + r_right_rear_elbow_up_alike * t307
-    t309 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t310 = np.where(folded_right_rear_elbow_up_alike, t303, -np.arctan2(t308, t309 - t284 * t307))
-    t311 = _runtime.wrap(t310) + t301
-    t312 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t313 = t114 + np.where(short_right, 0.0, t305 * t312)
-    t314 = _runtime.wrap(t313) + t301
-    folded_left_rear_elbow_up_alike = np.sqrt(t299) <= t105
-    M_left_rear_elbow_up_alike = np.maximum(t300, 0.0)
-    N_left_rear_elbow_up_alike = np.maximum(t294, 0.0)
+    t301 = t300 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = np.where(short_right, 0.0, t301 / whole_right_rear_elbow_up_alike)
+    t302 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t303 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t304 = np.arctan2(t299 - r_right_rear_elbow_up_alike * t302, t303 + h_right_rear_elbow_up_alike * t302)
+    t305 = np.where(folded_right_rear_elbow_up_alike, t297, t304)
+    t306 = _runtime.wrap(t305) + t295
+    t307 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t308 = t107 + np.where(short_right, 0.0, t300 * t307)
+    t309 = _runtime.wrap(t308) + t295
+    folded_left_rear_elbow_up_alike = np.sqrt(t293) <= t98
+    M_left_rear_elbow_up_alike = np.maximum(t294, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t289, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t315 = t107 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = np.where(short_right, size, t63 + t315)
-    t316 = t297 * ahead_1_left_rear_elbow_up_alike
+    t310 = t100 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = np.where(short_right, size, t87 + t310)
+    t311 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t317 = t305 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t317 / whole_left_rear_elbow_up_alike)
-    t318 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t319 = r_left_rear_elbow_up_alike * t318
-    t320 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t321 = t297 * t318
-    t322 = np.where(folded_left_rear_elbow_up_alike, t303, -np.arctan2(t316 + t319, t320 - t321))
-    t323 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t324 = np.where(short_right, 0.0, t305 * t323)
-    t325 = t124 + t301
-    t326 = np.where(folded_left_rear_elbow_up_alike, t303, -np.arctan2(t316 - t319, t320 + t321))
-    stheta2A_rear_elbow_down_alike = t226 + t230
-    ctheta2A_rear_elbow_down_alike = t231 - t232
-    c_relative_rear_elbow_down_alike = t236 + t238
-    t327 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t240 - t241
-    t328 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t327 - t328
-    t329 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t330 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t331 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t330 + t331
-    t332 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t333 = t329 - t332
-    t334 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t335 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t334 + t335
-    drawn_rear_elbow_down_alike = L1 - L_2W * t333 + a_3W * c_elbow_rear_elbow_down_alike
-    t336 = 2.0 * drawn_rear_elbow_down_alike
-    t337 = L2 * c_elbow_rear_elbow_down_alike + a3 * t333
-    t338 = L2 * t333 - a3 * c_elbow_rear_elbow_down_alike
-    t339 = 0.0 <= -t338
-    large_rear_elbow_down_alike = fore_arm + np.where(t339, -t338, t338)
-    small_rear_elbow_down_alike = t337 * t337 / large_rear_elbow_down_alike
-    end_rear_elbow_down_alike = np.where(t339, size - small_rear_elbow_down_alike, t63 + small_rear_elbow_down_alike)
-    t340 = stheta2A_rear_elbow_down_alike * end_rear_elbow_down_alike
-    t341 = ctheta2A_rear_elbow_down_alike * t337 - t340
-    t342 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t343 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t342
-    t344 = d * t343
-    t345 = t341 + t344
-    t346 = ctheta2A_rear_elbow_down_alike * end_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = stheta2A_rear_elbow_down_alike * t337 + t346
-    t347 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t348 = t347 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t349 = d * t348
-    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t349
-    t350 = stheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t351 = t336 * (ctheta2A_rear_elbow_down_alike * t345 + t350)
-    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t333
-    t352 = t71 + np.abs(tilt_rear_elbow_down_alike)
-    t353 = _runtime.FEASIBILITY * (t43 + size * np.abs(t351) / t352)
-    t354 = np.where(t339, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    gap_rear_elbow_down_alike = t349 * t349 + t344 * t344
-    t355 = t74 * t354 - gap_rear_elbow_down_alike
-    t356 = 2.0 * point_11_rear_elbow_down_alike * t349 - 2.0 * t341 * t344
-    N_right_0_rear_elbow_down_alike = t355 + t356
-    t357 = t221 & (-t353 <= N_right_0_rear_elbow_down_alike)
-    t358 = t341 - t344
-    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t349
-    t359 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t360 = t336 * (ctheta2A_rear_elbow_down_alike * t358 + t359)
-    t361 = _runtime.FEASIBILITY * (t43 + size * np.abs(t360) / t352)
-    N_left_0_rear_elbow_down_alike = t355 - t356
-    t362 = t357 & (-t361 <= N_left_0_rear_elbow_down_alike)
+    t312 = t300 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = np.where(short_right, 0.0, t312 / whole_left_rear_elbow_up_alike)
+    t313 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t314 = r_left_rear_elbow_up_alike * t313
+    t315 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t316 = h_left_rear_elbow_up_alike * t313
+    t317 = np.where(folded_left_rear_elbow_up_alike, t297, np.arctan2(t311 - t314, t315 + t316))
+    t318 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t319 = np.where(short_right, 0.0, t300 * t318)
+    t320 = t117 + t295
+    t321 = np.where(folded_left_rear_elbow_up_alike, t297, np.arctan2(t311 + t314, t315 - t316))
+    stheta2A_rear_elbow_down_alike = t219 + t223
+    ctheta2A_rear_elbow_down_alike = t224 - t225
+    c_relative_rear_elbow_down_alike = t229 + t231
+    t322 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t233 - t234
+    t323 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t322 - t323
+    t324 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t325 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    t326 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t325 + t326
+    t327 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t328 = t324 - t327
+    t329 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t330 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t329 + t330
+    drawn_rear_elbow_down_alike = L1 - L_2W * t328 + a_3W * c_elbow_rear_elbow_down_alike
+    t331 = 2.0 * drawn_rear_elbow_down_alike
+    t332 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t332 + a3 * stheta23A_rear_elbow_down_alike
+    t333 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t334 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t333
+    t335 = d * t334
+    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t335
+    t336 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t337 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t337 + a3 * ctheta23A_rear_elbow_down_alike
+    t338 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t339 = t338 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t340 = d * t339
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t340
+    t341 = stheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    slope_right_rear_elbow_down_alike = t331 * (t336 - t341)
+    t342 = size * np.abs(slope_right_rear_elbow_down_alike)
+    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t328
+    t343 = t64 + np.abs(tilt_rear_elbow_down_alike)
+    t344 = -(_runtime.FEASIBILITY * (t43 + t342 / t343))
+    t345 = L2 * t328 - a3 * c_elbow_rear_elbow_down_alike
+    t346 = 0.0 <= -t345
+    t347 = L2 * c_elbow_rear_elbow_down_alike + a3 * t328
+    large_rear_elbow_down_alike = fore_arm + np.where(t346, -t345, t345)
+    small_rear_elbow_down_alike = t347 * t347 / large_rear_elbow_down_alike
+    t348 = np.where(t346, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    gap_rear_elbow_down_alike = t340 * t340 + t335 * t335
+    t349 = t67 * t348 - gap_rear_elbow_down_alike
+    t350 = 2.0 * point_11_rear_elbow_down_alike * t340 + 2.0 * point_21_rear_elbow_down_alike * t335
+    N_right_0_rear_elbow_down_alike = t349 + t350
+    t351 = t214 & (t344 <= N_right_0_rear_elbow_down_alike)
+    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t335
+    t352 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t340
+    t353 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t331 * (t352 - t353)
+    t354 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t355 = -(_runtime.FEASIBILITY * (t43 + t354 / t343))
+    N_left_0_rear_elbow_down_alike = t349 - t350
+    t356 = t351 & (t355 <= N_left_0_rear_elbow_down_alike)
     slack_left_rear_elbow_down_alike = np.maximum(N_left_0_rear_elbow_down_alike, 0.0)
-    t363 = N_left_0_rear_elbow_down_alike - slack_left_rear_elbow_down_alike
+    t357 = N_left_0_rear_elbow_down_alike - slack_left_rear_elbow_down_alike
+    t358 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t359 = slope_left_rear_elbow_down_alike * t357 / (t78 + t358)
     slack_right_rear_elbow_down_alike = np.maximum(N_right_0_rear_elbow_down_alike, 0.0)
-    t364 = N_right_0_rear_elbow_down_alike - slack_right_rear_elbow_down_alike
-    turn_rear_elbow_down_alike = t360 * t363 / (t83 + t360 * t360) + t351 * t364 / (t83 + t351 * t351)
-    t365 = t356 - t351 * turn_rear_elbow_down_alike
-    t366 = t355 + t365
-    t367 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t368 = ctheta2A_rear_elbow_down_alike * t367
-    t369 = r_right_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t370 = t345 + t368 - t369
-    t371 = r_right_0_rear_elbow_down_alike + t345 * turn_rear_elbow_down_alike
-    t372 = stheta2A_rear_elbow_down_alike * t367
-    r_right_rear_elbow_down_alike = t371 + t372
-    t373 = r_right_rear_elbow_down_alike * r_right_rear_elbow_down_alike
-    t374 = t370 * t370 + t373
-    t375 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t376 = np.where(t339, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    t377 = gap_rear_elbow_down_alike + t74 * t376
-    t378 = np.where(t82 * t374 < t375, t94 - t374, t365 - t377)
-    t379 = t356 + t360 * turn_rear_elbow_down_alike
-    t380 = t355 - t379
-    t381 = t362 & (t81 <= t366) & (t81 <= -t378) & (t81 <= t380)
-    t382 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t383 = t358 + t368 - t382
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t372 + t358 * turn_rear_elbow_down_alike
-    t384 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t385 = t383 * t383 + t384
-    t386 = np.where(t82 * t385 < t375, t385 - t94, t377 + t379)
-    unreachable_4 = np.logical_not(t381 & (t81 <= t386))
-    t387 = _runtime.poison(invalid | unreachable_4)
-    t388 = t215 + t387
-    folded_right_rear_elbow_down_alike = np.sqrt(t374) <= t105
-    t389 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(-t378, t108)
-    N_right_rear_elbow_down_alike = np.maximum(t366, t108)
+    t360 = N_right_0_rear_elbow_down_alike - slack_right_rear_elbow_down_alike
+    t361 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
+    t362 = slope_right_rear_elbow_down_alike * t360 / (t78 + t361)
+    t363 = t359 + t362
+    t364 = t350 - slope_right_rear_elbow_down_alike * t363
+    t365 = t349 + t364
+    swing_rear_elbow_down_alike = drawn_rear_elbow_down_alike * t363
+    t366 = ctheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
+    h_right_rear_elbow_down_alike = h_right_0_rear_elbow_down_alike + t366 - r_right_0_rear_elbow_down_alike * t363
+    t367 = h_right_rear_elbow_down_alike * h_right_rear_elbow_down_alike
+    t368 = r_right_0_rear_elbow_down_alike + h_right_0_rear_elbow_down_alike * t363
+    t369 = stheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
+    r_right_rear_elbow_down_alike = t368 - t369
+    t370 = r_right_rear_elbow_down_alike * r_right_rear_elbow_down_alike
+    t371 = t367 + t370
+    t372 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t373 = np.where(t346, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    t374 = gap_rear_elbow_down_alike + t67 * t373
+    t375 = np.where(t77 * t371 < t372, t88 - t371, t364 - t374)
+    t376 = t350 + slope_left_rear_elbow_down_alike * t363
+    t377 = t349 - t376
+    t378 = t356 & (t75 <= t365) & (t75 <= -t375) & (t75 <= t377)
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike + t366 - r_left_0_rear_elbow_down_alike * t363
+    t379 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t369 + h_left_0_rear_elbow_down_alike * t363
+    t380 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t381 = t379 + t380
+    t382 = np.where(t77 * t381 < t372, t381 - t88, t374 + t376)
+    unreachable_4 = np.logical_not(t378 & (t75 <= t382))
+    t383 = _runtime.poison(invalid | unreachable_4)
+    t384 = t208 + t383
+    folded_right_rear_elbow_down_alike = np.sqrt(t371) <= t98
+    t385 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    M_right_rear_elbow_down_alike = np.maximum(-t375, t101)
+    N_right_rear_elbow_down_alike = np.maximum(t365, t101)
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t390 = t107 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = np.where(short_right, size, t63 + t390)
-    t391 = 2.0 * np.where(0.0 <= -t337, 1.0, -1.0)
+    t386 = t100 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = np.where(short_right, size, t87 + t386)
+    t387 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t388 = 2.0 * np.where(0.0 <= -t347, 1.0, -1.0)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t392 = t391 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t392 / whole_right_rear_elbow_down_alike)
-    t393 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t394 = t370 * ahead_1_right_rear_elbow_down_alike + r_right_rear_elbow_down_alike * t393
-    t395 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t396 = np.where(folded_right_rear_elbow_down_alike, t389, -np.arctan2(t394, t395 - t370 * t393))
-    t397 = _runtime.wrap(t396) + t387
-    t398 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t399 = t114 + np.where(short_right, 0.0, t391 * t398)
-    t400 = _runtime.wrap(t399) + t387
-    folded_left_rear_elbow_down_alike = np.sqrt(t385) <= t105
-    M_left_rear_elbow_down_alike = np.maximum(t386, 0.0)
-    N_left_rear_elbow_down_alike = np.maximum(t380, 0.0)
+    t389 = t388 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = np.where(short_right, 0.0, t389 / whole_right_rear_elbow_down_alike)
+    t390 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t391 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t392 = np.arctan2(t387 - r_right_rear_elbow_down_alike * t390, t391 + h_right_rear_elbow_down_alike * t390)
+    t393 = np.where(folded_right_rear_elbow_down_alike, t385, t392)
+    t394 = _runtime.wrap(t393) + t383
+    t395 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t396 = t107 + np.where(short_right, 0.0, t388 * t395)
+    t397 = _runtime.wrap(t396) + t383
+    folded_left_rear_elbow_down_alike = np.sqrt(t381) <= t98
+    M_left_rear_elbow_down_alike = np.maximum(t382, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t377, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t401 = t107 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = np.where(short_right, size, t63 + t401)
-    t402 = t383 * ahead_1_left_rear_elbow_down_alike
+    t398 = t100 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = np.where(short_right, size, t87 + t398)
+    t399 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t403 = t391 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t403 / whole_left_rear_elbow_down_alike)
-    t404 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t405 = r_left_rear_elbow_down_alike * t404
-    t406 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t407 = t383 * t404
-    t408 = np.where(folded_left_rear_elbow_down_alike, t389, -np.arctan2(t402 + t405, t406 - t407))
-    t409 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t410 = np.where(short_right, 0.0, t391 * t409)
-    t411 = t124 + t387
-    t412 = np.where(folded_left_rear_elbow_down_alike, t389, -np.arctan2(t402 - t405, t406 + t407))
-    t413 = nowhere | folded | short
-    t414 = t413 | folded_right | short_right | folded_left
-    t415 = _runtime.status(invalid, unreachable, t414)
-    t416 = t413 | folded_right_front_elbow_down_alike | short_right
-    t417 = _runtime.status(invalid, unreachable_2, t416 | folded_left_front_elbow_down_alike)
-    t418 = nowhere | folded_rear_elbow_up_alike | short
-    t419 = t418 | folded_right_rear_elbow_up_alike | short_right
-    t420 = _runtime.status(invalid, unreachable_3, t419 | folded_left_rear_elbow_up_alike)
-    t421 = t418 | folded_right_rear_elbow_down_alike | short_right
-    t422 = _runtime.status(invalid, unreachable_4, t421 | folded_left_rear_elbow_down_alike)
+    t400 = t388 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = np.where(short_right, 0.0, t400 / whole_left_rear_elbow_down_alike)
+    t401 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t402 = r_left_rear_elbow_down_alike * t401
+    t403 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t404 = h_left_rear_elbow_down_alike * t401
+    t405 = np.where(folded_left_rear_elbow_down_alike, t385, np.arctan2(t399 - t402, t403 + t404))
+    t406 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t407 = np.where(short_right, 0.0, t388 * t406)
+    t408 = t117 + t383
+    t409 = np.where(folded_left_rear_elbow_down_alike, t385, np.arctan2(t399 + t402, t403 - t404))
+    t410 = nowhere | folded | short
+    t411 = t410 | folded_right | short_right | folded_left
+    t412 = _runtime.status(invalid, unreachable, t411)
+    t413 = t410 | folded_right_front_elbow_down_alike | short_right
+    t414 = _runtime.status(invalid, unreachable_2, t413 | folded_left_front_elbow_down_alike)
+    t415 = nowhere | folded_rear_elbow_up_alike | short
+    t416 = t415 | folded_right_rear_elbow_up_alike | short_right
+    t417 = _runtime.status(invalid, unreachable_3, t416 | folded_left_rear_elbow_up_alike)
+    t418 = t415 | folded_right_rear_elbow_down_alike | short_right
+    t419 = _runtime.status(invalid, unreachable_4, t418 | folded_left_rear_elbow_down_alike)
     return (
-        t104,
-        t113,
-        t116,
-        _runtime.wrap(t122) + t103,
-        _runtime.wrap(t114 + t123) + t103,
-        t125,
-        t104,
-        t113,
-        t116,
-        _runtime.wrap(t126) + t103,
-        _runtime.wrap(t114 - t123) + t103,
-        t125,
-        t190,
-        t199,
-        t202,
-        _runtime.wrap(t210) + t189,
-        _runtime.wrap(t114 + t212) + t189,
-        t213,
-        t190,
-        t199,
-        t202,
-        _runtime.wrap(t214) + t189,
-        _runtime.wrap(t114 - t212) + t189,
-        t213,
-        t302,
-        t311,
-        t314,
-        _runtime.wrap(t322) + t301,
-        _runtime.wrap(t114 + t324) + t301,
-        t325,
-        t302,
-        t311,
-        t314,
-        _runtime.wrap(t326) + t301,
-        _runtime.wrap(t114 - t324) + t301,
-        t325,
-        t388,
+        t97,
+        t106,
+        t109,
+        _runtime.wrap(t115) + t96,
+        _runtime.wrap(t107 + t116) + t96,
+        t118,
+        t97,
+        t106,
+        t109,
+        _runtime.wrap(t119) + t96,
+        _runtime.wrap(t107 - t116) + t96,
+        t118,
+        t182,
+        t192,
+        t195,
+        _runtime.wrap(t203) + t181,
+        _runtime.wrap(t107 + t205) + t181,
+        t206,
+        t182,
+        t192,
+        t195,
+        _runtime.wrap(t207) + t181,
+        _runtime.wrap(t107 - t205) + t181,
+        t206,
+        t296,
+        t306,
+        t309,
+        _runtime.wrap(t317) + t295,
+        _runtime.wrap(t107 + t319) + t295,
+        t320,
+        t296,
+        t306,
+        t309,
+        _runtime.wrap(t321) + t295,
+        _runtime.wrap(t107 - t319) + t295,
+        t320,
+        t384,
+        t394,
         t397,
-        t400,
-        _runtime.wrap(t408) + t387,
-        _runtime.wrap(t114 + t410) + t387,
-        t411,
-        t388,
+        _runtime.wrap(t405) + t383,
+        _runtime.wrap(t107 + t407) + t383,
+        t408,
+        t384,
+        t394,
         t397,
-        t400,
-        _runtime.wrap(t412) + t387,
-        _runtime.wrap(t114 - t410) + t387,
-        t411,
-        t415,
-        t415,
+        _runtime.wrap(t409) + t383,
+        _runtime.wrap(t107 - t407) + t383,
+        t408,
+        t412,
+        t412,
+        t414,
+        t414,
         t417,
         t417,
-        t420,
-        t420,
-        t422,
-        t422,
+        t419,
+        t419,
     )
 
 

@@ -339,8 +339,10 @@ def _from_sine(
         )
     )
     total = program.let(f"total_{x.name}", below + above)
-    cosine = program.let(f"c{x.name}", choose(flag, 1, 2 * sp.sqrt(below) * sp.sqrt(above) / total))
-    return cosine, program.let(f"s{x.name}", choose(flag, 0, (above - below) / total))
+    cosine = program.let(
+        f"c_{x.name}", choose(flag, 1, 2 * sp.sqrt(below) * sp.sqrt(above) / total)
+    )
+    return cosine, program.let(f"s_{x.name}", choose(flag, 0, (above - below) / total))
 
 
 @dataclass(frozen=True)

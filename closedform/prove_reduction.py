@@ -32,13 +32,14 @@ def prove_reduction(
         prove_lemma(lemma, Program(list(lemma.body)))
         for name, meaning in lemma.premises.items():
             stated = substitute(meaning, known)
-            for found in _cases(known[name]):
-                require(found - stated, (), f"{where}: what {name} stands for")
+            for missed in _cases(known[name] - stated):
+                require(missed, (), f"{where}: what {name} stands for")
         equations += [substitute(e, known) for e in lemma.equations]
     graph = dict(reduction.joints)
     system = sp.Matrix([substitute(e, graph) for e in inverse.equations])
     combined = reduction.combination * sp.Matrix(equations)
-    require(system - combined, (), f"{where}: the lemmas' equations do not combine to the system")
+    for difference in _cases(sp.ImmutableMatrix(system - combined)):
+        require(difference, (), f"{where}: the lemmas' equations do not combine to the system")
     if not normal(reduction.combination.det()).is_nonzero:
         raise ProofError(f"{where}: the matrix that combines the lemmas' equations is singular")
     solution = {u: _generic(e) for lemma in reduction.lemmas for u, e in lemma.solution.items()}

@@ -29,6 +29,8 @@ class Tolerances:
     ulps
         The error of a function that is no inverse, in units in the last place of its natural
         scale, against the Arb reference.
+    ulps_per_operation
+        What every operation of a function adds to that: roundings add up along a long program.
     """
 
     feasibility: float
@@ -36,6 +38,7 @@ class Tolerances:
     rotation: float
     round_trip: float
     ulps: float
+    ulps_per_operation: float = 0.01
 
 
 DOUBLE = Tolerances(

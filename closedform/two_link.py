@@ -76,6 +76,7 @@ def two_link_arm_beside(
     squares: tuple[sp.Expr, sp.Expr],
     scale: sp.Expr,
     *,
+    apart: Number = 0,
     suffix: str = "",
     sided: bool = False,
     free: Sequence[sp.Symbol] = (),
@@ -86,31 +87,39 @@ def two_link_arm_beside(
     As :func:`two_link_arm`, for a fore-arm of length ``second``.  With the reach R the ``squares``
     are N = (l + f)^2 - R^2 and M = R^2 - (l - f)^2, so that tan(elbow / 2) = sqrt(N / M).  Taken
     from the target, N has lost all its digits where the arm is straight, and the elbow half of
-    them; an arm nearby gives them without a difference of nearly equal lengths.  ``scale`` is that
-    of the distance between both, which decides how far the target may be missed.  ``sided`` keeps
-    the elbow from being quite straight, so that its side can be read from the answer.  ``rest`` is
-    the direction of the upper arm where the end is on the shoulder.
+    them; an arm nearby gives them without a difference of nearly equal lengths.  M is another
+    matter where the end is close to the shoulder, closer than to the end of the other arm: there R
+    is short and has all its digits.  ``apart`` is the square of the distance of both ends, which
+    tells the one from the other; with zero M is always that of ``squares``.  ``scale`` is that of
+    the distance between both, which decides how far the target may be missed.  ``sided`` keeps the
+    elbow from being quite straight, so that its side can be read from the answer.  ``rest`` is the
+    direction of the upper arm where the end is on the shoulder; the end has seen some roundings, so
+    that a multiple of the usual tolerance counts as there.
     """
     upper, along, across = lengths
     r, h = target
-    area = (upper + second) * scale
+    area, squared = (upper + second) * scale, r**2 + h**2
+    beside = (upper + second) ** 2 * squared < apart**2
+    folding = sp.Piecewise((squared - (upper - second) ** 2, beside), (squares[1], True))
     N, M = (
         program.bound(f"{name}{suffix}", value, area, meaning, positive=sided)
         for name, value, meaning in (
             ("N", squares[0], "nearer than full stretch"),
-            ("M", squares[1], "farther than the fold"),
+            ("M", folding, "farther than the fold"),
         )
     )
     start = len(program.body)
     reach = program.let(f"reach{suffix}", sp.sqrt(r**2 + h**2), nonnegative=True)
-    folded, short = _degenerate(program, upper, second, reach, suffix, free)
+    folded, short = _degenerate(program, upper, second, reach, suffix, free, roundings=64)
     rN, rM = (program.let(f"r{e.name}", sp.sqrt(e), nonnegative=True) for e in (N, M))
     whole = program.let(f"whole{suffix}", N + M)
     bend = (
         program.let(f"c_bend{suffix}", choose(short, 1, (M - N) / whole)),
         program.let(f"s_bend{suffix}", choose(short, 0, 2 * sigma * rN * rM / whole)),
     )
-    beyond = (program.let(f"ahead_1{suffix}", upper + second * bend[0]), second * bend[1])
+    # 1 + cos(bend) = 2 M / (N + M): without a difference of nearly equal lengths at the fold
+    ahead = choose(short, upper + second, upper - second + 2 * second * (M / whole))
+    beyond = (program.let(f"ahead_1{suffix}", ahead), second * bend[1])
     out = program.let(f"out{suffix}", r * beyond[0] + h * beyond[1])
     up = program.let(f"up{suffix}", h * beyond[0] - r * beyond[1])
     norm = program.let(f"norm{suffix}", sp.sqrt(out**2 + up**2), nonnegative=True)
@@ -120,7 +129,6 @@ def two_link_arm_beside(
         choose(short, 0, 2 * sigma * sp.atan2(rN, rM)),
     )
     lemma = _arm(program, lengths, target, unknowns, suffix, start, direction, bend, angles)
-    squared = r**2 + h**2
     premises = {
         second: sp.sqrt(along**2 + across**2),
         N: (upper + second) ** 2 - squared,
@@ -163,11 +171,14 @@ def _degenerate(
     reach: sp.Expr,
     suffix: str,
     free: Sequence[sp.Symbol],
+    roundings: int = 1,
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """The flags of an arm: its end is on the shoulder, or a link has no length."""
     size = upper + second
     return (
-        program.vanishes(f"folded{suffix}", reach, size, "the end is on the shoulder", free),
+        program.vanishes(
+            f"folded{suffix}", reach, roundings * size, "the end is on the shoulder", free
+        ),
         program.vanishes(f"short{suffix}", upper * second, size**2, "a link has no length", free),
     )
 

@@ -99,6 +99,9 @@ d.step(
 apart = (right - left) / 2
 mean = half_gap(m)
 invariant = arm(m, theta2A, theta23A)
+off, fore = invariant - midpoint(m), sqrt(m.L2**2 + m.a3**2)
+short_upper, short_fore = m.L1 * (1 - cos(alpha)), fore * (1 - cos(beta))
+bent = (m.L2 * sin(theta23A - theta2A) + m.a3 * cos(theta23A - theta2A)) / fore
 d.step(
     "Yaw and roll",
     "Eqs. (3) to (5) compare the tips: half of what the right one is ahead of the left is "
@@ -110,16 +113,22 @@ d.step(
 )
 d.step(
     "Invariant point",
-    "The paper gives it twice: as the middle of the tips in (6), and with the "
-    "averages of the angles "
-    "in (7), which this model takes.  The links of the middle are shortened by the cosines "
-    "of the half differences, so that it is off by at most L1 (1 - cos(alpha)) + f "
-    "(1 - cos(beta)), f "
-    "the length of a fore-arm: of second order.",
-    {"(r, h)_I": invariant, "(r, h)_6": ((right + left) / 2).xreplace(halves)},
+    "The paper gives it twice: as the middle of the tips in (6), and with the averages of the "
+    "angles in (7), which this model takes.  The links of the middle are shortened by the cosines "
+    "of the half differences.  The error is the third side of a triangle, whose other sides are "
+    "e1 and e2 (f is the length of a fore-arm) and whose angle has a cosine of at most 1; so it is "
+    "at most e1 + e2: of second order.",
+    {
+        "(r, h)_I": invariant,
+        "(r, h)_6": ((right + left) / 2).xreplace(halves),
+        "e_1": short_upper,
+        "e_2": real("f") * (1 - cos(beta)),
+    },
     published=("(6)", "(7)"),
     equal=[
         (((right + left) / 2).xreplace(halves), midpoint(m)),
+        (off.dot(off), short_upper**2 + short_fore**2 + 2 * short_upper * short_fore * bent),
+        (1 - bent**2, (straight(m.L2, m.a3, pair(theta2A), pair(theta23A)) / fore) ** 2),
     ],
 )
 
@@ -205,8 +214,8 @@ def stand(p: Program) -> tuple[Posture, sp.Matrix]:
     ahead, above = (p.let(n, e) for n, e in zip(("ahead", "higher"), gap, strict=True))
     base = p.let("base", sqrt(m.d**2 + ahead**2), nonnegative=True)
     rise = p.let("rise", sqrt(m.d**2 + above**2), nonnegative=True)
-    yaw = Pair(p.let("cpsi", m.d / base), p.let("spsi", ahead / base))
-    roll = Pair(p.let("cphi", m.d / rise), p.let("sphi", above / rise))
+    yaw = Pair(p.let("c_psi", m.d / base), p.let("s_psi", ahead / base))
+    roll = Pair(p.let("c_phi", m.d / rise), p.let("s_phi", above / rise))
     length = wrist_let(p, m, base)
     return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), length, base), sp.Matrix(
         [ahead, above]
@@ -265,8 +274,7 @@ inner = sp.zeros(6)
 inner[0, 0] = inner[5, 5] = sp.S.One
 inner[1:3, :] = by_half[:2, :]
 for k in (0, 1):
-    rate = mean[k, :].jacobian([theta2A, theta23A, alpha, beta]) * by_half
-    inner[3 + k, :] = atan2(gap[k], m.d).diff(gap[k]) * rate
+    inner[3 + k, :] = atan2(gap[k], m.d).diff(gap[k]) * apart[k, :].jacobian(q)
 aside, along, across = extended(m, posture)
 outward = reach(m, posture.upper, posture.fore, along, across)[0]
 
@@ -308,7 +316,7 @@ def factors(here: Posture) -> list[sp.Expr]:
 p = Program()
 here, _ = stand(p)
 J = p.matrix("outer", named(outer, here, q).xreplace({wrist: here.wrist})) * p.matrix(
-    "inner", inner.subs(means, simultaneous=True)
+    "inner", inner
 )
 d.function(
     "jacobian",

@@ -214,8 +214,8 @@ def stand(p: Program) -> Posture:
     p.let("beyond", along_fore.xreplace(seen))
     tilted = p.let("tilted", sqrt(m.d**2 + width**2), nonnegative=True)
     half = p.let("base", sqrt(m.d**2 + ahead**2 + higher**2), nonnegative=True)
-    yaw = Pair(p.let("cpsi", tilted / half), p.let("spsi", beyond / half))
-    roll = Pair(p.let("cphi", m.d / tilted), p.let("sphi", -width / tilted))
+    yaw = Pair(p.let("c_psi", tilted / half), p.let("s_psi", beyond / half))
+    roll = Pair(p.let("c_phi", m.d / tilted), p.let("s_phi", -width / tilted))
     return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), wrist_let(p, m, half), half)
 
 
@@ -319,10 +319,10 @@ p = Program()
 here = stand(p)
 tilted = real("tilted", nonnegative=True)
 by_virtual = p.matrix("virtual", named(point_by.adjugate(), here, q))
-mid_rates = p.matrix("mid", midway.jacobian(q))
+mid_rates = p.matrix("mid", middle.jacobian(q))
 bend = p.let("slack", -m.L1 * straight(m.L2, m.a3, here.upper, here.fore))
 virtual_rates = p.matrix("rate", (by_virtual * mid_rates) / bend)
-gap_rates = p.matrix("gap", gap_half.jacobian(q))
+gap_rates = p.matrix("gap", apart.jacobian(q))
 line_rates = p.matrix(
     "line", named(line_by, here, q) * sp.Matrix.vstack(gap_rates, virtual_rates[1, :])
 )
@@ -386,12 +386,38 @@ point = p.matrix("point", reach(m, upper, fore, m.L2, m.a3))
 shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pairs))
 gap = p.let("gap", shift.dot(shift))
 cross = p.let("twice", 2 * point.dot(shift))
+
+# Where the virtual arm with the wrist is straight, the rounding of the target decides how far it is
+# bent, and a real arm that is straight too may seem out of reach.  Among the postures that reach
+# the target alike, which differ by a turn of the virtual fore-arm, the one in reach is taken.  For
+# exact numbers the turn is zero: a bound that is kept is what it bounds.
+along, across = real("L_2W"), real("a_3W")
+tilt = p.let("tilt", along * bend[0] - across * bend[1])
+drawn = p.let("drawn", m.L1 + along * bend[1] + across * bend[0])
+size = p.let("size", m.L1 + second)
+nothing = Rational(1, 10**5)  # a turn that is free where tilt is zero: its square is below rounding
+ends, slopes, turns = {}, {}, []
+for name, sign in (("right", 1), ("left", -1)):
+    r, h = (p.let(f"{c}_{name}_0", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
+    slope = p.let(f"slope_{name}", 2 * drawn * (h * upper.c - r * upper.s))
+    loose = sp.Abs(slope) * size / (sp.Abs(tilt) + nothing * size)
+    beyond_reach = p.let(f"N_{name}_0", N - sign * cross - gap)
+    kept = p.bound(f"slack_{name}", beyond_reach, size * m.d + loose, "nearer than full stretch")
+    turns.append((kept - beyond_reach) * slope / (slope**2 + (nothing * size**2) ** 2))
+    ends[name], slopes[name] = (r, h), slope
+turn = p.let("turn", sum(turns))
+swing = p.let("swing", -drawn * turn)
 arms = []
 for name, sigma, sign, unknowns in (
     ("right", side, 1, (theta2R, theta23R)),
     ("left", opposite, -1, (theta2L, theta23L)),
 ):
-    end = tuple(p.let(f"{c}_{name}", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
+    r, h = ends[name]
+    end = (
+        p.let(f"r_{name}", r - turn * h - swing * upper.s),
+        p.let(f"h_{name}", h + turn * r + swing * upper.c),
+    )
+    eased = slopes[name] * turn
     arms.append(
         two_link_arm_beside(
             p,
@@ -400,8 +426,9 @@ for name, sigma, sign, unknowns in (
             end,
             unknowns,
             sigma,
-            (N - sign * cross - gap, M + sign * cross + gap),
+            (N - sign * cross - gap + eased, M + sign * cross + gap - eased),
             m.d,
+            apart=gap,
             suffix=f"_{name}",
             sided=name == "right",
             free=unknowns[:1],

@@ -367,7 +367,7 @@ def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
         "The separation angle beta stands between a wrist link and the base line, so that "
         "al cos(beta) spans half the base line but for half the gears.  It is smallest at the "
         "largest angles, which gives the length of the links, or for given links the largest yaw.",
-        {r"al \ge": needed, r"\cos\psi_{max}": m.d / (span * (cos(phi) if rolls else 1))},
+        {r"a_{l,\min}": needed, r"\cos\psi_{max}": m.d / (span * (cos(phi) if rolls else 1))},
         published=("(10)",),
         equal=[(cos(2 * atan2(sqrt(room), sqrt(room + 2 * w))), w / (w + room))],
     )

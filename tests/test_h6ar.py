@@ -1,6 +1,7 @@
 """The H6AR against other routes: printed equations, Newton on the open loop, finite differences."""
 
 import importlib
+import itertools
 import warnings
 
 import numpy as np
@@ -311,6 +312,60 @@ def test_tips_on_the_shoulders(closed) -> None:
     assert free.any()
     off = closed.fk(solutions.q[free], equal) - x
     assert np.abs(np.angle(np.exp(1j * off))).max() < TOL
+
+
+@pytest.mark.parametrize("bend", [0.0, 1e-12, 1e-9, 1e-6])
+@pytest.mark.parametrize("tilt", [0.0, 1e-9, 1e-6, 1e-5, 1e-4])
+def test_straight_arm_under_a_straight_virtual_arm(closed, bend: float, tilt: float) -> None:
+    """The target does not tell how far the virtual arm is bent; the right arm must be in reach."""
+    q, rng = postures(400, 13), np.random.default_rng(14)
+    q[:, 2] = STRAIGHT + bend * rng.choice((-1, 1), 400)
+    q[:, 3:5] = q[:, 1:3] + rng.uniform(-0.1, 0.1, (400, 2))
+    pitch = np.linspace(-np.pi, np.pi, 41)
+    low, high = np.full(400, np.nan), np.full(400, np.nan)
+
+    def straight(pitch: np.ndarray) -> np.ndarray:
+        return closed.singularities(np.column_stack([q[:, :5], pitch]))[:, 1]
+
+    for a, b in itertools.pairwise(pitch):
+        crossed = straight(np.full(400, a)) * straight(np.full(400, b)) < 0
+        low[crossed], high[crossed] = a, b
+    q, low, high = (e[np.isfinite(low)] for e in (q, low, high))
+    for _ in range(60):
+        q[:, 5] = (low + high) / 2
+        F = [closed.singularities(np.column_stack([q[:, :5], e]))[:, 1] for e in (low, q[:, 5])]
+        low, high = (
+            np.where(F[0] * F[1] > 0, q[:, 5], low),
+            np.where(F[0] * F[1] > 0, high, q[:, 5]),
+        )
+    q[:, 5] += tilt
+    x = closed.fk(q)
+    solutions, status = closed.ik(x)
+    assert len(q) > 100 and (status == OK).any(-1).all()
+    off = closed.fk(solutions) - x[:, None]
+    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    assert np.abs(off[status == OK]).max() < TOL
+
+
+@pytest.mark.parametrize("small", [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize("which", ["right", "left"])
+def test_arms_of_equal_links_folded_onto_their_shoulders(closed, small: float, which: str) -> None:
+    """With r = h = 0 of one tip no digit is lost."""
+    equal = P._replace(a3=0.0)
+    q, rng = postures(300, 11), np.random.default_rng(12)
+    q[:, 2] = -np.pi / 2 + small * rng.choice((-1, 1), 300)
+    q[:, 3:5] = q[:, 1:3] + rng.uniform(0.02, 0.1, (300, 2))
+    if which == "left":
+        q[:, [1, 2, 3, 4]] = q[:, [3, 4, 1, 2]]
+    x = closed.fk(q, equal)
+    assert np.isfinite(x).all()
+    solutions, status = closed.ik(x, equal)
+    found = np.isin(status, (OK, SINGULAR))
+    assert found.any(-1).all()
+    assert (status == SINGULAR).any() == (small < 1e-12)
+    off = closed.fk(solutions, equal) - x[:, None]
+    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    assert np.abs(off[found]).max() < TOL
 
 
 @pytest.mark.parametrize(

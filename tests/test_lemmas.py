@@ -56,7 +56,7 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         return lemma, Program(list(lemma.body)), {}
     if name == "arm beside another":
         f, N, M = (real(n, positive=True) for n in ("f", "N_0", "M_0"))
-        lemma = two_link_arm_beside(program, lengths, f, (a, b), (x, y), sigma, (N, M), f)
+        lemma = two_link_arm_beside(program, lengths, f, (a, b), (x, y), sigma, (N, M), f, apart=f)
         return lemma, Program(list(lemma.body)), {}
     if name == "two sines":
         u, v, p = ((real(f"{n}_1"), real(f"{n}_2")) for n in "uvp")

@@ -50,7 +50,11 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             (re.fullmatch(r"theta(\d)([A-Z]?)", str(term)) if term in self.joints else None)
             for term in angle.as_ordered_terms()
         ]
-        full = self._print(angle) if angle.is_Symbol else f"({self._print(angle)})"
+        over, under = sp.fraction(sp.together(angle))
+        if angle.is_Add and under.is_Integer and under != 1:
+            full = rf"\frac{{{self._print(over)}}}{{{under}}}"
+        else:
+            full = self._print(angle) if angle.is_Symbol else f"({self._print(angle)})"
         if all(numbers):
             index = sorted(n[1] + (rf"\mathrm{{{n[2]}}}" if n[2] else "") for n in numbers if n)
             short = rf"\mathrm{{{function[0]}}}_{{{''.join(index)}}}"
@@ -94,13 +98,17 @@ def stacked(rows: Sequence[str]) -> str:
     return (r" \\ " if small else r" \\[3pt] ").join(rows)
 
 
+INNERMOST = re.compile(r"\\begin\{(\w+)\}((?:(?!\\begin|\\end).)*)\\end\{\1\}", re.DOTALL)
+
+
 def measure(text: str) -> float:
     """The width of a formula, in average letters; a fraction counts as its two parts."""
-    text = re.sub(r"\\(?:mathrm|operatorname|text|left|right|[bB]ig[lr]|begin|end)\b", "", text)
-    return max(
-        len(re.findall(r"\\[a-z]+|[^\s{}^_]", row))
-        + 1.2 * len(re.findall(r"[-+=&]|\\sin|\\cos", row))
-        for row in re.split(r" \\\\(?:\[3pt\])? ", text)
+    if stack := INNERMOST.search(text):
+        widest = max(map(measure, re.split(r" \\\\(?:\[3pt\])? ", stack[2])))
+        return measure(text[: stack.start()] + text[stack.end() :]) + 3 + widest
+    text = re.sub(r"\\(?:mathrm|operatorname|text|left|right|[bB]ig[lr])\b", "", text)
+    return len(re.findall(r"\\[a-z]+|[^\s{}^_]", text)) + 1.2 * len(
+        re.findall(r"[-+=&]|\\sin|\\cos", text)
     )
 
 
@@ -111,6 +119,8 @@ class Page:
         self.derivation, self.proof = derivation, proof
         self.printer = Printer({j.symbol for j in derivation.joints})
         self.math, self.prose = self.printer.math, Prose(derivation)
+        self.parts: dict[sp.Basic, sp.Symbol] = {}
+        """Names for parts of formulas that are too wide for a line, within one list of them."""
 
     def legend(self) -> list[tuple[str, str]]:
         """The abbreviated sines and cosines that were printed so far."""
@@ -123,6 +133,7 @@ class Page:
         return self.math(joint.symbol), escape(joint.name), joint.kind, role
 
     def step(self, step: Step) -> dict[str, Any]:
+        self.parts.clear()
         shown = [e for lhs, value in step.shown for e in self.equations(upright(lhs), value)]
         n, proved = len(step.vanishes), step.title in self.proof.steps
         mark = f"{n} {'identity' if n == 1 else 'identities'}" if n and proved else ""
@@ -200,6 +211,7 @@ class Page:
 
     def statements(self, body: Sequence[Statement]) -> list[tuple[str, str]]:
         """One line a statement, but neighbours that name or match alike share theirs."""
+        self.parts.clear()
         lines: list[tuple[str, str]] = []
         for kind, text in map(self.statement, body):
             _, colon, meaning = text.partition("$: ")
@@ -317,6 +329,7 @@ class Page:
         return [(names[k % len(names)], formula) for k, formula in enumerate(vanish)]
 
     def outputs(self, function: Function) -> list[tuple[str, str]]:
+        self.parts.clear()
         return [e for a in function.outputs for e in self.array(a)]
 
     def assigned(self, array: Array, locus: Mapping[sp.Symbol, sp.Expr]) -> list[tuple[str, str]]:
@@ -350,9 +363,10 @@ class Page:
         """A value as one equation or, where it is too wide, as several."""
         left = lhs if isinstance(lhs, str) else self.math(lhs)
         if isinstance(value, sp.Expr | sp.MatrixBase) and (inner := self._unbreakable(value)):
-            name = real(next(n for n in map("u{}".format, count(1)) if n not in self.prose.known))
-            self.prose.known.add(name.name)
-            return self.equations(left, value.xreplace({inner: name})) + self.equations(name, inner)
+            known = inner in self.parts
+            name = self.parts.setdefault(inner, self._new_name())
+            rest = self.equations(left, value.xreplace({inner: name}))
+            return rest if known else rest + self.equations(name, inner)
         if isinstance(value, sp.MatrixBase):
             return self._matrix(left, value)
         if isinstance(value, str):
@@ -364,10 +378,25 @@ class Page:
             return [(left, rf"{self.math(e)}\quad {self.printer.case(c)}") for e, c in value.args]
         return [(left, text)]
 
+    def _new_name(self) -> sp.Symbol:
+        taken = self.prose.known | {s.name for s in self.parts.values()}
+        return real(next(n for n in map("u{}".format, count(1)) if n not in taken))
+
     def _unbreakable(self, value: sp.Basic) -> sp.Expr | None:
-        """The smallest radicand or denominator that is too wide for a line."""
+        """The smallest part between whose terms TeX cannot break, in a formula that is too wide.
+
+        That is a radicand, a denominator, a sum in a numerator, or cases beside other terms.
+        """
         powers = (p for p in value.atoms(sp.Pow) if not p.exp.is_Integer or p.exp.is_negative)
         wide = [p.base for p in powers if measure(self.math(p.base)) > FITS - 12]
+        for fraction in value.atoms(sp.Mul):
+            over, under = sp.fraction(fraction)
+            sums = [a for a in fraction.args if isinstance(a, sp.Add)]
+            if under != 1 and sums and measure(self.math(over)) > FITS - 12:
+                wide.append(max(sums, key=lambda e: (measure(self.math(e)), str(e))))
+        if isinstance(value, sp.Expr) and not isinstance(value, sp.Piecewise):
+            cases = sorted(value.atoms(sp.Piecewise), key=str)
+            wide += cases if cases and measure(self.math(value)) > FITS - 12 else []
         return min(wide, key=lambda e: (sp.count_ops(e), str(e)), default=None)
 
     def _matrix(self, lhs: str, matrix: sp.MatrixBase) -> list[tuple[str, str]]:

@@ -385,6 +385,10 @@ def inverse(d: Derivation, r: Robot) -> None:
     right = r.arm(A + r.alpha, B + r.beta)
     mirrored = 2 * r.arm(A, B) - right
     by_average = r.arm(A - r.alpha, B - r.beta)
+    gap = (right - by_average) / 2
+    u = (-m.L1 * sin(A), m.L1 * cos(A))
+    v = (m.L2 * cos(B) - m.a3 * sin(B), m.L2 * sin(B) + m.a3 * cos(B))
+    area = u[0] * v[1] - u[1] * v[0]
     claim(
         "only one set of angles",
         "“Since the average of the twin shoulder and elbow angles [...] are known, it is "
@@ -398,7 +402,22 @@ def inverse(d: Derivation, r: Robot) -> None:
         "no yaw, no roll",
         r"“if $\psi = \phi = 0$, then $\theta_2^R = \theta_2^L = \theta_2^A$ and "
         r"$\theta_3^R = \theta_3^L = \theta_3^A$”",
-        Identity(list(right.subs({r.alpha: 0, r.beta: 0})), list(r.arm(A, B))),
+        Under(
+            Every(
+                {
+                    "half differences that vanish, the tips": Identity(
+                        list(right.subs({r.alpha: 0, r.beta: 0})), list(r.arm(A, B))
+                    ),
+                    "yaw and roll that vanish, the sines of the half differences": Identity(
+                        [v[1] * gap[0] - v[0] * gap[1], u[0] * gap[1] - u[1] * gap[0]],
+                        [area * sin(r.alpha), area * sin(r.beta)],
+                    ),
+                }
+            ),
+            "the gap of the tips is linear in the sines of the half differences, and its "
+            "determinant vanishes only where the virtual arm is straight or folded: elsewhere the "
+            "sines are zero, and so the half differences of arms less than half a turn apart",
+        ),
     )
     claim(
         "computationally inexpensive",

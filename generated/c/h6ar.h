@@ -8,7 +8,7 @@
  *   pose: 72 add, 60 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 4 compare and select, 34 multiply, 5 sincos
- *   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
+ *   jacobian: 133 add, 56 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
  *   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
  *   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
  *   ik: 190 add, 239 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt

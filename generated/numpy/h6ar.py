@@ -7,7 +7,7 @@
 #   pose: 72 add, 60 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 4 compare and select, 34 multiply, 5 sincos
-#   jacobian: 125 add, 56 compare and select, 36 divide, 140 multiply, 6 sincos, 4 sqrt
+#   jacobian: 133 add, 56 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
 #   ik: 190 add, 239 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
@@ -129,7 +129,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t23 = L1 * (t21 - t22)
     t24 = t19 * (L2 * t20 + a3 * t16) + t3 * t23
     rise = np.sqrt(t18 + t24 * t24)
-    cphi = d / rise
+    c_phi = d / rise
     t25 = t24 / rise
     t26 = t21 + t22
     t27 = t19 * (L2 * t16 - a3 * t20) - t26 * t23
@@ -141,12 +141,12 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     wrist = np.sqrt(np.maximum(t29, 0.0)) * np.sqrt(np.maximum(t31, 0.0))
     t32 = loff + lp * c + wrist
     t33 = t28 * t32
-    t34 = a3 + t17 * cphi + t25 * t33
+    t34 = a3 + t17 * c_phi + t25 * t33
     s23A = side23A * t20
-    cpsi = d / base
-    t35 = L2 + cpsi * t32
+    c_psi = d / base
+    t35 = L2 + c_psi * t32
     t36 = L1 * (side2A * t3) + c23A * t34 + s23A * t35
-    t37 = t17 * t25 - cphi * t33
+    t37 = t17 * t25 - c_phi * t33
     t38 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
     t39 = t38 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
     t40 = t39 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
@@ -160,8 +160,8 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     failed = np.logical_not(t46) | np.logical_not((t47 <= t31) & (t47 <= t29))
     t48 = _runtime.poison(failed)
     t49 = d1 + L1 * (side2A * t26) - c23A * t35 + s23A * t34
-    t50 = _runtime.wrap_cut(np.arctan2(-t28, cpsi)) + t48
-    t51 = _runtime.wrap_cut(-np.arctan2(t25, cphi)) + t48
+    t50 = _runtime.wrap_cut(np.arctan2(-t28, c_psi)) + t48
+    t51 = _runtime.wrap_cut(-np.arctan2(t25, c_phi)) + t48
     return (
         c1 * t36 - s1 * t37 + t48,
         c1 * t37 + s1 * t36 + t48,
@@ -230,20 +230,20 @@ def _pose(
     t23 = L1 * (t21 - t22)
     t24 = t16 * (L2 * t17 + a3 * t13) + t20 * t23
     rise = np.sqrt(t15 + t24 * t24)
-    cphi = d / rise
+    c_phi = d / rise
     t25 = t21 + t22
     t26 = t16 * (L2 * t13 - a3 * t17) - t25 * t23
     base = np.sqrt(t15 + t26 * t26)
     t27 = t26 / base
     t28 = t24 / rise
     t29 = t27 * t28
-    hand_11 = c * cphi - s * t29
-    t30 = cphi * t27
+    hand_11 = c * c_phi - s * t29
+    t30 = c_phi * t27
     t31 = s * t30 + c * t28
     s23A = side23A * t17
     t32 = s23A * c1
-    cpsi = d / base
-    t33 = s * cpsi
+    c_psi = d / base
+    t33 = s * c_psi
     t34 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
     t35 = t34 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
     t36 = t35 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
@@ -259,19 +259,19 @@ def _pose(
     t46 = base - (gs - al)
     failed = np.logical_not(t42) | np.logical_not((t44 <= t45) & (t44 <= t46))
     t47 = _runtime.poison(failed)
-    hand_12 = t28 * cpsi
-    hand_22 = cphi * cpsi
+    hand_12 = t28 * c_psi
+    hand_22 = c_phi * c_psi
     t48 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t47
-    hand_13 = s * cphi + c * t29
+    hand_13 = s * c_phi + c * t29
     t49 = c * t30 - s * t28
-    hand_33 = c * cpsi
+    hand_33 = c * c_psi
     t50 = t14 * hand_13 + s1 * t49 + t32 * hand_33 + t47
     side2A = _runtime.select(0.0 <= t18 + t19, 1.0, -1.0)
     t51 = lp * s
     wrist = np.sqrt(np.maximum(t46, 0.0)) * np.sqrt(np.maximum(t45, 0.0))
     t52 = loff + lp * c + wrist
-    t53 = a3 + t51 * cphi + t29 * t52
-    t54 = L2 + cpsi * t52
+    t53 = a3 + t51 * c_phi + t29 * t52
+    t54 = L2 + c_psi * t52
     t55 = L1 * (side2A * t20) + c23A * t53 + s23A * t54
     t56 = t51 * t28 - t30 * t52
     t57 = c23A * s1
@@ -445,162 +445,159 @@ def _jacobian(
     t14 = s2R_half * t11 + c2R_half * t12
     t15 = s2L_half * t13 + c2L_half * t14
     t16 = c2L_half * t13 - s2L_half * t14
-    t17 = L2 * t15 + a3 * t16
-    t18 = t10 * t17
-    t19 = c2L_half * c2R_half
-    t20 = s2L_half * s2R_half
-    t21 = t19 - t20
-    t22 = s2L_half * c2R_half
-    t23 = c2L_half * s2R_half
-    t24 = L1 * (t22 - t23)
-    t25 = t21 * t24
-    t26 = t18 + t25
-    t27 = d * d
-    t28 = t26 * t26
-    rise = np.sqrt(t27 + t28)
-    t29 = t26 / rise
-    t30 = L2 * t16 - a3 * t15
-    t31 = t10 * t30
-    t32 = t22 + t23
-    t33 = t32 * t24
-    t34 = t31 - t33
-    t35 = t34 * t34
-    base = np.sqrt(t27 + t35)
-    t36 = t34 / base
-    cphi = d / rise
-    t37 = t36 * cphi
-    t38 = lp * c
-    t39 = base - (gs - al)
-    t40 = gs + al
-    t41 = t40 - base
-    wrist = np.sqrt(np.maximum(t39, 0.0)) * np.sqrt(np.maximum(t41, 0.0))
-    t42 = loff + t38 + wrist
-    t43 = t1 * t29 - t37 * t42
-    t44 = t19 + t20
-    side2A = _runtime.select(0.0 <= t44, 1.0, -1.0)
-    outer_32 = L1 * (side2A * t21)
-    t45 = c2L_half * t8 + s2L_half * t9
-    side23A = _runtime.select(0.0 <= t45, 1.0, -1.0)
+    t17 = c2L_half * c2R_half
+    t18 = s2L_half * s2R_half
+    t19 = t17 - t18
+    t20 = s2L_half * c2R_half
+    t21 = c2L_half * s2R_half
+    t22 = L1 * (t20 - t21)
+    t23 = t10 * (L2 * t15 + a3 * t16) + t19 * t22
+    t24 = d * d
+    t25 = t23 * t23
+    rise = np.sqrt(t24 + t25)
+    t26 = t23 / rise
+    t27 = t20 + t21
+    t28 = t10 * (L2 * t16 - a3 * t15) - t27 * t22
+    t29 = t28 * t28
+    base = np.sqrt(t24 + t29)
+    t30 = t28 / base
+    c_phi = d / rise
+    t31 = t30 * c_phi
+    t32 = lp * c
+    t33 = base - (gs - al)
+    t34 = gs + al
+    t35 = t34 - base
+    wrist = np.sqrt(np.maximum(t33, 0.0)) * np.sqrt(np.maximum(t35, 0.0))
+    t36 = loff + t32 + wrist
+    t37 = t1 * t26 - t31 * t36
+    side2A = _runtime.select(0.0 <= t17 + t18, 1.0, -1.0)
+    outer_32 = L1 * (side2A * t19)
+    side23A = _runtime.select(0.0 <= c2L_half * t8 + s2L_half * t9, 1.0, -1.0)
     c23A = side23A * t16
-    t46 = t36 * t29
-    t47 = t1 * cphi + t46 * t42
-    t48 = a3 + t47
+    t38 = t30 * t26
+    t39 = t1 * c_phi + t38 * t36
+    t40 = a3 + t39
     s23A = side23A * t15
-    cpsi = d / base
-    t49 = cpsi * t42
-    t50 = L2 + t49
-    outer_33 = c23A * t48 + s23A * t50
-    t51 = outer_32 + outer_33
-    t52 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t53 = t52 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t54 = t53 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t55 = t54 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t56 = t55 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t57 = t56 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t58 = t57 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t59 = t58 & np.isfinite(theta3L) & np.isfinite(theta)
-    t60 = -(_runtime.FEASIBILITY * t40)
-    failed = np.logical_not(t59) | np.logical_not((t60 <= t41) & (t60 <= t39))
-    t61 = _runtime.poison(failed)
-    t62 = c23A * t43
-    outer_15 = c1 * t62 + s1 * t47
-    t63 = t45 * t17 / 2.0
-    t64 = t31 / 2.0
-    t65 = t63 - t64
-    t66 = t33 / 2.0
-    t67 = L1 * t44
-    t68 = t21 * t67 / 2.0
-    t69 = d * (1.0 + t28 / t27)
-    inner_52 = (t65 + t66 + t68) / t69
-    t70 = L1 * (side2A * t32)
-    t71 = c23A * t50 - s23A * t48
-    t72 = c1 * t71 / 2.0
-    t73 = c1 * t70 / 2.0 - t72
-    t74 = cphi * t49
-    t75 = t29 * t49
-    t76 = t36 * t42
-    t77 = c23A * t75 - s23A * t76
-    t78 = (gs - d / cpsi) * (d * t36)
-    t79 = s23A * cpsi
-    t80 = c23A * t46 + t79
-    t81 = cpsi * cpsi * wrist
-    t82 = s1 * t74 + c1 * t77 + t78 * (s1 * t37 + c1 * t80) / t81
-    t83 = t18 / 2.0
-    t84 = t45 * t30 / 2.0
-    t85 = t83 + t84
-    t86 = t25 / 2.0
-    t87 = t32 * t67 / 2.0
-    t88 = d * (1.0 + t35 / t27)
-    inner_42 = (t85 + t86 - t87) / t88
-    t89 = outer_15 * inner_52 - (t73 + t82 * inner_42) + t61
-    inner_43 = t85 / t88
-    inner_53 = t65 / t69
-    t90 = t72 - inner_43 * t82 + inner_53 * outer_15 + t61
-    t91 = t83 - t84
-    inner_44 = (t91 + t86 + t87) / t88
-    t92 = t63 + t64
-    t93 = (t92 - t66 + t68) / t69
-    t94 = -(t73 + t82 * inner_44 + outer_15 * t93) + t61
-    inner_45 = t91 / t88
-    t95 = t92 / t69
-    t96 = t38 * cphi - t1 * t46
-    t97 = c23A * t96 - t1 * t79
-    t98 = t1 * t37 + t38 * t29
-    outer_25 = s1 * t62 - c1 * t47
-    t99 = s1 * t71 / 2.0
-    t100 = s1 * t70 / 2.0 - t99
-    outer_24 = c1 * t74 - s1 * t77 + t78 * (c1 * t37 - s1 * t80) / t81
-    t101 = inner_52 * outer_25 - (t100 - inner_42 * outer_24)
-    t102 = t99 + inner_43 * outer_24 + inner_53 * outer_25
-    t103 = -(t100 - inner_44 * outer_24 + t93 * outer_25)
-    t104 = t99 + inner_45 * outer_24 - t95 * outer_25 + t61
-    t105 = 0.0 + t61
-    t106 = outer_33 / 2.0
-    t107 = outer_32 / 2.0 + t106
-    t108 = c23A * cpsi
-    t109 = c23A * t76 + s23A * t75 - t78 * (t108 - s23A * t46) / t81
-    outer_35 = s23A * t43
-    t110 = t107 - inner_42 * t109 + inner_52 * outer_35 + t61
-    t111 = t106 - inner_43 * t109 + inner_53 * outer_35 + t61
-    t112 = t107 - inner_44 * t109 - t93 * outer_35 + t61
-    t113 = t106 - inner_45 * t109 - t95 * outer_35 + t61
+    c_psi = d / base
+    t41 = c_psi * t36
+    t42 = L2 + t41
+    outer_33 = c23A * t40 + s23A * t42
+    t43 = outer_32 + outer_33
+    t44 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t45 = t44 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t46 = t45 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t47 = t46 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t48 = t47 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t49 = t48 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t50 = t49 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t51 = t50 & np.isfinite(theta3L) & np.isfinite(theta)
+    t52 = -(_runtime.FEASIBILITY * t34)
+    failed = np.logical_not(t51) | np.logical_not((t52 <= t35) & (t52 <= t33))
+    t53 = _runtime.poison(failed)
+    t54 = c23A * t37
+    outer_15 = c1 * t54 + s1 * t39
+    t55 = c2R_half * c2R_half - s2R_half * s2R_half
+    t56 = s2R_half * c2R_half
+    t57 = t56 + t56
+    t58 = c3R_half * c3R_half - s3R_half * s3R_half
+    t59 = s3R_half * c3R_half
+    t60 = t59 + t59
+    s2R3R = t57 * t58 + t55 * t60
+    c2R3R = t55 * t58 - t57 * t60
+    t61 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
+    t62 = d * (1.0 + t25 / t24)
+    inner_52 = (L1 * t55 / 2.0 + t61) / t62
+    t63 = L1 * (side2A * t27)
+    t64 = c23A * t42 - s23A * t40
+    t65 = c1 * t64 / 2.0
+    t66 = c1 * t63 / 2.0 - t65
+    t67 = c_phi * t41
+    t68 = t26 * t41
+    t69 = t30 * t36
+    t70 = c23A * t68 - s23A * t69
+    t71 = (gs - d / c_psi) * (d * t30)
+    t72 = s23A * c_psi
+    t73 = c23A * t38 + t72
+    t74 = c_psi * c_psi * wrist
+    t75 = s1 * t67 + c1 * t70 + t71 * (s1 * t31 + c1 * t73) / t74
+    t76 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
+    t77 = d * (1.0 + t29 / t24)
+    t78 = (L1 * t57 / 2.0 - t76) / t77
+    t79 = outer_15 * inner_52 - (t66 - t75 * t78) + t53
+    inner_43 = t76 / t77
+    inner_53 = t61 / t62
+    t80 = t65 - inner_43 * t75 + inner_53 * outer_15 + t53
+    t81 = s2L_half * c2L_half
+    t82 = t81 + t81
+    t83 = c2L_half * c2L_half - s2L_half * s2L_half
+    t84 = c3L_half * c3L_half - s3L_half * s3L_half
+    t85 = s3L_half * c3L_half
+    t86 = t85 + t85
+    c2L3L = t83 * t84 - t82 * t86
+    s2L3L = t82 * t84 + t83 * t86
+    t87 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
+    inner_44 = (L1 * t82 / 2.0 - t87) / t77
+    t88 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
+    t89 = (L1 * t83 / 2.0 + t88) / t62
+    t90 = -(t66 + t75 * inner_44 + outer_15 * t89) + t53
+    t91 = t87 / t77
+    t92 = t88 / t62
+    t93 = t32 * c_phi - t1 * t38
+    t94 = c23A * t93 - t1 * t72
+    t95 = t1 * t31 + t32 * t26
+    outer_25 = s1 * t54 - c1 * t39
+    t96 = s1 * t64 / 2.0
+    t97 = s1 * t63 / 2.0 - t96
+    outer_24 = c1 * t67 - s1 * t70 + t71 * (c1 * t31 - s1 * t73) / t74
+    t98 = inner_52 * outer_25 - (t97 + t78 * outer_24) + t53
+    t99 = t96 + inner_43 * outer_24 + inner_53 * outer_25
+    t100 = -(t97 - inner_44 * outer_24 + t89 * outer_25)
+    t101 = 0.0 + t53
+    t102 = outer_33 / 2.0
+    t103 = outer_32 / 2.0 + t102
+    t104 = c23A * c_psi
+    t105 = c23A * t69 + s23A * t68 - t71 * (t104 - s23A * t38) / t74
+    outer_35 = s23A * t37
+    t106 = t103 + t78 * t105 + inner_52 * outer_35 + t53
+    t107 = t102 - inner_43 * t105 + inner_53 * outer_35 + t53
+    t108 = t103 - inner_44 * t105 - t89 * outer_35 + t53
     return (
-        -(c1 * t43 + s1 * t51) + t61,
-        t89,
+        -(c1 * t37 + s1 * t43) + t53,
+        t79,
+        t80,
         t90,
-        t94,
-        t72 - inner_45 * t82 - t95 * outer_15 + t61,
-        c1 * t97 - s1 * t98 + t61,
-        c1 * t51 - s1 * t43 + t61,
-        t101 + t61,
-        t102 + t61,
-        t103 + t61,
-        t104,
-        s1 * t97 + c1 * t98 + t61,
-        t105,
-        t110,
-        t111,
-        t112,
-        t113,
-        t1 * t108 + s23A * t96 + t61,
-        t105,
-        inner_42 + t61,
-        inner_43 + t61,
-        inner_44 + t61,
-        inner_45 + t61,
-        t105,
-        t105,
-        inner_52 + t61,
-        inner_53 + t61,
-        -t93 + t61,
-        -t95 + t61,
-        t105,
-        t105,
-        t105,
-        t105,
-        t105,
-        t105,
-        1.0 + t61,
+        t65 + t91 * t75 - t92 * outer_15 + t53,
+        c1 * t94 - s1 * t95 + t53,
+        c1 * t43 - s1 * t37 + t53,
+        t98,
+        t99 + t53,
+        t100 + t53,
+        t96 - t91 * outer_24 - t92 * outer_25 + t53,
+        s1 * t94 + c1 * t95 + t53,
+        t101,
+        t106,
+        t107,
+        t108,
+        t102 + t91 * t105 - t92 * outer_35 + t53,
+        t1 * t104 + s23A * t93 + t53,
+        t101,
+        -t78 + t53,
+        inner_43 + t53,
+        inner_44 + t53,
+        -t91 + t53,
+        t101,
+        t101,
+        inner_52 + t53,
+        inner_53 + t53,
+        -t89 + t53,
+        -t92 + t53,
+        t101,
+        t101,
+        t101,
+        t101,
+        t101,
+        t101,
+        1.0 + t53,
     )
 
 
@@ -671,18 +668,18 @@ def _determinant(
     t28 = L1 * (t19 - t20)
     t29 = t27 * (L2 * t22 + a3 * t18) + t13 * t28
     rise = np.sqrt(t26 + t29 * t29)
-    cphi = d / rise
+    c_phi = d / rise
     t30 = t27 * (L2 * t18 - a3 * t22) - t21 * t28
     base = np.sqrt(t26 + t30 * t30)
-    cpsi = d / base
+    c_psi = d / base
     t31 = base - (gs - al)
     t32 = gs + al
     t33 = t32 - base
     wrist = np.sqrt(np.maximum(t31, 0.0)) * np.sqrt(np.maximum(t33, 0.0))
     t34 = loff + lp * c + wrist
-    t35 = L2 + cpsi * t34
-    t36 = a3 + lp * s * cphi + t30 / base * (t29 / rise) * t34
-    t37 = t25 * (cphi * cphi) * (cpsi * cpsi) * (t23 * t35 + t24 * t36)
+    t35 = L2 + c_psi * t34
+    t36 = a3 + lp * s * c_phi + t30 / base * (t29 / rise) * t34
+    t37 = t25 * (c_phi * c_phi) * (c_psi * c_psi) * (t23 * t35 + t24 * t36)
     t38 = t37 * (L1 * c2A + c23A * t36 + s23A * t35) / (t26 * 4.0)
     t39 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
     t40 = t39 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
@@ -961,8 +958,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t84 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t48, t47))
     t85 = t83 - t84
     t86 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    cbeta = _runtime.select(parallel, 1.0, t86 / total_beta)
-    t87 = t81 - np.arctan2(t69, cbeta)
+    c_beta = _runtime.select(parallel, 1.0, t86 / total_beta)
+    t87 = t81 - np.arctan2(t69, c_beta)
     t88 = _runtime.wrap_up(_runtime.wrap(t85 + t87)) + t75
     t89 = _runtime.wrap_cut(_runtime.wrap(t78 + t81)) + t75
     t90 = _runtime.wrap_up(_runtime.wrap(t85 - t87)) + t75
@@ -1017,8 +1014,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t120 = np.arctan2(t118 / total_alpha_front_elbow_down, t119 / total_alpha_front_elbow_down)
     t121 = _runtime.wrap_cut(_runtime.wrap(t117 - t120))
     t122 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    cbeta_front_elbow_down = _runtime.select(parallel_front_elbow_down, 1.0, t122 / total_beta_front_elbow_down)
-    t123 = t120 - np.arctan2(t109, cbeta_front_elbow_down)
+    c_beta_front_elbow_down = _runtime.select(parallel_front_elbow_down, 1.0, t122 / total_beta_front_elbow_down)
+    t123 = t120 - np.arctan2(t109, c_beta_front_elbow_down)
     t124 = t83 + t84
     t125 = _runtime.wrap(_runtime.wrap(t123 + t124)) + t116
     t126 = _runtime.wrap_cut(_runtime.wrap(t117 + t120))
@@ -1119,8 +1116,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t180 = np.arctan2(t178 / total_alpha_rear_elbow_up, t179 / total_alpha_rear_elbow_up)
     t181 = _runtime.wrap_cut(_runtime.wrap(t177 - t180))
     t182 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    cbeta_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, 1.0, t182 / total_beta_rear_elbow_up)
-    t183 = t180 - np.arctan2(t166, cbeta_rear_elbow_up)
+    c_beta_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, 1.0, t182 / total_beta_rear_elbow_up)
+    t183 = t180 - np.arctan2(t166, c_beta_rear_elbow_up)
     t184 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t139, t138))
     t185 = t83 + t184
     t186 = _runtime.wrap(_runtime.wrap(t183 + t185)) + t173
@@ -1176,8 +1173,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t217 = np.arctan2(t215 / total_alpha_rear_elbow_down, t216 / total_alpha_rear_elbow_down)
     t218 = _runtime.wrap_cut(_runtime.wrap(t214 - t217))
     t219 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    cbeta_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, 1.0, t219 / total_beta_rear_elbow_down)
-    t220 = t217 - np.arctan2(t206, cbeta_rear_elbow_down)
+    c_beta_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, 1.0, t219 / total_beta_rear_elbow_down)
+    t220 = t217 - np.arctan2(t206, c_beta_rear_elbow_down)
     t221 = t83 - t184
     t222 = _runtime.wrap_up(_runtime.wrap(t220 + t221)) + t213
     t223 = _runtime.wrap_cut(_runtime.wrap(t214 + t217))

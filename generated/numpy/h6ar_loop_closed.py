@@ -3,14 +3,14 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 79 add, 84 compare and select, 3 atan2, 20 divide, 119 multiply, 6 sincos, 9 sqrt
-#   pose: 106 add, 81 compare and select, 20 divide, 160 multiply, 6 sincos, 9 sqrt
+#   fk: 81 add, 85 compare and select, 3 atan2, 21 divide, 123 multiply, 6 sincos, 9 sqrt
+#   pose: 108 add, 82 compare and select, 21 divide, 164 multiply, 6 sincos, 9 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 214 add, 77 compare and select, 52 divide, 299 multiply, 6 sincos, 9 sqrt
-#   determinant: 84 add, 77 compare and select, 21 divide, 151 multiply, 5 sincos, 9 sqrt
-#   singularities: 89 add, 77 compare and select, 20 divide, 141 multiply, 5 sincos, 9 sqrt
-#   ik: 264 add, 289 compare and select, 28 atan2, 60 divide, 306 multiply, 3 sincos, 41 sqrt
+#   jacobian: 208 add, 78 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
+#   determinant: 86 add, 78 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
+#   singularities: 91 add, 78 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
+#   ik: 341 compare and select, 366 add, 28 atan2, 78 divide, 436 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -126,107 +126,108 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t22 = t10 * t17 - t20 * t21
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t23 = L1 + fore
-    t24 = t23 * _runtime.VANISHING
-    bare_virtual = fore <= t24
+    bare_virtual = fore <= t23 * _runtime.VANISHING
     c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
     short_virtual = L1 * fore <= _runtime.VANISHING * (t23 * t23)
-    t25 = L2 * t16 + a3 * t15
-    t26 = c2L_half * c2R_half
-    t27 = s2L_half * s2R_half
-    t28 = t26 - t27
-    t29 = t25 * t10 + t28 * t21
-    gap = t22 * t22 + t29 * t29
-    t30 = s3L_half * c3L_half
-    t31 = t30 + t30
-    t32 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t31 + a3 * t32
-    t33 = 0.0 <= straight_left
-    t34 = L2 * t32 - a3 * t31
-    t35 = _runtime.select(t33, straight_left, -straight_left)
-    large_left = fore + t35
-    small_left = t34 * t34 / large_left
-    t36 = L1 * 2.0
-    N_left = _runtime.select(t33, small_left, large_left) * t36
-    t37 = s3R_half * c3R_half
+    t24 = s3R_half * c3R_half
+    t25 = t24 + t24
+    t26 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t25 + a3 * t26
+    t27 = 0.0 <= straight_right
+    t28 = _runtime.select(t27, straight_right, -straight_right)
+    large_right = fore + t28
+    t29 = L2 * t26 - a3 * t25
+    small_right = t29 * t29 / large_right
+    t30 = _runtime.select(t27, large_right, small_right)
+    t31 = L1 * 2.0
+    t32 = L2 * t16 + a3 * t15
+    t33 = c2L_half * c2R_half
+    t34 = s2L_half * s2R_half
+    t35 = t33 - t34
+    t36 = t32 * t10 + t35 * t21
+    gap = t22 * t22 + t36 * t36
+    t37 = s3L_half * c3L_half
     t38 = t37 + t37
-    t39 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t38 + a3 * t39
-    t40 = 0.0 <= straight_right
-    t41 = L2 * t39 - a3 * t38
-    t42 = _runtime.select(t40, straight_right, -straight_right)
-    large_right = fore + t42
-    small_right = t41 * t41 / large_right
-    t43 = _runtime.select(t40, small_right, large_right)
-    t44 = gap + N_left / 2.0 + t43 * t36 / 2.0
-    N_virtual = np.maximum(t44, 0.0)
-    t45 = _runtime.select(t40, large_right, small_right)
-    M_left = _runtime.select(t33, large_left, small_left) * t36
-    t46 = t45 * t36 / 2.0 - (gap - M_left / 2.0)
-    M_virtual = np.maximum(t46, 0.0)
-    whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    t39 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t38 + a3 * t39
+    t40 = 0.0 <= straight_left
+    t41 = _runtime.select(t40, straight_left, -straight_left)
+    large_left = fore + t41
+    t42 = L2 * t39 - a3 * t38
+    small_left = t42 * t42 / large_left
+    M_left = _runtime.select(t40, large_left, small_left) * t31
+    t43 = t30 * t31 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t43, 0.0)
+    N_left = _runtime.select(t40, small_left, large_left) * t31
+    t44 = _runtime.select(t27, small_right, large_right)
+    t45 = gap + N_left / 2.0 + t44 * t31 / 2.0
+    N_virtual = np.maximum(t45, 0.0)
+    whole_virtual = M_virtual + N_virtual
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
-    t47 = 2.0 * _runtime.select(0.0 <= -t41, 1.0, -1.0)
-    t48 = t47 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t48 / whole_virtual)
+    t46 = 2.0 * _runtime.select(0.0 <= -t29, 1.0, -1.0)
+    t47 = t46 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t47 / whole_virtual)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t49 = c2L_half * t8 + s2L_half * t9
-    t50 = L1 * (t26 + t27)
-    t51 = t49 * t17 - t20 * t50
-    r_I = t25 * t49 + t28 * t50
-    folded_virtual = np.sqrt(t51 * t51 + r_I * r_I) <= t24
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t52 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t51 * t52
-    t53 = t51 * ahead_1_virtual + r_I * t52
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t53 * t53)
+    t48 = c2L_half * t8 + s2L_half * t9
+    t49 = L1 * (t33 + t34)
+    t50 = t48 * t17 - t20 * t49
+    r_I = t32 * t48 + t35 * t49
+    t51 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t50 * t50 + r_I * r_I) <= t51
+    t52 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t23, t52)
+    t53 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t50 * t53
+    t54 = t50 * ahead_1_virtual + r_I * t53
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
     ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
-    t54 = s2R_half * c2R_half
-    stheta2A = _runtime.select(folded_virtual, t54 + t54, -(t53 / norm_virtual))
+    t55 = s2R_half * c2R_half
+    stheta2A = _runtime.select(folded_virtual, t55 + t55, -(t54 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
-    t55 = t22 * ctheta23A + t29 * stheta23A
-    t56 = d * d
-    tilted = np.sqrt(t56 + t55 * t55)
-    t57 = t55 / tilted
-    cphi = d / tilted
-    base = np.sqrt(t56 + gap)
-    t58 = (t22 * stheta23A - t29 * ctheta23A) / base
-    t59 = base - (gs - al)
-    t60 = gs + al
-    t61 = t60 - base
-    wrist = np.sqrt(np.maximum(t59, 0.0)) * np.sqrt(np.maximum(t61, 0.0))
-    t62 = loff + lp * c + wrist
-    t63 = t58 * t62
-    t64 = t1 * t57 + cphi * t63
-    t65 = a3 + t1 * cphi - t57 * t63
-    cpsi = tilted / base
-    t66 = L2 + t62 * cpsi
-    t67 = L1 * ctheta2A + ctheta23A * t65 + stheta23A * t66
-    t68 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t69 = t68 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t70 = t69 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t71 = t70 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t72 = t71 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t73 = t72 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t74 = t73 & np.isfinite(theta1) & np.isfinite(theta2R)
-    t75 = t74 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t76 = t75 & np.isfinite(theta3L) & np.isfinite(theta)
-    t77 = -(_runtime.FEASIBILITY * (d * t23))
-    t78 = -(_runtime.FEASIBILITY * t60)
-    t79 = (t77 <= t44) & (t77 <= t46) & (t78 <= t61) & (t78 <= t59)
-    t80 = _runtime.poison(np.logical_not(t76) | np.logical_not(t79))
-    t81 = d1 + L1 * stheta2A - ctheta23A * t66 + stheta23A * t65
-    t82 = _runtime.wrap_cut(np.arctan2(-t58, cpsi)) + t80
-    t83 = _runtime.wrap_cut(-np.arctan2(-t57, cphi)) + t80
+    t56 = t22 * ctheta23A + t36 * stheta23A
+    t57 = d * d
+    tilted = np.sqrt(t57 + t56 * t56)
+    t58 = t56 / tilted
+    c_phi = d / tilted
+    base = np.sqrt(t57 + gap)
+    t59 = (t22 * stheta23A - t36 * ctheta23A) / base
+    t60 = base - (gs - al)
+    t61 = gs + al
+    t62 = t61 - base
+    wrist = np.sqrt(np.maximum(t60, 0.0)) * np.sqrt(np.maximum(t62, 0.0))
+    t63 = loff + lp * c + wrist
+    t64 = t59 * t63
+    t65 = t1 * t58 + c_phi * t64
+    t66 = a3 + t1 * c_phi - t58 * t64
+    c_psi = tilted / base
+    t67 = L2 + t63 * c_psi
+    t68 = L1 * ctheta2A + ctheta23A * t66 + stheta23A * t67
+    t69 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t70 = t69 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t71 = t70 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t72 = t71 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t73 = t72 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t74 = t73 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t75 = t74 & np.isfinite(theta1) & np.isfinite(theta2R)
+    t76 = t75 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t77 = t76 & np.isfinite(theta3L) & np.isfinite(theta)
+    t78 = -(_runtime.FEASIBILITY * (d * t23))
+    t79 = -(_runtime.FEASIBILITY * t61)
+    t80 = (t78 <= t45) & (t78 <= t43) & (t79 <= t62) & (t79 <= t60)
+    t81 = _runtime.poison(np.logical_not(t77) | np.logical_not(t80))
+    t82 = d1 + L1 * stheta2A - ctheta23A * t67 + stheta23A * t66
+    t83 = _runtime.wrap_cut(np.arctan2(-t59, c_psi)) + t81
+    t84 = _runtime.wrap_cut(-np.arctan2(-t58, c_phi)) + t81
     return (
-        s1 * t64 + c1 * t67 + t80,
-        s1 * t67 - c1 * t64 + t80,
-        t81 + t80,
-        t82,
+        s1 * t65 + c1 * t68 + t81,
+        s1 * t68 - c1 * t65 + t81,
+        t82 + t81,
         t83,
-        _runtime.wrap_cut(np.arctan2(s, c)) + t80,
+        t84,
+        _runtime.wrap_cut(np.arctan2(s, c)) + t81,
     )
 
 
@@ -291,133 +292,134 @@ def _pose(
     t25 = t20 - t21
     r_I = t24 * t9 + t25 * t22
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t26 = L1 + fore
-    t27 = t26 * _runtime.VANISHING
-    folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t27
-    short_virtual = L1 * fore <= _runtime.VANISHING * (t26 * t26)
-    t28 = s2L_half * t7 - c2L_half * t8
-    t29 = L1 * (t17 - t18)
-    t30 = t28 * t16 - t19 * t29
-    t31 = t24 * t28 + t25 * t29
-    gap = t30 * t30 + t31 * t31
-    t32 = s3L_half * c3L_half
-    t33 = t32 + t32
-    t34 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t33 + a3 * t34
-    t35 = 0.0 <= straight_left
-    t36 = L2 * t34 - a3 * t33
-    t37 = _runtime.select(t35, straight_left, -straight_left)
-    large_left = fore + t37
-    small_left = t36 * t36 / large_left
-    t38 = L1 * 2.0
-    N_left = _runtime.select(t35, small_left, large_left) * t38
-    t39 = s3R_half * c3R_half
-    t40 = t39 + t39
-    t41 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t40 + a3 * t41
-    t42 = 0.0 <= straight_right
-    t43 = L2 * t41 - a3 * t40
-    t44 = _runtime.select(t42, straight_right, -straight_right)
-    large_right = fore + t44
-    small_right = t43 * t43 / large_right
-    t45 = _runtime.select(t42, small_right, large_right)
-    t46 = gap + N_left / 2.0 + t45 * t38 / 2.0
-    N_virtual = np.maximum(t46, 0.0)
-    t47 = _runtime.select(t42, large_right, small_right)
-    M_left = _runtime.select(t35, large_left, small_left) * t38
-    t48 = t47 * t38 / 2.0 - (gap - M_left / 2.0)
-    M_virtual = np.maximum(t48, 0.0)
-    whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t49 = 2.0 * _runtime.select(0.0 <= -t43, 1.0, -1.0)
-    t50 = t49 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t50 / whole_virtual)
-    t51 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t23 * t51
-    t52 = t23 * ahead_1_virtual + r_I * t51
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
+    t26 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t26
+    t27 = L1 + fore
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t27 * t27)
+    t28 = s3R_half * c3R_half
+    t29 = t28 + t28
+    t30 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t29 + a3 * t30
+    t31 = 0.0 <= straight_right
+    t32 = _runtime.select(t31, straight_right, -straight_right)
+    large_right = fore + t32
+    t33 = L2 * t30 - a3 * t29
+    small_right = t33 * t33 / large_right
+    t34 = _runtime.select(t31, large_right, small_right)
+    t35 = L1 * 2.0
+    t36 = s2L_half * t7 - c2L_half * t8
+    t37 = L1 * (t17 - t18)
+    t38 = t36 * t16 - t19 * t37
+    t39 = t24 * t36 + t25 * t37
+    gap = t38 * t38 + t39 * t39
+    t40 = s3L_half * c3L_half
+    t41 = t40 + t40
+    t42 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t41 + a3 * t42
+    t43 = 0.0 <= straight_left
+    t44 = _runtime.select(t43, straight_left, -straight_left)
+    large_left = fore + t44
+    t45 = L2 * t42 - a3 * t41
+    small_left = t45 * t45 / large_left
+    M_left = _runtime.select(t43, large_left, small_left) * t35
+    t46 = t34 * t35 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t46, 0.0)
+    N_left = _runtime.select(t43, small_left, large_left) * t35
+    t47 = _runtime.select(t31, small_right, large_right)
+    t48 = gap + N_left / 2.0 + t47 * t35 / 2.0
+    N_virtual = np.maximum(t48, 0.0)
+    whole_virtual = M_virtual + N_virtual
+    t49 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t27, t49)
+    t50 = 2.0 * _runtime.select(0.0 <= -t33, 1.0, -1.0)
+    t51 = t50 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t51 / whole_virtual)
+    t52 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t23 * t52
+    t53 = t23 * ahead_1_virtual + r_I * t52
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t53 * t53)
     ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
-    bare_virtual = fore <= t27
+    bare_virtual = fore <= t27 * _runtime.VANISHING
     c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t53 = s2R_half * c2R_half
-    stheta2A = _runtime.select(folded_virtual, t53 + t53, -(t52 / norm_virtual))
+    t54 = s2R_half * c2R_half
+    stheta2A = _runtime.select(folded_virtual, t54 + t54, -(t53 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t54 = c1 * ctheta23A
-    t55 = d * d
+    t55 = c1 * ctheta23A
+    t56 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t56 = t30 * ctheta23A + t31 * stheta23A
-    tilted = np.sqrt(t55 + t56 * t56)
-    cphi = d / tilted
-    t57 = t56 / tilted
-    base = np.sqrt(t55 + gap)
-    t58 = (t30 * stheta23A - t31 * ctheta23A) / base
-    t59 = t57 * t58
-    hand_11 = c * cphi + s * t59
-    t60 = cphi * t58
-    hand_21 = c * t57 - s * t60
-    t61 = c1 * stheta23A
-    cpsi = tilted / base
-    t62 = s * cpsi
-    t63 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t64 = t63 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t65 = t64 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t66 = t65 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t67 = t66 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t68 = t67 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t69 = t68 & np.isfinite(theta1) & np.isfinite(theta2R)
-    t70 = t69 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t71 = t70 & np.isfinite(theta3L) & np.isfinite(theta)
-    t72 = -(_runtime.FEASIBILITY * (d * t26))
-    t73 = gs + al
-    t74 = -(_runtime.FEASIBILITY * t73)
-    t75 = t73 - base
-    t76 = base - (gs - al)
-    t77 = (t72 <= t46) & (t72 <= t48) & (t74 <= t75) & (t74 <= t76)
-    t78 = _runtime.poison(np.logical_not(t71) | np.logical_not(t77))
-    t79 = t54 * hand_11 + s1 * hand_21 - t61 * t62 + t78
-    t80 = t57 * cpsi
-    hand_22 = cphi * cpsi
-    t81 = -(t54 * t80 - s1 * hand_22 + t61 * t58) + t78
-    hand_13 = s * cphi - c * t59
-    t82 = s * t57 + c * t60
-    hand_33 = c * cpsi
-    t83 = t54 * hand_13 + s1 * t82 + t61 * hand_33 + t78
-    t84 = lp * s
-    wrist = np.sqrt(np.maximum(t76, 0.0)) * np.sqrt(np.maximum(t75, 0.0))
-    t85 = loff + lp * c + wrist
-    t86 = t84 * t57 + t60 * t85
-    t87 = a3 + t84 * cphi - t59 * t85
-    t88 = L2 + cpsi * t85
-    t89 = L1 * ctheta2A + ctheta23A * t87 + stheta23A * t88
-    t90 = s1 * ctheta23A
-    t91 = s1 * stheta23A
-    t92 = t90 * hand_11 - c1 * hand_21 - t91 * t62 + t78
-    t93 = -(t90 * t80 + c1 * hand_22 + t91 * t58) + t78
-    t94 = t90 * hand_13 - c1 * t82 + t91 * hand_33 + t78
-    t95 = stheta23A * hand_13 - ctheta23A * hand_33 + t78
-    t96 = d1 + L1 * stheta2A - ctheta23A * t88 + stheta23A * t87
-    t97 = 0.0 + t78
+    t57 = t38 * ctheta23A + t39 * stheta23A
+    tilted = np.sqrt(t56 + t57 * t57)
+    c_phi = d / tilted
+    t58 = t57 / tilted
+    base = np.sqrt(t56 + gap)
+    t59 = (t38 * stheta23A - t39 * ctheta23A) / base
+    t60 = t58 * t59
+    hand_11 = c * c_phi + s * t60
+    t61 = c_phi * t59
+    hand_21 = c * t58 - s * t61
+    t62 = c1 * stheta23A
+    c_psi = tilted / base
+    t63 = s * c_psi
+    t64 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t65 = t64 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t66 = t65 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
+    t67 = t66 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
+    t68 = t67 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
+    t69 = t68 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
+    t70 = t69 & np.isfinite(theta1) & np.isfinite(theta2R)
+    t71 = t70 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t72 = t71 & np.isfinite(theta3L) & np.isfinite(theta)
+    t73 = -(_runtime.FEASIBILITY * (d * t27))
+    t74 = gs + al
+    t75 = -(_runtime.FEASIBILITY * t74)
+    t76 = t74 - base
+    t77 = base - (gs - al)
+    t78 = (t73 <= t48) & (t73 <= t46) & (t75 <= t76) & (t75 <= t77)
+    t79 = _runtime.poison(np.logical_not(t72) | np.logical_not(t78))
+    t80 = t55 * hand_11 + s1 * hand_21 - t62 * t63 + t79
+    t81 = t58 * c_psi
+    hand_22 = c_phi * c_psi
+    t82 = -(t55 * t81 - s1 * hand_22 + t62 * t59) + t79
+    hand_13 = s * c_phi - c * t60
+    t83 = s * t58 + c * t61
+    hand_33 = c * c_psi
+    t84 = t55 * hand_13 + s1 * t83 + t62 * hand_33 + t79
+    t85 = lp * s
+    wrist = np.sqrt(np.maximum(t77, 0.0)) * np.sqrt(np.maximum(t76, 0.0))
+    t86 = loff + lp * c + wrist
+    t87 = t85 * t58 + t61 * t86
+    t88 = a3 + t85 * c_phi - t60 * t86
+    t89 = L2 + c_psi * t86
+    t90 = L1 * ctheta2A + ctheta23A * t88 + stheta23A * t89
+    t91 = s1 * ctheta23A
+    t92 = s1 * stheta23A
+    t93 = t91 * hand_11 - c1 * hand_21 - t92 * t63 + t79
+    t94 = -(t91 * t81 + c1 * hand_22 + t92 * t59) + t79
+    t95 = t91 * hand_13 - c1 * t83 + t92 * hand_33 + t79
+    t96 = stheta23A * hand_13 - ctheta23A * hand_33 + t79
+    t97 = d1 + L1 * stheta2A - ctheta23A * t89 + stheta23A * t88
+    t98 = 0.0 + t79
     return (
-        t79,
-        t81,
-        t83,
-        s1 * t86 + c1 * t89 + t78,
-        t92,
+        t80,
+        t82,
+        t84,
+        s1 * t87 + c1 * t90 + t79,
         t93,
         t94,
-        s1 * t89 - c1 * t86 + t78,
-        ctheta23A * t62 + stheta23A * hand_11 + t78,
-        ctheta23A * t58 - stheta23A * t80 + t78,
         t95,
-        t96 + t78,
-        t97,
-        t97,
-        t97,
-        1.0 + t78,
+        s1 * t90 - c1 * t87 + t79,
+        ctheta23A * t63 + stheta23A * hand_11 + t79,
+        ctheta23A * t59 - stheta23A * t81 + t79,
+        t96,
+        t97 + t79,
+        t98,
+        t98,
+        t98,
+        1.0 + t79,
     )
 
 
@@ -567,274 +569,246 @@ def _jacobian(
     t13 = c2R_half * t11 - s2R_half * t12
     t14 = s2R_half * t11 + c2R_half * t12
     t15 = c2L_half * t13 - s2L_half * t14
-    t16 = L2 * t15
-    t17 = s2L_half * t13 + c2L_half * t14
-    t18 = a3 * t17
-    t19 = t16 - t18
-    t20 = t10 * t19
-    t21 = s2L_half * c2R_half
-    t22 = c2L_half * s2R_half
-    t23 = t21 + t22
-    t24 = L1 * (t21 - t22)
-    t25 = t23 * t24
-    t26 = t20 - t25
+    t16 = s2L_half * t13 + c2L_half * t14
+    t17 = L2 * t15 - a3 * t16
+    t18 = s2L_half * c2R_half
+    t19 = c2L_half * s2R_half
+    t20 = t18 + t19
+    t21 = L1 * (t18 - t19)
+    t22 = t10 * t17 - t20 * t21
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t27 = L1 + fore
-    t28 = t27 * _runtime.VANISHING
-    bare_virtual = fore <= t28
+    t23 = L1 + fore
+    bare_virtual = fore <= t23 * _runtime.VANISHING
     c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
-    short_virtual = L1 * fore <= _runtime.VANISHING * (t27 * t27)
-    t29 = L2 * t17
-    t30 = a3 * t15
-    t31 = t29 + t30
-    t32 = t31 * t10
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t23 * t23)
+    t24 = s3R_half * c3R_half
+    t25 = t24 + t24
+    t26 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t25 + a3 * t26
+    t27 = 0.0 <= straight_right
+    t28 = _runtime.select(t27, straight_right, -straight_right)
+    large_right = fore + t28
+    t29 = L2 * t26 - a3 * t25
+    small_right = t29 * t29 / large_right
+    t30 = _runtime.select(t27, large_right, small_right)
+    t31 = L1 * 2.0
+    t32 = L2 * t16 + a3 * t15
     t33 = c2L_half * c2R_half
     t34 = s2L_half * s2R_half
     t35 = t33 - t34
-    t36 = t35 * t24
-    t37 = t32 + t36
-    gap = t26 * t26 + t37 * t37
-    t38 = s3L_half * c3L_half
-    t39 = t38 + t38
-    t40 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t39 + a3 * t40
-    t41 = 0.0 <= straight_left
-    t42 = L2 * t40 - a3 * t39
-    t43 = _runtime.select(t41, straight_left, -straight_left)
-    large_left = fore + t43
+    t36 = t32 * t10 + t35 * t21
+    gap = t22 * t22 + t36 * t36
+    t37 = s3L_half * c3L_half
+    t38 = t37 + t37
+    t39 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t38 + a3 * t39
+    t40 = 0.0 <= straight_left
+    t41 = _runtime.select(t40, straight_left, -straight_left)
+    large_left = fore + t41
+    t42 = L2 * t39 - a3 * t38
     small_left = t42 * t42 / large_left
-    t44 = L1 * 2.0
-    N_left = _runtime.select(t41, small_left, large_left) * t44
-    t45 = s3R_half * c3R_half
-    t46 = t45 + t45
-    t47 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t46 + a3 * t47
-    t48 = 0.0 <= straight_right
-    t49 = L2 * t47 - a3 * t46
-    t50 = _runtime.select(t48, straight_right, -straight_right)
-    large_right = fore + t50
-    small_right = t49 * t49 / large_right
-    t51 = _runtime.select(t48, small_right, large_right)
-    t52 = gap + N_left / 2.0 + t51 * t44 / 2.0
-    N_virtual = np.maximum(t52, 0.0)
-    t53 = _runtime.select(t48, large_right, small_right)
-    M_left = _runtime.select(t41, large_left, small_left) * t44
-    t54 = t53 * t44 / 2.0 - (gap - M_left / 2.0)
-    M_virtual = np.maximum(t54, 0.0)
-    whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
+    M_left = _runtime.select(t40, large_left, small_left) * t31
+    t43 = t30 * t31 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t43, 0.0)
+    N_left = _runtime.select(t40, small_left, large_left) * t31
+    t44 = _runtime.select(t27, small_right, large_right)
+    t45 = gap + N_left / 2.0 + t44 * t31 / 2.0
+    N_virtual = np.maximum(t45, 0.0)
+    whole_virtual = M_virtual + N_virtual
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
-    t55 = 2.0 * _runtime.select(0.0 <= -t49, 1.0, -1.0)
-    t56 = t55 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t56 / whole_virtual)
+    t46 = 2.0 * _runtime.select(0.0 <= -t29, 1.0, -1.0)
+    t47 = t46 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t47 / whole_virtual)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t57 = c2L_half * t8 + s2L_half * t9
-    t58 = t57 * t19
-    t59 = L1 * (t33 + t34)
-    t60 = t23 * t59
-    t61 = t58 - t60
-    t62 = t31 * t57
-    t63 = t35 * t59
-    r_I = t62 + t63
-    folded_virtual = np.sqrt(t61 * t61 + r_I * r_I) <= t28
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t64 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t61 * t64
-    t65 = t61 * ahead_1_virtual + r_I * t64
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t65 * t65)
-    ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
-    t66 = s2R_half * c2R_half
-    stheta2A = _runtime.select(folded_virtual, t66 + t66, -(t65 / norm_virtual))
+    t48 = c2L_half * t8 + s2L_half * t9
+    t49 = L1 * (t33 + t34)
+    t50 = t48 * t17 - t20 * t49
+    r_I = t32 * t48 + t35 * t49
+    t51 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t50 * t50 + r_I * r_I) <= t51
+    t52 = c2R_half * c2R_half - s2R_half * s2R_half
+    t53 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t23, t53)
+    t54 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t50 * t54
+    t55 = t50 * ahead_1_virtual + r_I * t54
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t55 * t55)
+    ctheta2A = _runtime.select(folded_virtual, t52, out_virtual / norm_virtual)
+    t56 = s2R_half * c2R_half
+    t57 = t56 + t56
+    stheta2A = _runtime.select(folded_virtual, t57, -(t55 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
-    t67 = t26 * ctheta23A + t37 * stheta23A
-    t68 = d * d
-    t69 = t67 * t67
-    tilted = np.sqrt(t68 + t69)
-    t70 = t67 / tilted
-    cphi = d / tilted
-    t71 = t26 * stheta23A - t37 * ctheta23A
-    base = np.sqrt(t68 + gap)
-    t72 = t71 / base
-    t73 = cphi * t72
-    t74 = lp * c
-    t75 = base - (gs - al)
-    t76 = gs + al
-    t77 = t76 - base
-    wrist = np.sqrt(np.maximum(t75, 0.0)) * np.sqrt(np.maximum(t77, 0.0))
-    t78 = loff + t74 + wrist
-    t79 = t1 * t70 + t73 * t78
+    t58 = t22 * ctheta23A + t36 * stheta23A
+    t59 = d * d
+    t60 = t58 * t58
+    tilted = np.sqrt(t59 + t60)
+    t61 = t58 / tilted
+    c_phi = d / tilted
+    t62 = t22 * stheta23A - t36 * ctheta23A
+    base = np.sqrt(t59 + gap)
+    t63 = t62 / base
+    t64 = c_phi * t63
+    t65 = lp * c
+    t66 = base - (gs - al)
+    t67 = gs + al
+    t68 = t67 - base
+    wrist = np.sqrt(np.maximum(t66, 0.0)) * np.sqrt(np.maximum(t68, 0.0))
+    t69 = loff + t65 + wrist
+    t70 = t1 * t61 + t64 * t69
     outer_32 = L1 * ctheta2A
-    t80 = t70 * t72
-    t81 = t1 * cphi - t78 * t80
-    t82 = a3 + t81
-    cpsi = tilted / base
-    t83 = t78 * cpsi
-    t84 = L2 + t83
-    outer_33 = ctheta23A * t82 + stheta23A * t84
-    t85 = outer_32 + outer_33
-    t86 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t87 = t86 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t88 = t87 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t89 = t88 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t90 = t89 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t91 = t90 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t92 = t91 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t93 = t92 & np.isfinite(theta3L) & np.isfinite(theta)
-    t94 = -(_runtime.FEASIBILITY * (d * t27))
-    t95 = -(_runtime.FEASIBILITY * t76)
-    t96 = (t94 <= t52) & (t94 <= t54) & (t95 <= t77) & (t95 <= t75)
-    t97 = _runtime.poison(np.logical_not(t93) | np.logical_not(t96))
-    t98 = cphi * t83
-    t99 = t70 * t83
-    t100 = t72 * t78
-    t101 = ctheta23A * t99 + stheta23A * t100
-    t102 = d * (gs - d / (cphi * cpsi))
-    t103 = t72 * t102
-    t104 = stheta23A * cpsi
-    t105 = t104 - ctheta23A * t80
-    t106 = s1 * t73 + c1 * t105
-    t107 = cphi * wrist * (cpsi * cpsi)
-    t108 = s1 * t98 - c1 * t101 + t103 * t106 / t107
-    t109 = tilted * tilted
-    t110 = 1.0 + t71 * t71 / t109
-    t111 = t71 * t67 / (tilted * t109 * t110)
-    t112 = t29 / 2.0 + t30 / 2.0
-    t113 = t10 * t112
-    t114 = t58 / 2.0
-    gap_13 = t113 + t114
-    t115 = t36 / 2.0
-    t116 = t60 / 2.0
-    t117 = t115 - t116
-    gap_12 = gap_13 + t117
-    t118 = t62 / 2.0
-    t119 = t16 / 2.0 - t18 / 2.0
-    t120 = t10 * t119
-    gap_23 = t118 - t120
-    t121 = t25 / 2.0
-    t122 = t63 / 2.0
-    t123 = t121 + t122
-    gap_22 = gap_23 + t123
-    t124 = t32 / 2.0
-    t125 = t57 * t119
-    mid_13 = t124 + t125
-    mid_12 = mid_13 + t117
-    t126 = L1 * stheta2A
-    t127 = t57 * t112
-    t128 = t20 / 2.0
-    mid_23 = t127 - t128
-    mid_22 = mid_23 + t123
-    t129 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t130 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t131 = L1 * (t129 + t130)
-    rate_22 = (outer_32 * mid_12 + t126 * mid_22) / t131
-    line_12 = ctheta23A * gap_12 + stheta23A * gap_22 + t71 * rate_22
-    turn_12 = 1.0 / (tilted * t110)
-    t132 = ctheta23A * gap_22 - stheta23A * gap_12 + t67 * rate_22
-    t133 = t111 * line_12 + turn_12 * t132
-    t134 = ctheta23A * t79
-    t135 = t70 * t102
-    t136 = cphi * cphi * wrist * cpsi
-    t137 = c1 * t134 - s1 * t81 - t106 * t135 / t136
-    t138 = 1.0 / (d * (1.0 + t69 / t68))
-    t139 = t138 * line_12
-    t140 = c1 * t126
+    t71 = t61 * t63
+    t72 = t1 * c_phi - t69 * t71
+    t73 = a3 + t72
+    c_psi = tilted / base
+    t74 = t69 * c_psi
+    t75 = L2 + t74
+    outer_33 = ctheta23A * t73 + stheta23A * t75
+    t76 = outer_32 + outer_33
+    t77 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t78 = t77 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t79 = t78 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t80 = t79 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t81 = t80 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t82 = t81 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t83 = t82 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t84 = t83 & np.isfinite(theta3L) & np.isfinite(theta)
+    t85 = -(_runtime.FEASIBILITY * (d * t23))
+    t86 = -(_runtime.FEASIBILITY * t67)
+    t87 = (t85 <= t45) & (t85 <= t43) & (t86 <= t68) & (t86 <= t66)
+    t88 = _runtime.poison(np.logical_not(t84) | np.logical_not(t87))
+    t89 = c_phi * t74
+    t90 = t61 * t74
+    t91 = t63 * t69
+    t92 = ctheta23A * t90 + stheta23A * t91
+    t93 = d * (gs - d / (c_phi * c_psi))
+    t94 = t63 * t93
+    t95 = stheta23A * c_psi
+    t96 = t95 - ctheta23A * t71
+    t97 = s1 * t64 + c1 * t96
+    t98 = c_phi * wrist * (c_psi * c_psi)
+    t99 = s1 * t89 - c1 * t92 + t94 * t97 / t98
+    t100 = tilted * tilted
+    t101 = 1.0 + t62 * t62 / t100
+    t102 = t62 * t58 / (tilted * t100 * t101)
+    c2R3R = t26 * t52 - t25 * t57
+    s2R3R = t26 * t57 + t25 * t52
+    mid_13 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
+    t103 = L1 * t57 / 2.0 - mid_13
+    mid_23 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
+    mid_22 = L1 * t52 / 2.0 + mid_23
+    t104 = L1 * stheta2A
+    t105 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t106 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t107 = L1 * (t105 + t106)
+    t108 = (outer_32 * t103 - t104 * mid_22) / t107
+    t109 = ctheta23A * t103 - stheta23A * mid_22 + t62 * t108
+    turn_12 = 1.0 / (tilted * t101)
+    t110 = ctheta23A * mid_22 + stheta23A * t103 - t58 * t108
+    inner_42 = t102 * t109 - turn_12 * t110
+    t111 = ctheta23A * t70
+    t112 = t61 * t93
+    t113 = c_phi * c_phi * wrist * c_psi
+    t114 = c1 * t111 - s1 * t72 - t97 * t112 / t113
+    t115 = 1.0 / (d * (1.0 + t60 / t59))
+    inner_52 = t115 * t109
+    t116 = c1 * t104
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t141 = L2 * ctheta23A - a3 * stheta23A
-    t142 = (virtual_11 * mid_12 - t141 * mid_22) / t131
-    t143 = ctheta23A * t84 - stheta23A * t82
-    outer_13 = c1 * t143
-    t144 = t108 * t133 + t137 * t139 + t140 * t142 + rate_22 * outer_13
-    t145 = (mid_13 * virtual_11 - mid_23 * t141) / t131
-    rate_23 = (mid_13 * outer_32 + mid_23 * t126) / t131
-    line_13 = gap_13 * ctheta23A + gap_23 * stheta23A + t71 * rate_23
-    t146 = gap_23 * ctheta23A - gap_13 * stheta23A + t67 * rate_23
-    t147 = t111 * line_13 + turn_12 * t146
-    t148 = t138 * line_13
-    t149 = t140 * t145 + t147 * t108 + t148 * t137 + rate_23 * outer_13
-    gap_15 = t113 - t114
-    t150 = t115 + t116
-    gap_14 = gap_15 + t150
-    t151 = t118 + t120
-    t152 = t121 - t122
-    t153 = t151 - t152
-    t154 = t124 - t125
-    t155 = t154 + t150
-    mid_25 = t127 + t128
-    t156 = mid_25 - t152
-    t157 = (outer_32 * t155 - t126 * t156) / t131
-    line_14 = ctheta23A * gap_14 - stheta23A * t153 - t71 * t157
-    t158 = ctheta23A * t153 + stheta23A * gap_14 + t67 * t157
-    t159 = t111 * line_14 - turn_12 * t158
-    t160 = t138 * line_14
-    rate_14 = (virtual_11 * t155 + t141 * t156) / t131
-    t161 = t108 * t159 + t137 * t160 - t140 * rate_14 - outer_13 * t157
-    rate_15 = (t154 * virtual_11 + mid_25 * t141) / t131
-    t162 = (t154 * outer_32 - mid_25 * t126) / t131
-    line_15 = gap_15 * ctheta23A - t151 * stheta23A - t71 * t162
-    line_25 = t151 * ctheta23A + gap_15 * stheta23A + t67 * t162
-    t163 = t111 * line_15 - turn_12 * line_25
-    t164 = t138 * line_15
-    t165 = t140 * rate_15 - t163 * t108 - t164 * t137 + t162 * outer_13
-    t166 = t74 * t70 - t1 * t73
-    t167 = t74 * cphi + t1 * t80
-    t168 = t1 * t104 - ctheta23A * t167
-    outer_23 = s1 * t143
-    t169 = c1 * t73 - s1 * t105
-    outer_24 = c1 * t98 + s1 * t101 + t103 * t169 / t107
-    t170 = s1 * t134 + c1 * t81 + t135 * t169 / t136
-    t171 = s1 * t126
-    t172 = rate_22 * outer_23 - (t133 * outer_24 - t139 * t170 - t171 * t142)
-    t173 = t145 * t171 - t147 * outer_24 + t148 * t170 + rate_23 * outer_23
-    t174 = t159 * outer_24 - t160 * t170 + t171 * rate_14
-    t175 = rate_15 * t171 + t163 * outer_24 - t164 * t170
-    t176 = 0.0 + t97
-    t177 = ctheta23A * cpsi
-    t178 = t177 + stheta23A * t80
-    t179 = stheta23A * t99 - ctheta23A * t100 + t103 * t178 / t107
-    t180 = stheta23A * t79 + t135 * t178 / t136
-    t181 = outer_33 * rate_22 - (t133 * t179 - t139 * t180 + outer_32 * t142)
-    t182 = rate_23 * outer_33 - (outer_32 * t145 + t147 * t179 - t148 * t180)
-    t183 = t159 * t179 - t160 * t180 - outer_32 * rate_14
-    t184 = outer_32 * rate_15 - t163 * t179 + t164 * t180
+    t117 = L2 * ctheta23A - a3 * stheta23A
+    rate_12 = (virtual_11 * t103 + t117 * mid_22) / t107
+    t118 = t99 * inner_42 + t114 * inner_52 + t116 * rate_12
+    t119 = ctheta23A * t75 - stheta23A * t73
+    outer_13 = c1 * t119
+    t120 = (mid_13 * virtual_11 - mid_23 * t117) / t107
+    rate_23 = (mid_13 * outer_32 + mid_23 * t104) / t107
+    line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t62 * rate_23
+    t121 = mid_23 * ctheta23A - mid_13 * stheta23A + t58 * rate_23
+    t122 = t102 * line_13 + turn_12 * t121
+    t123 = t115 * line_13
+    t124 = t116 * t120 + t122 * t99 + t123 * t114 + rate_23 * outer_13
+    t125 = s2L_half * c2L_half
+    t126 = t125 + t125
+    t127 = c2L_half * c2L_half - s2L_half * s2L_half
+    c2L3L = t39 * t127 - t38 * t126
+    s2L3L = t39 * t126 + t38 * t127
+    mid_15 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
+    gap_14 = L1 * t126 / 2.0 - mid_15
+    mid_25 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
+    mid_24 = L1 * t127 / 2.0 + mid_25
+    t128 = (outer_32 * gap_14 - t104 * mid_24) / t107
+    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t62 * t128
+    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t58 * t128
+    t129 = t102 * line_14 - turn_12 * line_24
+    t130 = t115 * line_14
+    rate_14 = (virtual_11 * gap_14 + t117 * mid_24) / t107
+    t131 = t99 * t129 + t114 * t130 - t116 * rate_14 - outer_13 * t128
+    t132 = (mid_15 * virtual_11 - mid_25 * t117) / t107
+    rate_25 = (mid_15 * outer_32 + mid_25 * t104) / t107
+    t133 = mid_15 * ctheta23A + mid_25 * stheta23A - t62 * rate_25
+    line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t58 * rate_25
+    inner_45 = t102 * t133 + turn_12 * line_25
+    inner_55 = t115 * t133
+    t134 = t116 * t132 - inner_45 * t99 - inner_55 * t114
+    t135 = t65 * t61 - t1 * t64
+    t136 = t65 * c_phi + t1 * t71
+    t137 = t1 * t95 - ctheta23A * t136
+    t138 = c1 * t64 - s1 * t96
+    outer_24 = c1 * t89 + s1 * t92 + t94 * t138 / t98
+    t139 = s1 * t111 + c1 * t72 + t112 * t138 / t113
+    t140 = s1 * t104
+    t141 = inner_42 * outer_24 - inner_52 * t139 - t140 * rate_12
+    outer_23 = s1 * t119
+    t142 = t120 * t140 - t122 * outer_24 + t123 * t139 + rate_23 * outer_23
+    t143 = t129 * outer_24 - t130 * t139 + t140 * rate_14
+    t144 = t132 * t140 + inner_45 * outer_24 - inner_55 * t139
+    t145 = 0.0 + t88
+    t146 = ctheta23A * c_psi
+    t147 = t146 + stheta23A * t71
+    t148 = stheta23A * t90 - ctheta23A * t91 + t94 * t147 / t98
+    t149 = stheta23A * t70 + t112 * t147 / t113
+    t150 = inner_42 * t148 - inner_52 * t149 + outer_32 * rate_12
+    t151 = rate_23 * outer_33 - (outer_32 * t120 + t122 * t148 - t123 * t149)
+    t152 = t129 * t148 - t130 * t149 - outer_32 * rate_14
+    t153 = outer_32 * t132 - inner_45 * t148 + inner_55 * t149
     return (
-        c1 * t79 - s1 * t85 + t97,
-        t144 + t97,
-        t149 + t97,
-        t161 + t97,
-        -t165 + t97,
-        s1 * t166 - c1 * t168 + t97,
-        s1 * t79 + c1 * t85 + t97,
-        t172 + t97,
-        t173 + t97,
-        -(t174 + t157 * outer_23) + t97,
-        -(t175 + t162 * outer_23) + t97,
-        -(c1 * t166 + s1 * t168) + t97,
-        t176,
-        t181 + t97,
-        t182 + t97,
-        -(t183 + outer_33 * t157) + t97,
-        t184 - t162 * outer_33 + t97,
-        t1 * t177 + stheta23A * t167 + t97,
-        t176,
-        -t133 + t97,
-        -t147 + t97,
-        -t159 + t97,
-        -t163 + t97,
-        t176,
-        t176,
-        -t139 + t97,
-        -t148 + t97,
-        -t160 + t97,
-        -t164 + t97,
-        t176,
-        t176,
-        t176,
-        t176,
-        t176,
-        t176,
-        1.0 + t97,
+        c1 * t70 - s1 * t76 + t88,
+        -(t118 + t108 * outer_13) + t88,
+        t124 + t88,
+        t131 + t88,
+        t134 + rate_25 * outer_13 + t88,
+        s1 * t135 - c1 * t137 + t88,
+        s1 * t70 + c1 * t76 + t88,
+        t141 - t108 * outer_23 + t88,
+        t142 + t88,
+        -(t143 + t128 * outer_23) + t88,
+        t144 + rate_25 * outer_23 + t88,
+        -(c1 * t135 + s1 * t137) + t88,
+        t145,
+        t150 - outer_33 * t108 + t88,
+        t151 + t88,
+        -(t152 + outer_33 * t128) + t88,
+        rate_25 * outer_33 - t153 + t88,
+        t1 * t146 + stheta23A * t136 + t88,
+        t145,
+        inner_42 + t88,
+        -t122 + t88,
+        -t129 + t88,
+        inner_45 + t88,
+        t145,
+        t145,
+        inner_52 + t88,
+        -t123 + t88,
+        -t130 + t88,
+        inner_55 + t88,
+        t145,
+        t145,
+        t145,
+        t145,
+        t145,
+        t145,
+        1.0 + t88,
     )
 
 
@@ -917,86 +891,87 @@ def _determinant(
     t39 = t34 - t35
     r_I = t38 * t23 + t39 * t36
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t40 = L1 + fore
-    t41 = t40 * _runtime.VANISHING
-    folded_virtual = np.sqrt(t37 * t37 + r_I * r_I) <= t41
-    short_virtual = L1 * fore <= _runtime.VANISHING * (t40 * t40)
-    t42 = s2L_half * t21 - c2L_half * t22
-    t43 = L1 * (t31 - t32)
-    t44 = t42 * t30 - t33 * t43
-    t45 = t38 * t42 + t39 * t43
-    gap = t44 * t44 + t45 * t45
-    straight_left = L2 * t5 + a3 * t3
-    t46 = 0.0 <= straight_left
-    t47 = L2 * t3 - a3 * t5
-    t48 = _runtime.select(t46, straight_left, -straight_left)
-    large_left = fore + t48
-    small_left = t47 * t47 / large_left
-    t49 = L1 * 2.0
-    N_left = _runtime.select(t46, small_left, large_left) * t49
+    t40 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t37 * t37 + r_I * r_I) <= t40
+    t41 = L1 + fore
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t41 * t41)
     straight_right = L2 * t12 + a3 * t10
-    t50 = 0.0 <= straight_right
-    t51 = L2 * t10 - a3 * t12
-    t52 = _runtime.select(t50, straight_right, -straight_right)
-    large_right = fore + t52
-    small_right = t51 * t51 / large_right
-    t53 = _runtime.select(t50, small_right, large_right)
-    t54 = gap + N_left / 2.0 + t53 * t49 / 2.0
-    N_virtual = np.maximum(t54, 0.0)
-    t55 = _runtime.select(t50, large_right, small_right)
-    M_left = _runtime.select(t46, large_left, small_left) * t49
-    t56 = t55 * t49 / 2.0 - (gap - M_left / 2.0)
-    M_virtual = np.maximum(t56, 0.0)
-    whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t57 = 2.0 * _runtime.select(0.0 <= -t51, 1.0, -1.0)
-    t58 = t57 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t58 / whole_virtual)
-    t59 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t37 * t59
-    t60 = t37 * ahead_1_virtual + r_I * t59
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t60 * t60)
+    t42 = 0.0 <= straight_right
+    t43 = _runtime.select(t42, straight_right, -straight_right)
+    large_right = fore + t43
+    t44 = L2 * t10 - a3 * t12
+    small_right = t44 * t44 / large_right
+    t45 = _runtime.select(t42, large_right, small_right)
+    t46 = L1 * 2.0
+    t47 = s2L_half * t21 - c2L_half * t22
+    t48 = L1 * (t31 - t32)
+    t49 = t47 * t30 - t33 * t48
+    t50 = t38 * t47 + t39 * t48
+    gap = t49 * t49 + t50 * t50
+    straight_left = L2 * t5 + a3 * t3
+    t51 = 0.0 <= straight_left
+    t52 = _runtime.select(t51, straight_left, -straight_left)
+    large_left = fore + t52
+    t53 = L2 * t3 - a3 * t5
+    small_left = t53 * t53 / large_left
+    M_left = _runtime.select(t51, large_left, small_left) * t46
+    t54 = t45 * t46 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t54, 0.0)
+    N_left = _runtime.select(t51, small_left, large_left) * t46
+    t55 = _runtime.select(t42, small_right, large_right)
+    t56 = gap + N_left / 2.0 + t55 * t46 / 2.0
+    N_virtual = np.maximum(t56, 0.0)
+    whole_virtual = M_virtual + N_virtual
+    t57 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t41, t57)
+    t58 = 2.0 * _runtime.select(0.0 <= -t44, 1.0, -1.0)
+    t59 = t58 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t59 / whole_virtual)
+    t60 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t37 * t60
+    t61 = t37 * ahead_1_virtual + r_I * t60
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t61 * t61)
     ctheta2A = _runtime.select(folded_virtual, t13, out_virtual / norm_virtual)
-    bare_virtual = fore <= t41
+    bare_virtual = fore <= t41 * _runtime.VANISHING
     c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    stheta2A = _runtime.select(folded_virtual, t9, -(t60 / norm_virtual))
+    stheta2A = _runtime.select(folded_virtual, t9, -(t61 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t61 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t62 = d * d
-    t63 = t44 * ctheta23A + t45 * stheta23A
-    tilted = np.sqrt(t62 + t63 * t63)
-    base = np.sqrt(t62 + gap)
-    t64 = base - (gs - al)
-    t65 = gs + al
-    t66 = t65 - base
-    wrist = np.sqrt(np.maximum(t64, 0.0)) * np.sqrt(np.maximum(t66, 0.0))
-    t67 = loff + lp * c + wrist
-    t68 = L2 + tilted / base * t67
-    t69 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    t70 = t63 / tilted * t67 * ((t44 * stheta23A - t45 * ctheta23A) / base)
-    t71 = a3 + lp * s * (d / tilted) - t70
-    t72 = d * (L1 * L1) * t7 * t14 * (t61 * t68 + t69 * t71)
-    t73 = L1 * ctheta2A + ctheta23A * t71 + stheta23A * t68
-    t74 = 4.0 * tilted * (L2 * t61 + a3 * t69) * (base * base)
-    t75 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t76 = t75 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t77 = t76 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t78 = t77 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t79 = t78 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t80 = t79 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t81 = t80 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t82 = t81 & np.isfinite(theta3L) & np.isfinite(theta)
-    t83 = -(_runtime.FEASIBILITY * (d * t40))
-    t84 = -(_runtime.FEASIBILITY * t65)
-    t85 = (t83 <= t54) & (t83 <= t56) & (t84 <= t66) & (t84 <= t64)
-    t86 = _runtime.poison(np.logical_not(t82) | np.logical_not(t85))
+    t62 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t63 = d * d
+    t64 = t49 * ctheta23A + t50 * stheta23A
+    tilted = np.sqrt(t63 + t64 * t64)
+    base = np.sqrt(t63 + gap)
+    t65 = base - (gs - al)
+    t66 = gs + al
+    t67 = t66 - base
+    wrist = np.sqrt(np.maximum(t65, 0.0)) * np.sqrt(np.maximum(t67, 0.0))
+    t68 = loff + lp * c + wrist
+    t69 = L2 + tilted / base * t68
+    t70 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t71 = t64 / tilted * t68 * ((t49 * stheta23A - t50 * ctheta23A) / base)
+    t72 = a3 + lp * s * (d / tilted) - t71
+    t73 = d * (L1 * L1) * t7 * t14 * (t62 * t69 + t70 * t72)
+    t74 = L1 * ctheta2A + ctheta23A * t72 + stheta23A * t69
+    t75 = 4.0 * tilted * (L2 * t62 + a3 * t70) * (base * base)
+    t76 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t77 = t76 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t78 = t77 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t79 = t78 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t80 = t79 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t81 = t80 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t82 = t81 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t83 = t82 & np.isfinite(theta3L) & np.isfinite(theta)
+    t84 = -(_runtime.FEASIBILITY * (d * t41))
+    t85 = -(_runtime.FEASIBILITY * t66)
+    t86 = (t84 <= t56) & (t84 <= t54) & (t85 <= t67) & (t85 <= t65)
+    t87 = _runtime.poison(np.logical_not(t83) | np.logical_not(t86))
     return (
-        t72 * t73 / t74 + t86,
+        t73 * t74 / t75 + t87,
     )
 
 
@@ -1059,107 +1034,108 @@ def _singularities(
     t25 = t20 - t21
     r_I = t24 * t9 + t25 * t22
     fore = np.sqrt(L2 * L2 + a3 * a3)
-    t26 = L1 + fore
-    t27 = t26 * _runtime.VANISHING
-    folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t27
-    t28 = c2R_half * c2R_half - s2R_half * s2R_half
-    short_virtual = L1 * fore <= _runtime.VANISHING * (t26 * t26)
-    t29 = s2L_half * t7 - c2L_half * t8
-    t30 = L1 * (t17 - t18)
-    t31 = t29 * t16 - t19 * t30
-    t32 = t24 * t29 + t25 * t30
-    gap = t31 * t31 + t32 * t32
-    t33 = s3L_half * c3L_half
-    t34 = t33 + t33
-    t35 = c3L_half * c3L_half - s3L_half * s3L_half
-    straight_left = L2 * t34 + a3 * t35
-    t36 = 0.0 <= straight_left
-    t37 = L2 * t35 - a3 * t34
-    t38 = _runtime.select(t36, straight_left, -straight_left)
-    large_left = fore + t38
-    small_left = t37 * t37 / large_left
-    t39 = L1 * 2.0
-    N_left = _runtime.select(t36, small_left, large_left) * t39
-    t40 = s3R_half * c3R_half
-    t41 = t40 + t40
-    t42 = c3R_half * c3R_half - s3R_half * s3R_half
-    straight_right = L2 * t41 + a3 * t42
-    t43 = 0.0 <= straight_right
-    t44 = L2 * t42 - a3 * t41
-    t45 = _runtime.select(t43, straight_right, -straight_right)
-    large_right = fore + t45
-    small_right = t44 * t44 / large_right
-    t46 = _runtime.select(t43, small_right, large_right)
-    t47 = gap + N_left / 2.0 + t46 * t39 / 2.0
-    N_virtual = np.maximum(t47, 0.0)
-    t48 = _runtime.select(t43, large_right, small_right)
-    M_left = _runtime.select(t36, large_left, small_left) * t39
-    t49 = t48 * t39 / 2.0 - (gap - M_left / 2.0)
-    M_virtual = np.maximum(t49, 0.0)
-    whole_virtual = N_virtual + M_virtual
-    c_bend_virtual = _runtime.select(short_virtual, 1.0, -((N_virtual - M_virtual) / whole_virtual))
-    ahead_1_virtual = L1 + fore * c_bend_virtual
-    t50 = 2.0 * _runtime.select(0.0 <= -t44, 1.0, -1.0)
-    t51 = t50 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t51 / whole_virtual)
-    t52 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t23 * t52
-    t53 = t23 * ahead_1_virtual + r_I * t52
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t53 * t53)
-    ctheta2A = _runtime.select(folded_virtual, t28, out_virtual / norm_virtual)
-    bare_virtual = fore <= t27
+    t26 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t26
+    t27 = c2R_half * c2R_half - s2R_half * s2R_half
+    t28 = L1 + fore
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t28 * t28)
+    t29 = s3R_half * c3R_half
+    t30 = t29 + t29
+    t31 = c3R_half * c3R_half - s3R_half * s3R_half
+    straight_right = L2 * t30 + a3 * t31
+    t32 = 0.0 <= straight_right
+    t33 = _runtime.select(t32, straight_right, -straight_right)
+    large_right = fore + t33
+    t34 = L2 * t31 - a3 * t30
+    small_right = t34 * t34 / large_right
+    t35 = _runtime.select(t32, large_right, small_right)
+    t36 = L1 * 2.0
+    t37 = s2L_half * t7 - c2L_half * t8
+    t38 = L1 * (t17 - t18)
+    t39 = t37 * t16 - t19 * t38
+    t40 = t24 * t37 + t25 * t38
+    gap = t39 * t39 + t40 * t40
+    t41 = s3L_half * c3L_half
+    t42 = t41 + t41
+    t43 = c3L_half * c3L_half - s3L_half * s3L_half
+    straight_left = L2 * t42 + a3 * t43
+    t44 = 0.0 <= straight_left
+    t45 = _runtime.select(t44, straight_left, -straight_left)
+    large_left = fore + t45
+    t46 = L2 * t43 - a3 * t42
+    small_left = t46 * t46 / large_left
+    M_left = _runtime.select(t44, large_left, small_left) * t36
+    t47 = t35 * t36 / 2.0 - (gap - M_left / 2.0)
+    M_virtual = np.maximum(t47, 0.0)
+    N_left = _runtime.select(t44, small_left, large_left) * t36
+    t48 = _runtime.select(t32, small_right, large_right)
+    t49 = gap + N_left / 2.0 + t48 * t36 / 2.0
+    N_virtual = np.maximum(t49, 0.0)
+    whole_virtual = M_virtual + N_virtual
+    t50 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t28, t50)
+    t51 = 2.0 * _runtime.select(0.0 <= -t34, 1.0, -1.0)
+    t52 = t51 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t52 / whole_virtual)
+    t53 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t23 * t53
+    t54 = t23 * ahead_1_virtual + r_I * t53
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
+    ctheta2A = _runtime.select(folded_virtual, t27, out_virtual / norm_virtual)
+    bare_virtual = fore <= t28 * _runtime.VANISHING
     c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t54 = s2R_half * c2R_half
-    t55 = t54 + t54
-    stheta2A = _runtime.select(folded_virtual, t55, -(t53 / norm_virtual))
+    t55 = s2R_half * c2R_half
+    t56 = t55 + t55
+    stheta2A = _runtime.select(folded_virtual, t56, -(t54 / norm_virtual))
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t56 = d * d
+    t57 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
-    t57 = t31 * ctheta23A + t32 * stheta23A
-    tilted = np.sqrt(t56 + t57 * t57)
-    base = np.sqrt(t56 + gap)
-    t58 = t57 / tilted * ((t31 * stheta23A - t32 * ctheta23A) / base)
-    t59 = base - (gs - al)
-    t60 = gs + al
-    t61 = t60 - base
-    wrist = np.sqrt(np.maximum(t59, 0.0)) * np.sqrt(np.maximum(t61, 0.0))
-    t62 = loff + lp * c + wrist
-    t63 = a3 + lp * s * (d / tilted) - t58 * t62
-    t64 = L2 + t62 * (tilted / base)
-    t65 = L1 * ctheta2A + ctheta23A * t63 + stheta23A * t64
-    t66 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t67 = t66 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t68 = t67 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t69 = t68 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t70 = t69 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t71 = t70 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t72 = t71 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t73 = t72 & np.isfinite(theta3L) & np.isfinite(theta)
-    t74 = -(_runtime.FEASIBILITY * (d * t26))
-    t75 = -(_runtime.FEASIBILITY * t60)
-    t76 = (t74 <= t47) & (t74 <= t49) & (t75 <= t61) & (t75 <= t59)
-    t77 = _runtime.poison(np.logical_not(t73) | np.logical_not(t76))
-    t78 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t79 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    s2R3R = t42 * t55 + t41 * t28
-    c2R3R = t42 * t28 - t41 * t55
-    t80 = L2 * (t55 * s2R3R + t28 * c2R3R) + a3 * (t55 * c2R3R - t28 * s2R3R)
-    t81 = s2L_half * c2L_half
-    t82 = t81 + t81
-    t83 = c2L_half * c2L_half - s2L_half * s2L_half
-    s2L3L = t35 * t82 + t34 * t83
-    c2L3L = t35 * t83 - t34 * t82
-    t84 = L2 * (t82 * s2L3L + t83 * c2L3L) + a3 * (t82 * c2L3L - t83 * s2L3L)
+    t58 = t39 * ctheta23A + t40 * stheta23A
+    tilted = np.sqrt(t57 + t58 * t58)
+    base = np.sqrt(t57 + gap)
+    t59 = t58 / tilted * ((t39 * stheta23A - t40 * ctheta23A) / base)
+    t60 = base - (gs - al)
+    t61 = gs + al
+    t62 = t61 - base
+    wrist = np.sqrt(np.maximum(t60, 0.0)) * np.sqrt(np.maximum(t62, 0.0))
+    t63 = loff + lp * c + wrist
+    t64 = a3 + lp * s * (d / tilted) - t59 * t63
+    t65 = L2 + t63 * (tilted / base)
+    t66 = L1 * ctheta2A + ctheta23A * t64 + stheta23A * t65
+    t67 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
+    t68 = t67 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
+    t69 = t68 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
+    t70 = t69 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t71 = t70 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
+    t72 = t71 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
+    t73 = t72 & np.isfinite(theta3R) & np.isfinite(theta2L)
+    t74 = t73 & np.isfinite(theta3L) & np.isfinite(theta)
+    t75 = -(_runtime.FEASIBILITY * (d * t28))
+    t76 = -(_runtime.FEASIBILITY * t61)
+    t77 = (t75 <= t49) & (t75 <= t47) & (t76 <= t62) & (t76 <= t60)
+    t78 = _runtime.poison(np.logical_not(t74) | np.logical_not(t77))
+    t79 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t80 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    s2R3R = t31 * t56 + t30 * t27
+    c2R3R = t31 * t27 - t30 * t56
+    t81 = L2 * (t56 * s2R3R + t27 * c2R3R) + a3 * (t56 * c2R3R - t27 * s2R3R)
+    t82 = s2L_half * c2L_half
+    t83 = t82 + t82
+    t84 = c2L_half * c2L_half - s2L_half * s2L_half
+    s2L3L = t43 * t83 + t42 * t84
+    c2L3L = t43 * t84 - t42 * t83
+    t85 = L2 * (t83 * s2L3L + t84 * c2L3L) + a3 * (t83 * c2L3L - t84 * s2L3L)
     return (
-        t65 + t77,
-        t78 * t64 + t79 * t63 + t77,
-        t80 + t77,
-        t84 + t77,
-        L2 * t78 + a3 * t79 + t77,
-        wrist + t77,
+        t66 + t78,
+        t79 * t65 + t80 * t64 + t78,
+        t81 + t78,
+        t85 + t78,
+        L2 * t79 + a3 * t80 + t78,
+        wrist + t78,
     )
 
 
@@ -1248,515 +1224,665 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t41 = reach - t39
     t42 = t28 & (t30 <= t38) & (t30 <= t40) & (t30 <= t41)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
-    t43 = L1 + fore_arm
-    t44 = d * t43
-    t45 = -(_runtime.FEASIBILITY * t44)
-    t46 = L1 * 2.0
-    t47 = _runtime.VANISHING * t29
-    folded = reach <= t47
+    size = L1 + fore_arm
+    t43 = d * size
+    t44 = _runtime.VANISHING * t29
+    folded = reach <= t44
     s_sight = _runtime.select(folded, 0.0, t31 / reach)
     short = L1 * fore <= _runtime.VANISHING * (t29 * t29)
-    t48 = folded | short
+    t45 = folded | short
     A = np.maximum(t38, 0.0)
     C = np.maximum(t41, 0.0)
-    t49 = A * C
+    t46 = A * C
     S = t29 + reach
     B = np.maximum(t40, 0.0)
-    t50 = S * B
-    at_base = t49 + t50
-    c_base = _runtime.select(t48, 1.0, -((t49 - t50) / at_base))
-    t51 = s_sight * c_base
+    t47 = S * B
+    at_base = t46 + t47
+    c_base = _runtime.select(t45, 1.0, -((t46 - t47) / at_base))
+    t48 = s_sight * c_base
     c_sight = _runtime.select(folded, 1.0, outward / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = _runtime.select(t48, 0.0, area_front_elbow_down_alike / at_base)
-    t52 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t51 + t52
-    t53 = c_sight * c_base
-    t54 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t53 - t54
-    bare = fore <= t47
+    s_base_front_elbow_down_alike = _runtime.select(t45, 0.0, area_front_elbow_down_alike / at_base)
+    t49 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t48 + t49
+    t50 = c_sight * c_base
+    t51 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t50 - t51
+    bare = fore <= t44
     c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    t55 = A * S
-    t56 = C * B
-    at_elbow = t55 + t56
-    c_bend = _runtime.select(short, 1.0, -((t55 - t56) / at_elbow))
-    t57 = c_lag * c_bend
+    t52 = A * S
+    t53 = C * B
+    at_elbow = t52 + t53
+    c_bend = _runtime.select(short, 1.0, -((t52 - t53) / at_elbow))
+    t54 = c_lag * c_bend
     s_lag = _runtime.select(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t58 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t57 + t58
-    t59 = s_lag * c_bend
-    t60 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t59 - t60
+    t55 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t54 + t55
+    t56 = s_lag * c_bend
+    t57 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t56 - t57
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    t61 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t58 = stheta2A * ctheta23A - ctheta2A * stheta23A
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t62 = L2 * t61 - a3 * c_elbow
-    t63 = 0.0 <= -t62
-    t64 = L2 * c_elbow + a3 * t61
-    large = fore_arm + _runtime.select(t63, -t62, t62)
-    small = t64 * t64 / large
-    t65 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t66 = d * t65
-    t67 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t68 = d * t67
-    gap = t66 * t66 + t68 * t68
-    t69 = t46 * _runtime.select(t63, small, large) - gap
-    point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
+    drawn = L1 - L_2W * t58 + a_3W * c_elbow
+    t59 = 2.0 * drawn
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t70 = 2.0 * t66 * point_11 + 2.0 * t68 * point_21
-    t71 = t69 + t70
-    t72 = gap + t46 * _runtime.select(t63, large, small)
-    t73 = t72 - t70
-    t74 = t69 - t70
-    t75 = t42 & (t45 <= t71) & (t45 <= t73) & (t45 <= t74)
-    t76 = t70 + t72
-    unreachable = np.logical_not(t75 & (t45 <= t76))
-    t77 = _runtime.poison(invalid | unreachable)
-    t78 = t16 + t77
-    t79 = t68 - point_21
-    t80 = t66 - point_11
-    t81 = _runtime.VANISHING * t43
-    folded_right = np.sqrt(t79 * t79 + t80 * t80) <= t81
-    t82 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * (t43 * t43)
-    t83 = 2.0 * _runtime.select(0.0 <= -t64, 1.0, -1.0)
-    t84 = _runtime.VANISHING * (_runtime.VANISHING * (t44 * 16.0))
-    N_right = np.maximum(t71, t84)
+    t60 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
+    t61 = d * t60
+    h_right_0 = point_21 - t61
+    point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
+    t62 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t63 = d * t62
+    r_right_0 = point_11 - t63
+    slope_right = t59 * (ctheta2A * h_right_0 - stheta2A * r_right_0)
+    t64 = size / 100000.0
+    t65 = t64 + np.abs(L_2W * c_elbow + a_3W * t58)
+    t66 = _runtime.FEASIBILITY * (t43 + size * np.abs(slope_right) / t65)
+    t67 = L1 * 2.0
+    t68 = L2 * t58 - a3 * c_elbow
+    t69 = 0.0 <= -t68
+    t70 = L2 * c_elbow + a3 * t58
+    large = fore_arm + _runtime.select(t69, -t68, t68)
+    small = t70 * t70 / large
+    gap = t63 * t63 + t61 * t61
+    t71 = t67 * _runtime.select(t69, small, large) - gap
+    t72 = 2.0 * point_11 * t63 + 2.0 * point_21 * t61
+    N_right_0 = t71 + t72
+    h_left_0 = point_21 + t61
+    r_left_0 = point_11 + t63
+    slope_left = t59 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    t73 = _runtime.FEASIBILITY * (t43 + size * np.abs(slope_left) / t65)
+    N_left_0 = t71 - t72
+    t74 = t42 & (-t66 <= N_right_0) & (-t73 <= N_left_0)
+    t75 = -(_runtime.FEASIBILITY * t43)
+    t76 = slope_left * (N_left_0 - np.maximum(N_left_0, 0.0))
+    t77 = size * size
+    t78 = t77 * t77 / 10000000000.0
+    t79 = slope_right * (N_right_0 - np.maximum(N_right_0, 0.0))
+    t80 = t76 / (t78 + slope_left * slope_left) + t79 / (t78 + slope_right * slope_right)
+    t81 = t72 - slope_right * t80
+    t82 = t71 + t81
+    swing = drawn * t80
+    t83 = ctheta2A * swing
+    h_right = h_right_0 + t83 - r_right_0 * t80
+    t84 = stheta2A * swing
+    r_right = r_right_0 + h_right_0 * t80 - t84
+    t85 = h_right * h_right + r_right * r_right
+    t86 = gap * gap
+    t87 = L1 - fore_arm
+    t88 = t87 * t87
+    t89 = gap + t67 * _runtime.select(t69, large, small)
+    t90 = _runtime.select(t77 * t85 < t86, t88 - t85, t81 - t89)
+    t91 = t72 + slope_left * t80
+    t92 = t71 - t91
+    t93 = t74 & (t75 <= t82) & (t75 <= -t90) & (t75 <= t92)
+    h_left = h_left_0 + t83 - r_left_0 * t80
+    r_left = r_left_0 - t84 + h_left_0 * t80
+    t94 = h_left * h_left + r_left * r_left
+    t95 = _runtime.select(t77 * t94 < t86, t94 - t88, t89 + t91)
+    unreachable = np.logical_not(t93 & (t75 <= t95))
+    t96 = _runtime.poison(invalid | unreachable)
+    t97 = t16 + t96
+    t98 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.sqrt(t85) <= t98
+    t99 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t77
+    t100 = 2.0 * fore_arm
+    t101 = _runtime.VANISHING * (_runtime.VANISHING * (t43 * 16.0))
+    M_right = np.maximum(-t90, t101)
+    N_right = np.maximum(t82, t101)
+    whole_right = M_right + N_right
+    ahead_1_right = _runtime.select(short_right, size, t87 + t100 * M_right / whole_right)
+    t102 = 2.0 * _runtime.select(0.0 <= -t70, 1.0, -1.0)
     rN_right = np.sqrt(N_right)
-    M_right = np.maximum(t73, t84)
     rM_right = np.sqrt(M_right)
-    whole_right = N_right + M_right
-    s_bend_right = _runtime.select(short_right, 0.0, t83 * rN_right * rM_right / whole_right)
-    t85 = fore_arm * s_bend_right
-    c_bend_right = _runtime.select(short_right, 1.0, -((N_right - M_right) / whole_right))
-    ahead_1_right = L1 + fore_arm * c_bend_right
-    t86 = np.arctan2(t80 * t85 - t79 * ahead_1_right, -(t80 * ahead_1_right + t79 * t85))
-    t87 = _runtime.wrap_cut(_runtime.select(folded_right, t82, t86))
-    t88 = t87 + t77
-    bare_right = fore_arm <= t81
+    s_bend_right = _runtime.select(short_right, 0.0, t102 * rN_right * rM_right / whole_right)
+    t103 = fore_arm * s_bend_right
+    t104 = np.arctan2(h_right * ahead_1_right - r_right * t103, r_right * ahead_1_right + h_right * t103)
+    t105 = _runtime.wrap_cut(_runtime.select(folded_right, t99, t104))
+    t106 = t105 + t96
+    bare_right = fore_arm <= _runtime.VANISHING * size
     s_lag_right = _runtime.select(bare_right, 0.0, L2 / fore_arm)
     c_lag_right = _runtime.select(bare_right, 1.0, a3 / fore_arm)
-    t89 = np.arctan2(s_lag_right, c_lag_right)
-    t90 = _runtime.select(short_right, 0.0, t83 * np.arctan2(rN_right, rM_right))
-    t91 = _runtime.wrap_cut(_runtime.wrap(t89 + t90)) + t77
-    h_left = t68 + point_21
-    r_left = t66 + point_11
-    folded_left = np.sqrt(h_left * h_left + r_left * r_left) <= t81
-    N_left = np.maximum(t74, 0.0)
-    M_left = np.maximum(t76, 0.0)
-    whole_left = N_left + M_left
-    c_bend_left = _runtime.select(short_right, 1.0, -((N_left - M_left) / whole_left))
-    ahead_1_left = L1 + fore_arm * c_bend_left
-    t92 = h_left * ahead_1_left
+    t107 = np.arctan2(s_lag_right, c_lag_right)
+    t108 = _runtime.select(short_right, 0.0, t102 * np.arctan2(rN_right, rM_right))
+    t109 = _runtime.wrap_cut(_runtime.wrap(t107 + t108))
+    t110 = t109 + t96
+    folded_left = np.sqrt(t94) <= t98
+    M_left = np.maximum(t95, 0.0)
+    N_left = np.maximum(t92, 0.0)
+    whole_left = M_left + N_left
+    ahead_1_left = _runtime.select(short_right, size, t87 + t100 * M_left / whole_left)
+    t111 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t83 * rN_left * rM_left / whole_left)
-    t93 = fore_arm * s_bend_left
-    t94 = r_left * t93
-    t95 = r_left * ahead_1_left
-    t96 = h_left * t93
-    t97 = _runtime.select(folded_left, t82, np.arctan2(t92 - t94, t95 + t96))
-    t98 = _runtime.select(short_right, 0.0, t83 * np.arctan2(rN_left, rM_left))
-    t99 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    t100 = t99 + t77
-    t101 = _runtime.select(folded_left, t82, np.arctan2(t92 + t94, t95 - t96))
-    stheta2A_front_elbow_down_alike = t51 - t52
-    ctheta2A_front_elbow_down_alike = t53 + t54
-    c_relative_front_elbow_down_alike = t57 - t58
-    t102 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t59 + t60
-    t103 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t102 - t103
-    t104 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t105 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t106 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t105 + t106
-    t107 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t108 = t104 - t107
-    t109 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t110 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t109 + t110
-    t111 = L2 * t108 - a3 * c_elbow_front_elbow_down_alike
-    t112 = 0.0 <= -t111
-    t113 = L2 * c_elbow_front_elbow_down_alike + a3 * t108
-    large_front_elbow_down_alike = fore_arm + _runtime.select(t112, -t111, t111)
-    small_front_elbow_down_alike = t113 * t113 / large_front_elbow_down_alike
-    t114 = _runtime.select(t112, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    t115 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t116 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t117 = d * (t115 - t116)
-    t118 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t119 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t120 = d * (t118 + t119)
-    gap_front_elbow_down_alike = t117 * t117 + t120 * t120
-    t121 = t46 * t114 - gap_front_elbow_down_alike
-    t122 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t122 + a3 * ctheta23A_front_elbow_down_alike
-    t123 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t123 + a3 * stheta23A_front_elbow_down_alike
-    t124 = 2.0 * t117 * point_11_front_elbow_down_alike + 2.0 * t120 * point_21_front_elbow_down_alike
-    t125 = t121 + t124
-    t126 = _runtime.select(t112, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    t127 = gap_front_elbow_down_alike + t46 * t126
-    t128 = t127 - t124
-    t129 = t121 - t124
-    t130 = t42 & (t45 <= t125) & (t45 <= t128) & (t45 <= t129)
-    t131 = t124 + t127
-    unreachable_2 = np.logical_not(t130 & (t45 <= t131))
-    t132 = _runtime.poison(invalid | unreachable_2)
-    t133 = t16 + t132
-    t134 = t120 - point_21_front_elbow_down_alike
-    t135 = t117 - point_11_front_elbow_down_alike
-    folded_right_front_elbow_down_alike = np.sqrt(t134 * t134 + t135 * t135) <= t81
-    t136 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    t137 = 2.0 * _runtime.select(0.0 <= -t113, 1.0, -1.0)
-    N_right_front_elbow_down_alike = np.maximum(t125, t84)
+    s_bend_left = _runtime.select(short_right, 0.0, t102 * rN_left * rM_left / whole_left)
+    t112 = fore_arm * s_bend_left
+    t113 = r_left * t112
+    t114 = r_left * ahead_1_left
+    t115 = h_left * t112
+    t116 = _runtime.select(folded_left, t99, np.arctan2(t111 - t113, t114 + t115))
+    t117 = _runtime.select(short_right, 0.0, t102 * np.arctan2(rN_left, rM_left))
+    t118 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t119 = t118 + t96
+    t120 = _runtime.select(folded_left, t99, np.arctan2(t111 + t113, t114 - t115))
+    stheta2A_front_elbow_down_alike = t48 - t49
+    ctheta2A_front_elbow_down_alike = t50 + t51
+    c_relative_front_elbow_down_alike = t54 - t55
+    t121 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t56 + t57
+    t122 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t121 - t122
+    t123 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t124 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t125 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t124 + t125
+    t126 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t127 = t123 - t126
+    t128 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t129 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t128 + t129
+    drawn_front_elbow_down_alike = L1 - L_2W * t127 + a_3W * c_elbow_front_elbow_down_alike
+    t130 = 2.0 * drawn_front_elbow_down_alike
+    t131 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t131 + a3 * stheta23A_front_elbow_down_alike
+    t132 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t133 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t134 = d * (t132 + t133)
+    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t134
+    t135 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t136 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t136 + a3 * ctheta23A_front_elbow_down_alike
+    t137 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t138 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t139 = d * (t137 - t138)
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t139
+    t140 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    slope_right_front_elbow_down_alike = t130 * (t135 - t140)
+    t141 = size * np.abs(slope_right_front_elbow_down_alike)
+    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t127
+    t142 = t64 + np.abs(tilt_front_elbow_down_alike)
+    t143 = -(_runtime.FEASIBILITY * (t43 + t141 / t142))
+    t144 = L2 * t127 - a3 * c_elbow_front_elbow_down_alike
+    t145 = 0.0 <= -t144
+    t146 = L2 * c_elbow_front_elbow_down_alike + a3 * t127
+    large_front_elbow_down_alike = fore_arm + _runtime.select(t145, -t144, t144)
+    small_front_elbow_down_alike = t146 * t146 / large_front_elbow_down_alike
+    t147 = _runtime.select(t145, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    gap_front_elbow_down_alike = t139 * t139 + t134 * t134
+    t148 = t67 * t147 - gap_front_elbow_down_alike
+    t149 = 2.0 * point_11_front_elbow_down_alike * t139 + 2.0 * point_21_front_elbow_down_alike * t134
+    N_right_0_front_elbow_down_alike = t148 + t149
+    t150 = t42 & (t143 <= N_right_0_front_elbow_down_alike)
+    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t134
+    t151 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t139
+    t152 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    slope_left_front_elbow_down_alike = t130 * (t151 - t152)
+    t153 = size * np.abs(slope_left_front_elbow_down_alike)
+    t154 = -(_runtime.FEASIBILITY * (t43 + t153 / t142))
+    N_left_0_front_elbow_down_alike = t148 - t149
+    t155 = t150 & (t154 <= N_left_0_front_elbow_down_alike)
+    slack_left_front_elbow_down_alike = np.maximum(N_left_0_front_elbow_down_alike, 0.0)
+    t156 = N_left_0_front_elbow_down_alike - slack_left_front_elbow_down_alike
+    t157 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t158 = slope_left_front_elbow_down_alike * t156 / (t78 + t157)
+    slack_right_front_elbow_down_alike = np.maximum(N_right_0_front_elbow_down_alike, 0.0)
+    t159 = N_right_0_front_elbow_down_alike - slack_right_front_elbow_down_alike
+    t160 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
+    t161 = slope_right_front_elbow_down_alike * t159 / (t78 + t160)
+    t162 = t158 + t161
+    t163 = t149 - slope_right_front_elbow_down_alike * t162
+    t164 = t148 + t163
+    swing_front_elbow_down_alike = drawn_front_elbow_down_alike * t162
+    t165 = ctheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
+    h_right_front_elbow_down_alike = h_right_0_front_elbow_down_alike + t165 - r_right_0_front_elbow_down_alike * t162
+    t166 = h_right_front_elbow_down_alike * h_right_front_elbow_down_alike
+    t167 = r_right_0_front_elbow_down_alike + h_right_0_front_elbow_down_alike * t162
+    t168 = stheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
+    r_right_front_elbow_down_alike = t167 - t168
+    t169 = r_right_front_elbow_down_alike * r_right_front_elbow_down_alike
+    t170 = t166 + t169
+    t171 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t172 = _runtime.select(t145, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    t173 = gap_front_elbow_down_alike + t67 * t172
+    t174 = _runtime.select(t77 * t170 < t171, t88 - t170, t163 - t173)
+    t175 = t149 + slope_left_front_elbow_down_alike * t162
+    t176 = t148 - t175
+    t177 = t155 & (t75 <= t164) & (t75 <= -t174) & (t75 <= t176)
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike + t165 - r_left_0_front_elbow_down_alike * t162
+    t178 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t168 + h_left_0_front_elbow_down_alike * t162
+    t179 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t180 = t178 + t179
+    t181 = _runtime.select(t77 * t180 < t171, t180 - t88, t173 + t175)
+    unreachable_2 = np.logical_not(t177 & (t75 <= t181))
+    t182 = _runtime.poison(invalid | unreachable_2)
+    t183 = t16 + t182
+    folded_right_front_elbow_down_alike = np.sqrt(t170) <= t98
+    t184 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    M_right_front_elbow_down_alike = np.maximum(-t174, t101)
+    N_right_front_elbow_down_alike = np.maximum(t164, t101)
+    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
+    t185 = t100 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t87 + t185)
+    t186 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t187 = 2.0 * _runtime.select(0.0 <= -t146, 1.0, -1.0)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(t128, t84)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t138 = t137 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    whole_right_front_elbow_down_alike = N_right_front_elbow_down_alike + M_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t138 / whole_right_front_elbow_down_alike)
-    t139 = fore_arm * s_bend_right_front_elbow_down_alike
-    t140 = N_right_front_elbow_down_alike - M_right_front_elbow_down_alike
-    c_bend_right_front_elbow_down_alike = _runtime.select(short_right, 1.0, -(t140 / whole_right_front_elbow_down_alike))
-    t141 = fore_arm * c_bend_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = L1 + t141
-    up_right_front_elbow_down_alike = t135 * t139 - t134 * ahead_1_right_front_elbow_down_alike
-    t142 = t135 * ahead_1_right_front_elbow_down_alike + t134 * t139
-    t143 = np.arctan2(up_right_front_elbow_down_alike, -t142)
-    t144 = _runtime.select(folded_right_front_elbow_down_alike, t136, t143)
-    t145 = _runtime.wrap_cut(t144) + t132
-    t146 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t147 = _runtime.select(short_right, 0.0, t137 * t146)
-    t148 = _runtime.wrap_cut(_runtime.wrap(t89 + t147)) + t132
-    h_left_front_elbow_down_alike = t120 + point_21_front_elbow_down_alike
-    t149 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = t117 + point_11_front_elbow_down_alike
-    t150 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    folded_left_front_elbow_down_alike = np.sqrt(t149 + t150) <= t81
-    N_left_front_elbow_down_alike = np.maximum(t129, 0.0)
-    M_left_front_elbow_down_alike = np.maximum(t131, 0.0)
-    t151 = N_left_front_elbow_down_alike - M_left_front_elbow_down_alike
-    whole_left_front_elbow_down_alike = N_left_front_elbow_down_alike + M_left_front_elbow_down_alike
-    c_bend_left_front_elbow_down_alike = _runtime.select(short_right, 1.0, -(t151 / whole_left_front_elbow_down_alike))
-    t152 = fore_arm * c_bend_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = L1 + t152
-    t153 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t188 = t187 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t188 / whole_right_front_elbow_down_alike)
+    t189 = fore_arm * s_bend_right_front_elbow_down_alike
+    t190 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t191 = np.arctan2(t186 - r_right_front_elbow_down_alike * t189, t190 + h_right_front_elbow_down_alike * t189)
+    t192 = _runtime.select(folded_right_front_elbow_down_alike, t184, t191)
+    t193 = _runtime.wrap_cut(t192) + t182
+    t194 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t195 = _runtime.select(short_right, 0.0, t187 * t194)
+    t196 = _runtime.wrap_cut(_runtime.wrap(t107 + t195))
+    t197 = t196 + t182
+    folded_left_front_elbow_down_alike = np.sqrt(t180) <= t98
+    M_left_front_elbow_down_alike = np.maximum(t181, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t176, 0.0)
+    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
+    t198 = t100 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t87 + t198)
+    t199 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t154 = t137 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t154 / whole_left_front_elbow_down_alike)
-    t155 = fore_arm * s_bend_left_front_elbow_down_alike
-    t156 = r_left_front_elbow_down_alike * t155
-    t157 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t158 = h_left_front_elbow_down_alike * t155
-    t159 = _runtime.select(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 - t156, t157 + t158))
-    t160 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t161 = _runtime.select(short_right, 0.0, t137 * t160)
-    t162 = t99 + t132
-    t163 = _runtime.select(folded_left_front_elbow_down_alike, t136, np.arctan2(t153 + t156, t157 - t158))
-    t164 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    t200 = t187 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t200 / whole_left_front_elbow_down_alike)
+    t201 = fore_arm * s_bend_left_front_elbow_down_alike
+    t202 = r_left_front_elbow_down_alike * t201
+    t203 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t204 = h_left_front_elbow_down_alike * t201
+    t205 = _runtime.select(folded_left_front_elbow_down_alike, t184, np.arctan2(t199 - t202, t203 + t204))
+    t206 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t207 = _runtime.select(short_right, 0.0, t187 * t206)
+    t208 = t118 + t182
+    t209 = _runtime.select(folded_left_front_elbow_down_alike, t184, np.arctan2(t199 + t202, t203 - t204))
+    t210 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
     c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t34 + t35) / h))
     s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t36 - t37) / h)
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
-    t165 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t32 + t165)
-    t166 = t29 - reach_rear_elbow_up_alike
-    t167 = reach_rear_elbow_up_alike + t39
-    t168 = reach_rear_elbow_up_alike - t39
-    t169 = t28 & (t30 <= t166) & (t30 <= t167) & (t30 <= t168)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t47
+    t211 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t32 + t211)
+    t212 = t29 - reach_rear_elbow_up_alike
+    t213 = reach_rear_elbow_up_alike + t39
+    t214 = reach_rear_elbow_up_alike - t39
+    t215 = t28 & (t30 <= t212) & (t30 <= t213) & (t30 <= t214)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t44
     s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t31 / reach_rear_elbow_up_alike)
-    t170 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t166, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t168, 0.0)
-    t171 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    t216 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t212, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t214, 0.0)
+    t217 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
     S_rear_elbow_up_alike = t29 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t167, 0.0)
-    t172 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t171 + t172
-    t173 = -((t171 - t172) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = _runtime.select(t170, 1.0, t173)
-    t174 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t175 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t175)
-    t176 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t176 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t177 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = _runtime.select(t170, 0.0, t177)
-    t178 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t174 - t178
-    t179 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t180 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t179 + t180
-    t181 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t182 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t181 + t182
-    t183 = -((t181 - t182) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t183)
-    t184 = c_lag * c_bend_rear_elbow_up_alike
-    t185 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t185)
-    t186 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t184 - t186
-    t187 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t188 = s_lag * c_bend_rear_elbow_up_alike
-    t189 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t188 + t189
-    t190 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t187 - t190
-    t191 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t192 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t193 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t192 + t193
-    t194 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t195 = t191 - t194
-    t196 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t197 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t196 + t197
-    t198 = L2 * t195 - a3 * c_elbow_rear_elbow_up_alike
-    t199 = 0.0 <= -t198
-    t200 = L2 * c_elbow_rear_elbow_up_alike + a3 * t195
-    large_rear_elbow_up_alike = fore_arm + _runtime.select(t199, -t198, t198)
-    small_rear_elbow_up_alike = t200 * t200 / large_rear_elbow_up_alike
-    t201 = _runtime.select(t199, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    t202 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t203 = t202 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t204 = d * t203
-    t205 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t206 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t205
-    t207 = d * t206
-    gap_rear_elbow_up_alike = t204 * t204 + t207 * t207
-    t208 = t46 * t201 - gap_rear_elbow_up_alike
-    t209 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t209 + a3 * ctheta23A_rear_elbow_up_alike
-    t210 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t210 + a3 * stheta23A_rear_elbow_up_alike
-    t211 = 2.0 * t204 * point_11_rear_elbow_up_alike + 2.0 * t207 * point_21_rear_elbow_up_alike
-    t212 = t208 + t211
-    t213 = _runtime.select(t199, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    t214 = gap_rear_elbow_up_alike + t46 * t213
-    t215 = t214 - t211
-    t216 = t208 - t211
-    t217 = t169 & (t45 <= t212) & (t45 <= t215) & (t45 <= t216)
-    t218 = t211 + t214
-    unreachable_3 = np.logical_not(t217 & (t45 <= t218))
-    t219 = _runtime.poison(invalid | unreachable_3)
-    t220 = t164 + t219
-    t221 = t207 - point_21_rear_elbow_up_alike
-    t222 = t204 - point_11_rear_elbow_up_alike
-    folded_right_rear_elbow_up_alike = np.sqrt(t221 * t221 + t222 * t222) <= t81
-    t223 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    t224 = 2.0 * _runtime.select(0.0 <= -t200, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t212, t84)
+    B_rear_elbow_up_alike = np.maximum(t213, 0.0)
+    t218 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t217 + t218
+    t219 = -((t217 - t218) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = _runtime.select(t216, 1.0, t219)
+    t220 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t221 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t221)
+    t222 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t222 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t223 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = _runtime.select(t216, 0.0, t223)
+    t224 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t220 - t224
+    t225 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t226 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t225 + t226
+    t227 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t228 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t227 + t228
+    t229 = -((t227 - t228) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t229)
+    t230 = c_lag * c_bend_rear_elbow_up_alike
+    t231 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t231)
+    t232 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t230 - t232
+    t233 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t234 = s_lag * c_bend_rear_elbow_up_alike
+    t235 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t234 + t235
+    t236 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t233 - t236
+    t237 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t238 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t239 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t238 + t239
+    t240 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t241 = t237 - t240
+    t242 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t243 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t242 + t243
+    drawn_rear_elbow_up_alike = L1 - L_2W * t241 + a_3W * c_elbow_rear_elbow_up_alike
+    t244 = 2.0 * drawn_rear_elbow_up_alike
+    t245 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t245 + a3 * stheta23A_rear_elbow_up_alike
+    t246 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t247 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t246
+    t248 = d * t247
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t248
+    t249 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t250 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t250 + a3 * ctheta23A_rear_elbow_up_alike
+    t251 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t252 = t251 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t253 = d * t252
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t253
+    t254 = stheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    slope_right_rear_elbow_up_alike = t244 * (t249 - t254)
+    t255 = size * np.abs(slope_right_rear_elbow_up_alike)
+    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t241
+    t256 = t64 + np.abs(tilt_rear_elbow_up_alike)
+    t257 = -(_runtime.FEASIBILITY * (t43 + t255 / t256))
+    t258 = L2 * t241 - a3 * c_elbow_rear_elbow_up_alike
+    t259 = 0.0 <= -t258
+    t260 = L2 * c_elbow_rear_elbow_up_alike + a3 * t241
+    large_rear_elbow_up_alike = fore_arm + _runtime.select(t259, -t258, t258)
+    small_rear_elbow_up_alike = t260 * t260 / large_rear_elbow_up_alike
+    t261 = _runtime.select(t259, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    gap_rear_elbow_up_alike = t253 * t253 + t248 * t248
+    t262 = t67 * t261 - gap_rear_elbow_up_alike
+    t263 = 2.0 * point_11_rear_elbow_up_alike * t253 + 2.0 * point_21_rear_elbow_up_alike * t248
+    N_right_0_rear_elbow_up_alike = t262 + t263
+    t264 = t215 & (t257 <= N_right_0_rear_elbow_up_alike)
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t248
+    t265 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t253
+    t266 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t244 * (t265 - t266)
+    t267 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t268 = -(_runtime.FEASIBILITY * (t43 + t267 / t256))
+    N_left_0_rear_elbow_up_alike = t262 - t263
+    t269 = t264 & (t268 <= N_left_0_rear_elbow_up_alike)
+    slack_left_rear_elbow_up_alike = np.maximum(N_left_0_rear_elbow_up_alike, 0.0)
+    t270 = N_left_0_rear_elbow_up_alike - slack_left_rear_elbow_up_alike
+    t271 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t272 = slope_left_rear_elbow_up_alike * t270 / (t78 + t271)
+    slack_right_rear_elbow_up_alike = np.maximum(N_right_0_rear_elbow_up_alike, 0.0)
+    t273 = N_right_0_rear_elbow_up_alike - slack_right_rear_elbow_up_alike
+    t274 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
+    t275 = slope_right_rear_elbow_up_alike * t273 / (t78 + t274)
+    t276 = t272 + t275
+    t277 = t263 - slope_right_rear_elbow_up_alike * t276
+    t278 = t262 + t277
+    swing_rear_elbow_up_alike = drawn_rear_elbow_up_alike * t276
+    t279 = ctheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
+    h_right_rear_elbow_up_alike = h_right_0_rear_elbow_up_alike + t279 - r_right_0_rear_elbow_up_alike * t276
+    t280 = h_right_rear_elbow_up_alike * h_right_rear_elbow_up_alike
+    t281 = r_right_0_rear_elbow_up_alike + h_right_0_rear_elbow_up_alike * t276
+    t282 = stheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
+    r_right_rear_elbow_up_alike = t281 - t282
+    t283 = r_right_rear_elbow_up_alike * r_right_rear_elbow_up_alike
+    t284 = t280 + t283
+    t285 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t286 = _runtime.select(t259, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    t287 = gap_rear_elbow_up_alike + t67 * t286
+    t288 = _runtime.select(t77 * t284 < t285, t88 - t284, t277 - t287)
+    t289 = t263 + slope_left_rear_elbow_up_alike * t276
+    t290 = t262 - t289
+    t291 = t269 & (t75 <= t278) & (t75 <= -t288) & (t75 <= t290)
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike + t279 - r_left_0_rear_elbow_up_alike * t276
+    t292 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t282 + h_left_0_rear_elbow_up_alike * t276
+    t293 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t294 = t292 + t293
+    t295 = _runtime.select(t77 * t294 < t285, t294 - t88, t287 + t289)
+    unreachable_3 = np.logical_not(t291 & (t75 <= t295))
+    t296 = _runtime.poison(invalid | unreachable_3)
+    t297 = t210 + t296
+    folded_right_rear_elbow_up_alike = np.sqrt(t284) <= t98
+    t298 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    M_right_rear_elbow_up_alike = np.maximum(-t288, t101)
+    N_right_rear_elbow_up_alike = np.maximum(t278, t101)
+    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
+    t299 = t100 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t87 + t299)
+    t300 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t301 = 2.0 * _runtime.select(0.0 <= -t260, 1.0, -1.0)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(t215, t84)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t225 = t224 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    whole_right_rear_elbow_up_alike = N_right_rear_elbow_up_alike + M_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t225 / whole_right_rear_elbow_up_alike)
-    t226 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t227 = N_right_rear_elbow_up_alike - M_right_rear_elbow_up_alike
-    c_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 1.0, -(t227 / whole_right_rear_elbow_up_alike))
-    ahead_1_right_rear_elbow_up_alike = L1 + fore_arm * c_bend_right_rear_elbow_up_alike
-    up_right_rear_elbow_up_alike = t222 * t226 - t221 * ahead_1_right_rear_elbow_up_alike
-    t228 = t222 * ahead_1_right_rear_elbow_up_alike + t221 * t226
-    t229 = np.arctan2(up_right_rear_elbow_up_alike, -t228)
-    t230 = _runtime.select(folded_right_rear_elbow_up_alike, t223, t229)
-    t231 = _runtime.wrap_cut(t230) + t219
-    t232 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t233 = _runtime.select(short_right, 0.0, t224 * t232)
-    t234 = _runtime.wrap_cut(_runtime.wrap(t89 + t233)) + t219
-    h_left_rear_elbow_up_alike = t207 + point_21_rear_elbow_up_alike
-    t235 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = t204 + point_11_rear_elbow_up_alike
-    t236 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    folded_left_rear_elbow_up_alike = np.sqrt(t235 + t236) <= t81
-    N_left_rear_elbow_up_alike = np.maximum(t216, 0.0)
-    M_left_rear_elbow_up_alike = np.maximum(t218, 0.0)
-    t237 = N_left_rear_elbow_up_alike - M_left_rear_elbow_up_alike
-    whole_left_rear_elbow_up_alike = N_left_rear_elbow_up_alike + M_left_rear_elbow_up_alike
-    c_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 1.0, -(t237 / whole_left_rear_elbow_up_alike))
-    ahead_1_left_rear_elbow_up_alike = L1 + fore_arm * c_bend_left_rear_elbow_up_alike
-    t238 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t302 = t301 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t302 / whole_right_rear_elbow_up_alike)
+    t303 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t304 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t305 = np.arctan2(t300 - r_right_rear_elbow_up_alike * t303, t304 + h_right_rear_elbow_up_alike * t303)
+    t306 = _runtime.select(folded_right_rear_elbow_up_alike, t298, t305)
+    t307 = _runtime.wrap_cut(t306) + t296
+    t308 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t309 = _runtime.select(short_right, 0.0, t301 * t308)
+    t310 = _runtime.wrap_cut(_runtime.wrap(t107 + t309))
+    t311 = t310 + t296
+    folded_left_rear_elbow_up_alike = np.sqrt(t294) <= t98
+    M_left_rear_elbow_up_alike = np.maximum(t295, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t290, 0.0)
+    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
+    t312 = t100 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t87 + t312)
+    t313 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t239 = t224 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t239 / whole_left_rear_elbow_up_alike)
-    t240 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t241 = r_left_rear_elbow_up_alike * t240
-    t242 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t243 = h_left_rear_elbow_up_alike * t240
-    t244 = _runtime.select(folded_left_rear_elbow_up_alike, t223, np.arctan2(t238 - t241, t242 + t243))
-    t245 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t246 = _runtime.select(short_right, 0.0, t224 * t245)
-    t247 = t99 + t219
-    t248 = _runtime.select(folded_left_rear_elbow_up_alike, t223, np.arctan2(t238 + t241, t242 - t243))
-    stheta2A_rear_elbow_down_alike = t174 + t178
-    ctheta2A_rear_elbow_down_alike = t179 - t180
-    c_relative_rear_elbow_down_alike = t184 + t186
-    t249 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t188 - t189
-    t250 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t249 - t250
-    t251 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t252 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t253 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t252 + t253
-    t254 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t255 = t251 - t254
-    t256 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t257 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t256 + t257
-    t258 = L2 * t255 - a3 * c_elbow_rear_elbow_down_alike
-    t259 = 0.0 <= -t258
-    t260 = L2 * c_elbow_rear_elbow_down_alike + a3 * t255
-    large_rear_elbow_down_alike = fore_arm + _runtime.select(t259, -t258, t258)
-    small_rear_elbow_down_alike = t260 * t260 / large_rear_elbow_down_alike
-    t261 = _runtime.select(t259, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    t262 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t263 = t262 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t264 = d * t263
-    t265 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t266 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t265
-    t267 = d * t266
-    gap_rear_elbow_down_alike = t264 * t264 + t267 * t267
-    t268 = t46 * t261 - gap_rear_elbow_down_alike
-    t269 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t269 + a3 * ctheta23A_rear_elbow_down_alike
-    t270 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t270 + a3 * stheta23A_rear_elbow_down_alike
-    t271 = 2.0 * t264 * point_11_rear_elbow_down_alike + 2.0 * t267 * point_21_rear_elbow_down_alike
-    t272 = t268 + t271
-    t273 = _runtime.select(t259, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    t274 = gap_rear_elbow_down_alike + t46 * t273
-    t275 = t274 - t271
-    t276 = t268 - t271
-    t277 = t169 & (t45 <= t272) & (t45 <= t275) & (t45 <= t276)
-    t278 = t271 + t274
-    unreachable_4 = np.logical_not(t277 & (t45 <= t278))
-    t279 = _runtime.poison(invalid | unreachable_4)
-    t280 = t164 + t279
-    t281 = t267 - point_21_rear_elbow_down_alike
-    t282 = t264 - point_11_rear_elbow_down_alike
-    folded_right_rear_elbow_down_alike = np.sqrt(t281 * t281 + t282 * t282) <= t81
-    t283 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    t284 = 2.0 * _runtime.select(0.0 <= -t260, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t272, t84)
+    t314 = t301 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t314 / whole_left_rear_elbow_up_alike)
+    t315 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t316 = r_left_rear_elbow_up_alike * t315
+    t317 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t318 = h_left_rear_elbow_up_alike * t315
+    t319 = _runtime.select(folded_left_rear_elbow_up_alike, t298, np.arctan2(t313 - t316, t317 + t318))
+    t320 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t321 = _runtime.select(short_right, 0.0, t301 * t320)
+    t322 = t118 + t296
+    t323 = _runtime.select(folded_left_rear_elbow_up_alike, t298, np.arctan2(t313 + t316, t317 - t318))
+    stheta2A_rear_elbow_down_alike = t220 + t224
+    ctheta2A_rear_elbow_down_alike = t225 - t226
+    c_relative_rear_elbow_down_alike = t230 + t232
+    t324 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t234 - t235
+    t325 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t324 - t325
+    t326 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t327 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    t328 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t327 + t328
+    t329 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t330 = t326 - t329
+    t331 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t332 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t331 + t332
+    drawn_rear_elbow_down_alike = L1 - L_2W * t330 + a_3W * c_elbow_rear_elbow_down_alike
+    t333 = 2.0 * drawn_rear_elbow_down_alike
+    t334 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t334 + a3 * stheta23A_rear_elbow_down_alike
+    t335 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t336 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t335
+    t337 = d * t336
+    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t337
+    t338 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t339 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t339 + a3 * ctheta23A_rear_elbow_down_alike
+    t340 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t341 = t340 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t342 = d * t341
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t342
+    t343 = stheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    slope_right_rear_elbow_down_alike = t333 * (t338 - t343)
+    t344 = size * np.abs(slope_right_rear_elbow_down_alike)
+    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t330
+    t345 = t64 + np.abs(tilt_rear_elbow_down_alike)
+    t346 = -(_runtime.FEASIBILITY * (t43 + t344 / t345))
+    t347 = L2 * t330 - a3 * c_elbow_rear_elbow_down_alike
+    t348 = 0.0 <= -t347
+    t349 = L2 * c_elbow_rear_elbow_down_alike + a3 * t330
+    large_rear_elbow_down_alike = fore_arm + _runtime.select(t348, -t347, t347)
+    small_rear_elbow_down_alike = t349 * t349 / large_rear_elbow_down_alike
+    t350 = _runtime.select(t348, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    gap_rear_elbow_down_alike = t342 * t342 + t337 * t337
+    t351 = t67 * t350 - gap_rear_elbow_down_alike
+    t352 = 2.0 * point_11_rear_elbow_down_alike * t342 + 2.0 * point_21_rear_elbow_down_alike * t337
+    N_right_0_rear_elbow_down_alike = t351 + t352
+    t353 = t215 & (t346 <= N_right_0_rear_elbow_down_alike)
+    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t337
+    t354 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t342
+    t355 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t333 * (t354 - t355)
+    t356 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t357 = -(_runtime.FEASIBILITY * (t43 + t356 / t345))
+    N_left_0_rear_elbow_down_alike = t351 - t352
+    t358 = t353 & (t357 <= N_left_0_rear_elbow_down_alike)
+    slack_left_rear_elbow_down_alike = np.maximum(N_left_0_rear_elbow_down_alike, 0.0)
+    t359 = N_left_0_rear_elbow_down_alike - slack_left_rear_elbow_down_alike
+    t360 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t361 = slope_left_rear_elbow_down_alike * t359 / (t78 + t360)
+    slack_right_rear_elbow_down_alike = np.maximum(N_right_0_rear_elbow_down_alike, 0.0)
+    t362 = N_right_0_rear_elbow_down_alike - slack_right_rear_elbow_down_alike
+    t363 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
+    t364 = slope_right_rear_elbow_down_alike * t362 / (t78 + t363)
+    t365 = t361 + t364
+    t366 = t352 - slope_right_rear_elbow_down_alike * t365
+    t367 = t351 + t366
+    swing_rear_elbow_down_alike = drawn_rear_elbow_down_alike * t365
+    t368 = ctheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
+    h_right_rear_elbow_down_alike = h_right_0_rear_elbow_down_alike + t368 - r_right_0_rear_elbow_down_alike * t365
+    t369 = h_right_rear_elbow_down_alike * h_right_rear_elbow_down_alike
+    t370 = r_right_0_rear_elbow_down_alike + h_right_0_rear_elbow_down_alike * t365
+    t371 = stheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
+    r_right_rear_elbow_down_alike = t370 - t371
+    t372 = r_right_rear_elbow_down_alike * r_right_rear_elbow_down_alike
+    t373 = t369 + t372
+    t374 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t375 = _runtime.select(t348, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    t376 = gap_rear_elbow_down_alike + t67 * t375
+    t377 = _runtime.select(t77 * t373 < t374, t88 - t373, t366 - t376)
+    t378 = t352 + slope_left_rear_elbow_down_alike * t365
+    t379 = t351 - t378
+    t380 = t358 & (t75 <= t367) & (t75 <= -t377) & (t75 <= t379)
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike + t368 - r_left_0_rear_elbow_down_alike * t365
+    t381 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t371 + h_left_0_rear_elbow_down_alike * t365
+    t382 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t383 = t381 + t382
+    t384 = _runtime.select(t77 * t383 < t374, t383 - t88, t376 + t378)
+    unreachable_4 = np.logical_not(t380 & (t75 <= t384))
+    t385 = _runtime.poison(invalid | unreachable_4)
+    t386 = t210 + t385
+    folded_right_rear_elbow_down_alike = np.sqrt(t373) <= t98
+    t387 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    M_right_rear_elbow_down_alike = np.maximum(-t377, t101)
+    N_right_rear_elbow_down_alike = np.maximum(t367, t101)
+    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
+    t388 = t100 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t87 + t388)
+    t389 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t390 = 2.0 * _runtime.select(0.0 <= -t349, 1.0, -1.0)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(t275, t84)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t285 = t284 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    whole_right_rear_elbow_down_alike = N_right_rear_elbow_down_alike + M_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t285 / whole_right_rear_elbow_down_alike)
-    t286 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t287 = N_right_rear_elbow_down_alike - M_right_rear_elbow_down_alike
-    c_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 1.0, -(t287 / whole_right_rear_elbow_down_alike))
-    t288 = fore_arm * c_bend_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = L1 + t288
-    up_right_rear_elbow_down_alike = t282 * t286 - t281 * ahead_1_right_rear_elbow_down_alike
-    t289 = t282 * ahead_1_right_rear_elbow_down_alike + t281 * t286
-    t290 = np.arctan2(up_right_rear_elbow_down_alike, -t289)
-    t291 = _runtime.select(folded_right_rear_elbow_down_alike, t283, t290)
-    t292 = _runtime.wrap_cut(t291) + t279
-    t293 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t294 = _runtime.select(short_right, 0.0, t284 * t293)
-    t295 = _runtime.wrap_cut(_runtime.wrap(t89 + t294)) + t279
-    h_left_rear_elbow_down_alike = t267 + point_21_rear_elbow_down_alike
-    t296 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = t264 + point_11_rear_elbow_down_alike
-    t297 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    folded_left_rear_elbow_down_alike = np.sqrt(t296 + t297) <= t81
-    N_left_rear_elbow_down_alike = np.maximum(t276, 0.0)
-    M_left_rear_elbow_down_alike = np.maximum(t278, 0.0)
-    t298 = N_left_rear_elbow_down_alike - M_left_rear_elbow_down_alike
-    whole_left_rear_elbow_down_alike = N_left_rear_elbow_down_alike + M_left_rear_elbow_down_alike
-    c_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 1.0, -(t298 / whole_left_rear_elbow_down_alike))
-    ahead_1_left_rear_elbow_down_alike = L1 + fore_arm * c_bend_left_rear_elbow_down_alike
-    t299 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t391 = t390 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t391 / whole_right_rear_elbow_down_alike)
+    t392 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t393 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t394 = np.arctan2(t389 - r_right_rear_elbow_down_alike * t392, t393 + h_right_rear_elbow_down_alike * t392)
+    t395 = _runtime.select(folded_right_rear_elbow_down_alike, t387, t394)
+    t396 = _runtime.wrap_cut(t395) + t385
+    t397 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t398 = _runtime.select(short_right, 0.0, t390 * t397)
+    t399 = _runtime.wrap_cut(_runtime.wrap(t107 + t398))
+    t400 = t399 + t385
+    folded_left_rear_elbow_down_alike = np.sqrt(t383) <= t98
+    M_left_rear_elbow_down_alike = np.maximum(t384, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t379, 0.0)
+    whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
+    t401 = t100 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t87 + t401)
+    t402 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t300 = t284 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t300 / whole_left_rear_elbow_down_alike)
-    t301 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t302 = r_left_rear_elbow_down_alike * t301
-    t303 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t304 = h_left_rear_elbow_down_alike * t301
-    t305 = _runtime.select(folded_left_rear_elbow_down_alike, t283, np.arctan2(t299 - t302, t303 + t304))
-    t306 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t307 = _runtime.select(short_right, 0.0, t284 * t306)
-    t308 = t99 + t279
-    t309 = _runtime.select(folded_left_rear_elbow_down_alike, t283, np.arctan2(t299 + t302, t303 - t304))
-    t310 = nowhere | folded | short
-    t311 = t310 | folded_right | short_right | folded_left
-    t312 = _runtime.status(invalid, unreachable, t311)
-    t313 = t310 | folded_right_front_elbow_down_alike | short_right
-    t314 = _runtime.status(invalid, unreachable_2, t313 | folded_left_front_elbow_down_alike)
-    t315 = nowhere | folded_rear_elbow_up_alike | short
-    t316 = t315 | folded_right_rear_elbow_up_alike | short_right
-    t317 = _runtime.status(invalid, unreachable_3, t316 | folded_left_rear_elbow_up_alike)
-    t318 = t315 | folded_right_rear_elbow_down_alike | short_right
-    t319 = _runtime.status(invalid, unreachable_4, t318 | folded_left_rear_elbow_down_alike)
+    t403 = t390 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t403 / whole_left_rear_elbow_down_alike)
+    t404 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t405 = r_left_rear_elbow_down_alike * t404
+    t406 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t407 = h_left_rear_elbow_down_alike * t404
+    t408 = _runtime.select(folded_left_rear_elbow_down_alike, t387, np.arctan2(t402 - t405, t406 + t407))
+    t409 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t410 = _runtime.select(short_right, 0.0, t390 * t409)
+    t411 = t118 + t385
+    t412 = _runtime.select(folded_left_rear_elbow_down_alike, t387, np.arctan2(t402 + t405, t406 - t407))
+    t413 = nowhere | folded | short
+    t414 = t413 | folded_right | short_right | folded_left
+    t415 = _runtime.status(invalid, unreachable, t414)
+    t416 = t413 | folded_right_front_elbow_down_alike | short_right
+    t417 = _runtime.status(invalid, unreachable_2, t416 | folded_left_front_elbow_down_alike)
+    t418 = nowhere | folded_rear_elbow_up_alike | short
+    t419 = t418 | folded_right_rear_elbow_up_alike | short_right
+    t420 = _runtime.status(invalid, unreachable_3, t419 | folded_left_rear_elbow_up_alike)
+    t421 = t418 | folded_right_rear_elbow_down_alike | short_right
+    t422 = _runtime.status(invalid, unreachable_4, t421 | folded_left_rear_elbow_down_alike)
     return (
-        t78,
-        t88,
-        t91,
-        _runtime.wrap_cut(t97) + t77,
-        _runtime.wrap(t89 + t98) + t77,
-        t100,
-        t78,
-        t88,
-        t91,
-        _runtime.wrap_cut(t101) + t77,
-        _runtime.wrap(t89 - t98) + t77,
-        t100,
-        t133,
-        t145,
-        t148,
-        _runtime.wrap_cut(t159) + t132,
-        _runtime.wrap(t89 + t161) + t132,
-        t162,
-        t133,
-        t145,
-        t148,
-        _runtime.wrap_cut(t163) + t132,
-        _runtime.wrap(t89 - t161) + t132,
-        t162,
-        t220,
-        t231,
-        t234,
-        _runtime.wrap_cut(t244) + t219,
-        _runtime.wrap(t89 + t246) + t219,
-        t247,
-        t220,
-        t231,
-        t234,
-        _runtime.wrap_cut(t248) + t219,
-        _runtime.wrap(t89 - t246) + t219,
-        t247,
-        t280,
-        t292,
-        t295,
-        _runtime.wrap_cut(t305) + t279,
-        _runtime.wrap(t89 + t307) + t279,
-        t308,
-        t280,
-        t292,
-        t295,
-        _runtime.wrap_cut(t309) + t279,
-        _runtime.wrap(t89 - t307) + t279,
-        t308,
-        t312,
-        t312,
-        t314,
-        t314,
-        t317,
-        t317,
-        t319,
-        t319,
+        t97,
+        t106,
+        t110,
+        _runtime.wrap_cut(t116) + t96,
+        _runtime.wrap(t107 + t117) + t96,
+        t119,
+        t97,
+        t106,
+        t110,
+        _runtime.wrap_cut(t120) + t96,
+        _runtime.wrap(t107 - t117) + t96,
+        t119,
+        t183,
+        t193,
+        t197,
+        _runtime.wrap_cut(t205) + t182,
+        _runtime.wrap(t107 + t207) + t182,
+        t208,
+        t183,
+        t193,
+        t197,
+        _runtime.wrap_cut(t209) + t182,
+        _runtime.wrap(t107 - t207) + t182,
+        t208,
+        t297,
+        t307,
+        t311,
+        _runtime.wrap_cut(t319) + t296,
+        _runtime.wrap(t107 + t321) + t296,
+        t322,
+        t297,
+        t307,
+        t311,
+        _runtime.wrap_cut(t323) + t296,
+        _runtime.wrap(t107 - t321) + t296,
+        t322,
+        t386,
+        t396,
+        t400,
+        _runtime.wrap_cut(t408) + t385,
+        _runtime.wrap(t107 + t410) + t385,
+        t411,
+        t386,
+        t396,
+        t400,
+        _runtime.wrap_cut(t412) + t385,
+        _runtime.wrap(t107 - t410) + t385,
+        t411,
+        t415,
+        t415,
+        t417,
+        t417,
+        t420,
+        t420,
+        t422,
+        t422,
     )
 
 

@@ -96,10 +96,10 @@ def planes_of(arguments: str, real: type, known: dict[str, np.ndarray]) -> list[
         planes = np.zeros((int(size), POSTURES), real if kind == "real_t" else np.uint8)
         if const:
             image = known.get(name, known.get("p") if name == "x" else None)
-            drawn = random.uniform(-3, 3, planes.shape)
-            planes[:] = drawn
+            planes[:] = random.uniform(-3, 3, planes.shape)
             if image is not None:  # but where a loop does not close there is none
-                planes[:] = np.where(np.isnan(image), drawn, image)[: len(planes)]
+                image = image[: len(planes)]
+                planes[:] = np.where(np.isnan(image), planes, image)
             planes[:, ::50] = 0
             planes[0, ::70] = np.nan
         known.setdefault(name, planes)

@@ -39,3 +39,14 @@ def twists(matrices: list[np.ndarray]) -> np.ndarray:
     """Columns (v; omega) of matrices of se(3)."""
     rows = [(0, 3), (1, 3), (2, 3), (2, 1), (0, 2), (1, 0)]
     return np.stack([np.stack([V[..., i, j] for i, j in rows], -1) for V in matrices], -1)
+
+
+def check_jacobians(robot, pose, q: np.ndarray) -> None:
+    """The three Jacobians of an arm against differences of a pose from elsewhere."""
+    rates, inverse = differences(pose, q), np.linalg.inv(pose(q))
+    space, body = twists([r @ inverse for r in rates]), twists([inverse @ r for r in rates])
+    np.testing.assert_allclose(robot.jacobian_space(q), space, atol=1e-8)
+    np.testing.assert_allclose(robot.jacobian_body(q), body, atol=1e-8)
+    J = robot.jacobian(q)
+    np.testing.assert_allclose(J[:, :3], np.stack([r[:, :3, 3] for r in rates], -1), atol=1e-8)
+    np.testing.assert_allclose(J[:, 3:], space[:, 3:], atol=1e-8)

@@ -13,7 +13,7 @@ import sympy as sp
 
 from closedform.claims import Every, Identity, Undecidable
 from closedform.derivation import Continuum, Derivation, Inverse, Paper, Solved
-from closedform.emit.errata import errata, markdown
+from closedform.emit.errata import markdown, part, together
 from closedform.emit.latex import Page, Printer, decimal, document, measure, notebook
 from closedform.emit.prose import Prose, escape, loosen, mixed, spaced, symbol_name
 from closedform.emit.render import render
@@ -172,7 +172,7 @@ def test_output_does_not_depend_on_the_hash_seed() -> None:
         "from test_latex import *\n"
         "d, p = derived('awkward')\n"
         "print(article('awkward'), notebook(d), show(d, p))\n"
-        "print(render('errata.md.jinja', errata([d], [p])))\n"
+        "print(render('errata.md.jinja', together([part(d, p)])))\n"
     )
     runs = [
         subprocess.Popen(
@@ -189,7 +189,9 @@ def test_output_does_not_depend_on_the_hash_seed() -> None:
 
 
 def test_errata_lists_what_is_not_simply_proved() -> None:
-    text = render("errata.md.jinja", errata(*zip(*map(derived, (*ROBOTS, "awkward")), strict=True)))
+    text = render(
+        "errata.md.jinja", together(part(*derived(name)) for name in (*ROBOTS, "awkward"))
+    )
     for name in (*ROBOTS, "awkward"):
         for claim in derived(name)[1].claims:
             assert (f"**{markdown(claim.label)}** ({claim.kind}" in text) == (

@@ -5,7 +5,7 @@ import importlib
 import arms
 import numpy as np
 import pytest
-from arms import INVALID, OK, SINGULAR, UNREACHABLE, differences, link, twists, wrapped
+from arms import INVALID, OK, SINGULAR, UNREACHABLE, link, wrapped
 
 from closedform.lower.program import lower
 
@@ -74,13 +74,7 @@ def test_forward_by_the_table(robot, q, params) -> None:
 
 
 def test_jacobians_by_differences(robot, q) -> None:
-    rates, inverse = differences(by_table, q), np.linalg.inv(by_table(q))
-    space, body = twists([r @ inverse for r in rates]), twists([inverse @ r for r in rates])
-    np.testing.assert_allclose(robot.jacobian_space(q), space, atol=1e-8)
-    np.testing.assert_allclose(robot.jacobian_body(q), body, atol=1e-8)
-    J = robot.jacobian(q)
-    np.testing.assert_allclose(J[:, :3], np.stack([r[:, :3, 3] for r in rates], -1), atol=1e-8)
-    np.testing.assert_allclose(J[:, 3:], space[:, 3:], atol=1e-8)
+    arms.check_jacobians(robot, by_table, q)
 
 
 def test_determinant_and_factors(robot, q) -> None:

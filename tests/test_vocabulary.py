@@ -18,7 +18,7 @@ from closedform.crosscheck import Backend, crosscheck, float_backend, module_bac
 from closedform.derivation import Derivation, Inverse, Paper, Solved
 from closedform.emit.c import shared
 from closedform.emit.numpy import runtime
-from closedform.emit.render import render, robot_files
+from closedform.emit.render import pages, render
 from closedform.frames import (
     adjoint,
     chain,
@@ -161,7 +161,7 @@ def printed(d: Derivation, folder: Path) -> tuple[ModuleType, CLibrary]:
     (package / "__init__.py").write_text("")
     (package / "_runtime.py").write_text(render("numpy/_runtime.py.jinja", runtime()))
     (package / "c" / "closedform.h").write_text(render("c/closedform.h.jinja", shared([])))
-    for path, text in robot_files(d, prove(d), ("numpy", "c")).items():
+    for path, text in pages(d, prove(d), ("numpy", "c")).files.items():
         (package / ("c" if path.parts[0] == "c" else ".") / path.name).write_text(text)
     name = f"toys_{d.name}"
     for module in (name, f"{name}._runtime"):

@@ -239,7 +239,9 @@ def _array(name: str, shape: Sequence[int], kind: str, const: str = "") -> CArra
 
 def _folded(arguments: Sequence[str]) -> str:
     """An argument list, folded where a line would be too long for its function's name."""
-    return "\n    ".join(textwrap.wrap(", ".join(arguments), WIDTH - 44)) or "void"
+    whole = ", ".join(a.replace(" ", "\0") for a in arguments)  # no break within an argument
+    lines = textwrap.wrap(whole, WIDTH - 44, break_long_words=False)
+    return "\n    ".join(lines).replace("\0", " ") or "void"
 
 
 def _occurs(name: str, lines: Sequence[str]) -> bool:

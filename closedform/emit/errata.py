@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,11 +57,6 @@ def together(parts: Iterable[Part | None]) -> dict[str, Any]:
         paper["counts"] = [(kind, counts[key][kind]) for kind in VERDICTS]
         paper["total"] = sum(counts[key].values())
     return {"papers": list(papers.values())}
-
-
-def errata(derivations: Sequence[Derivation], proofs: Sequence[Proof]) -> dict[str, Any]:
-    """The same context from derivations and their proofs."""
-    return together(map(part, derivations, proofs))
 
 
 def _entry(claim: ClaimResult, prose: Prose) -> dict[str, str]:

@@ -79,13 +79,6 @@ def pages(derivation: Derivation, proof: Proof, backends: Sequence[str] = BACKEN
     return Pages(printed, Share(robot, part(derivation, proof) if "latex" in backends else None))
 
 
-def robot_files(
-    derivation: Derivation, proof: Proof, backends: Sequence[str] = BACKENDS
-) -> dict[Path, str]:
-    """Every file of one mechanism: the path below ``generated/`` and the contents."""
-    return pages(derivation, proof, backends).files
-
-
 def shared_files(shares: Sequence[Share], backends: Sequence[str] = BACKENDS) -> dict[Path, str]:
     """The files that all mechanisms share, from what each of them reported."""
     printed: dict[Path, str] = {}

@@ -265,10 +265,8 @@ usable_in_place(const plan *p, const operand *o)
     if (sweep->n_axes != p->n_outer + 1 || o->view->lead[last] != itemsize) {
         return false;
     }
-    if (o->spec->size > CROWD && p->n_inner > BLOCK_MAX) {
-        return false;
-    }
-    return !planes_contend(o->spec->size, (size_t)step);
+    const bool crowded = o->spec->size > CROWD && p->n_inner > BLOCK_MAX;
+    return !crowded && !planes_contend(o->spec->size, (size_t)step);
 }
 
 static void

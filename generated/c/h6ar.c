@@ -19,9 +19,9 @@
  */
 #include "h6ar.h"
 
-CF_INLINE void h6ar_fk_kernel(const int vector, const h6ar_params *params, const
-    real_t q[6], const real_t *sines, const real_t
-    *cosines, real_t x[6])
+CF_INLINE void h6ar_fk_kernel(const int vector, const h6ar_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t x[6])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -131,8 +131,8 @@ CF_INLINE void h6ar_fk_kernel(const int vector, const h6ar_params *params, const
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_fk(const h6ar_params *params, const real_t q[6], real_t
-    x[6])
+void h6ar_fk(const h6ar_params *params, const real_t q[6],
+    real_t x[6])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
@@ -141,8 +141,9 @@ void h6ar_fk(const h6ar_params *params, const real_t q[6], real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_fk_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *x, size_t x_stride)
+void h6ar_fk_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride)
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -183,8 +184,9 @@ void h6ar_fk_batch(size_t n, const h6ar_params *params, const real_t
     }
 }
 
-CF_INLINE void h6ar_pose_kernel(const h6ar_params *params, const real_t q[6], const
-    real_t *sines, const real_t *cosines, real_t T[16])
+CF_INLINE void h6ar_pose_kernel(const h6ar_params *params, const real_t q[6],
+    const real_t *sines, const real_t *cosines,
+    real_t T[16])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -312,8 +314,8 @@ CF_INLINE void h6ar_pose_kernel(const h6ar_params *params, const real_t q[6], co
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_pose(const h6ar_params *params, const real_t q[6], real_t
-    T[16])
+void h6ar_pose(const h6ar_params *params, const real_t q[6],
+    real_t T[16])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[0], q[5] };
@@ -322,8 +324,9 @@ void h6ar_pose(const h6ar_params *params, const real_t q[6], real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_pose_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride)
+void h6ar_pose_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -409,8 +412,8 @@ CF_INLINE void h6ar_arm_tips_kernel(const h6ar_params *params, const real_t *sin
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_arm_tips(const h6ar_params *params, const real_t q[6], real_t
-    tips[6])
+void h6ar_arm_tips(const h6ar_params *params, const real_t q[6],
+    real_t tips[6])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4] };
@@ -419,9 +422,9 @@ void h6ar_arm_tips(const h6ar_params *params, const real_t q[6], real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_arm_tips_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *tips, size_t
-    tips_stride)
+void h6ar_arm_tips_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *tips, size_t tips_stride)
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -490,8 +493,8 @@ CF_INLINE void h6ar_invariant_point_kernel(const h6ar_params *params, const real
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_invariant_point(const h6ar_params *params, const real_t q[6], real_t
-    p[3])
+void h6ar_invariant_point(const h6ar_params *params, const real_t q[6],
+    real_t p[3])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[0] };
@@ -500,8 +503,9 @@ void h6ar_invariant_point(const h6ar_params *params, const real_t q[6], real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_invariant_point_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *p, size_t p_stride)
+void h6ar_invariant_point_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride)
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -537,8 +541,9 @@ void h6ar_invariant_point_batch(size_t n, const h6ar_params *params, const real_
     }
 }
 
-CF_INLINE void h6ar_jacobian_kernel(const h6ar_params *params, const real_t q[6], const
-    real_t *sines, const real_t *cosines, real_t J[36])
+CF_INLINE void h6ar_jacobian_kernel(const h6ar_params *params, const real_t q[6],
+    const real_t *sines, const real_t *cosines,
+    real_t J[36])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -740,8 +745,8 @@ CF_INLINE void h6ar_jacobian_kernel(const h6ar_params *params, const real_t q[6]
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_jacobian(const h6ar_params *params, const real_t q[6], real_t
-    J[36])
+void h6ar_jacobian(const h6ar_params *params, const real_t q[6],
+    real_t J[36])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[5], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0) };
@@ -750,8 +755,9 @@ void h6ar_jacobian(const h6ar_params *params, const real_t q[6], real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_jacobian_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void h6ar_jacobian_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -822,8 +828,9 @@ void h6ar_jacobian_batch(size_t n, const h6ar_params *params, const real_t
     }
 }
 
-CF_INLINE void h6ar_determinant_kernel(const h6ar_params *params, const real_t q[6], const
-    real_t *sines, const real_t *cosines, real_t det[1])
+CF_INLINE void h6ar_determinant_kernel(const h6ar_params *params, const real_t q[6],
+    const real_t *sines, const real_t *cosines,
+    real_t det[1])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -914,8 +921,8 @@ CF_INLINE void h6ar_determinant_kernel(const h6ar_params *params, const real_t q
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_determinant(const h6ar_params *params, const real_t q[6], real_t
-    det[1])
+void h6ar_determinant(const h6ar_params *params, const real_t q[6],
+    real_t det[1])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
@@ -924,8 +931,9 @@ void h6ar_determinant(const h6ar_params *params, const real_t q[6], real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_determinant_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride)
+void h6ar_determinant_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     (void)det_stride;
     const h6ar_params local = *params;
@@ -961,9 +969,9 @@ void h6ar_determinant_batch(size_t n, const h6ar_params *params, const real_t
     }
 }
 
-CF_INLINE void h6ar_singularities_kernel(const h6ar_params *params, const real_t q[6], const
-    real_t *sines, const real_t *cosines, real_t
-    factors[6])
+CF_INLINE void h6ar_singularities_kernel(const h6ar_params *params, const real_t q[6],
+    const real_t *sines, const real_t *cosines,
+    real_t factors[6])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -1055,8 +1063,8 @@ CF_INLINE void h6ar_singularities_kernel(const h6ar_params *params, const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_singularities(const h6ar_params *params, const real_t q[6], real_t
-    factors[6])
+void h6ar_singularities(const h6ar_params *params, const real_t q[6],
+    real_t factors[6])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
@@ -1065,9 +1073,9 @@ void h6ar_singularities(const h6ar_params *params, const real_t q[6], real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_singularities_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride)
+void h6ar_singularities_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     const h6ar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -1107,9 +1115,10 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params, const real_t
     }
 }
 
-CF_INLINE void h6ar_ik_kernel(const int vector, const h6ar_params *params, const
-    real_t x[6], const real_t *sines, const real_t
-    *cosines, real_t q[24], real_t status[4])
+CF_INLINE void h6ar_ik_kernel(const int vector, const h6ar_params *params,
+    const real_t x[6], const real_t *sines,
+    const real_t *cosines, real_t q[24],
+    real_t status[4])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -1552,8 +1561,8 @@ CF_INLINE void h6ar_ik_kernel(const int vector, const h6ar_params *params, const
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_ik(const h6ar_params *params, const real_t x[6], real_t
-    q[24], uint8_t status[4])
+void h6ar_ik(const h6ar_params *params, const real_t x[6],
+    real_t q[24], uint8_t status[4])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { x[4], x[5], x[3] };
@@ -1565,8 +1574,9 @@ void h6ar_ik(const h6ar_params *params, const real_t x[6], real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_ik_batch(size_t n, const h6ar_params *params, const real_t
-    *x, size_t x_stride, real_t *q, size_t q_stride,
+void h6ar_ik_batch(size_t n, const h6ar_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
     const h6ar_params local = *params;
@@ -1630,8 +1640,8 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params, const real_t
 }
 
 CF_INLINE void h6ar_wrist_length_kernel(const h6ar_params *params, const real_t psi[1],
-    const real_t phi[1], const real_t *cosines, real_t
-    l_W[1])
+    const real_t phi[1], const real_t *cosines,
+    real_t l_W[1])
 {
     const real_t d = params->d;
     const real_t gs = params->gs;
@@ -1663,9 +1673,10 @@ void h6ar_wrist_length(const h6ar_params *params, const real_t psi[1],
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_wrist_length_batch(size_t n, const h6ar_params *params, const real_t
-    *psi, size_t psi_stride, const real_t *phi, size_t
-    phi_stride, real_t *l_W, size_t l_W_stride)
+void h6ar_wrist_length_batch(size_t n, const h6ar_params *params,
+    const real_t *psi, size_t psi_stride,
+    const real_t *phi, size_t phi_stride,
+    real_t *l_W, size_t l_W_stride)
 {
     (void)psi_stride;
     (void)phi_stride;
@@ -1711,11 +1722,11 @@ void h6ar_minimum_link_length(const h6ar_params *params, const real_t psi_max[1]
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params, const real_t
-    *psi_max, size_t psi_max_stride, const real_t
-    *phi_max, size_t phi_max_stride, const real_t
-    *beta_min, size_t beta_min_stride, real_t *al,
-    size_t al_stride)
+void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params,
+    const real_t *psi_max, size_t psi_max_stride,
+    const real_t *phi_max, size_t phi_max_stride,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *al, size_t al_stride)
 {
     (void)psi_max_stride;
     (void)phi_max;
@@ -1771,10 +1782,10 @@ void h6ar_largest_yaw(const h6ar_params *params, const real_t phi[1],
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params, const real_t
-    *phi, size_t phi_stride, const real_t *beta_min,
-    size_t beta_min_stride, real_t *psi, size_t
-    psi_stride)
+void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params,
+    const real_t *phi, size_t phi_stride,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *psi, size_t psi_stride)
 {
     (void)phi_stride;
     (void)beta_min_stride;
@@ -1826,9 +1837,9 @@ void h6ar_largest_angle(const h6ar_params *params, const real_t beta_min[1],
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_largest_angle_batch(size_t n, const h6ar_params *params, const real_t
-    *beta_min, size_t beta_min_stride, real_t *angle,
-    size_t angle_stride)
+void h6ar_largest_angle_batch(size_t n, const h6ar_params *params,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *angle, size_t angle_stride)
 {
     (void)beta_min_stride;
     (void)angle_stride;

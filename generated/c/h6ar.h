@@ -55,10 +55,11 @@ typedef struct {
  * Returns x: shape (..., 6).
  * NaN where the tips are farther apart than the wrist links can span.
  */
-void h6ar_fk(const h6ar_params *params, const real_t q[6], real_t
-    x[6]);
-void h6ar_fk_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *x, size_t x_stride);
+void h6ar_fk(const h6ar_params *params, const real_t q[6],
+    real_t x[6]);
+void h6ar_fk_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride);
 
 /*
  * Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
@@ -67,10 +68,11 @@ void h6ar_fk_batch(size_t n, const h6ar_params *params, const real_t
  * Returns T: shape (..., 4, 4).
  * NaN where the tips are farther apart than the wrist links can span.
  */
-void h6ar_pose(const h6ar_params *params, const real_t q[6], real_t
-    T[16]);
-void h6ar_pose_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride);
+void h6ar_pose(const h6ar_params *params, const real_t q[6],
+    real_t T[16]);
+void h6ar_pose_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Tips of the right and of the left fore-arm.
@@ -78,11 +80,11 @@ void h6ar_pose_batch(size_t n, const h6ar_params *params, const real_t
  * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
  * Returns tips: shape (..., 2, 3).
  */
-void h6ar_arm_tips(const h6ar_params *params, const real_t q[6], real_t
-    tips[6]);
-void h6ar_arm_tips_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *tips, size_t
-    tips_stride);
+void h6ar_arm_tips(const h6ar_params *params, const real_t q[6],
+    real_t tips[6]);
+void h6ar_arm_tips_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *tips, size_t tips_stride);
 
 /*
  * The invariant point, by the averages of the angles.
@@ -90,10 +92,11 @@ void h6ar_arm_tips_batch(size_t n, const h6ar_params *params, const real_t
  * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
  * Returns p: shape (..., 3).
  */
-void h6ar_invariant_point(const h6ar_params *params, const real_t q[6], real_t
-    p[3]);
-void h6ar_invariant_point_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *p, size_t p_stride);
+void h6ar_invariant_point(const h6ar_params *params, const real_t q[6],
+    real_t p[3]);
+void h6ar_invariant_point_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride);
 
 /*
  * Derivative of the task by the joints.
@@ -103,10 +106,11 @@ void h6ar_invariant_point_batch(size_t n, const h6ar_params *params, const real_
  * NaN where the tips are farther apart than the wrist links can span.
  * Unbounded where the wrist links are stretched: there l_W turns over.
  */
-void h6ar_jacobian(const h6ar_params *params, const real_t q[6], real_t
-    J[36]);
-void h6ar_jacobian_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void h6ar_jacobian(const h6ar_params *params, const real_t q[6],
+    real_t J[36]);
+void h6ar_jacobian_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the Jacobian.
@@ -114,10 +118,11 @@ void h6ar_jacobian_batch(size_t n, const h6ar_params *params, const real_t
  * Returns det: shape (...).
  * NaN where the tips are farther apart than the wrist links can span.
  */
-void h6ar_determinant(const h6ar_params *params, const real_t q[6], real_t
-    det[1]);
-void h6ar_determinant_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride);
+void h6ar_determinant(const h6ar_params *params, const real_t q[6],
+    real_t det[1]);
+void h6ar_determinant_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * The factors of the determinant, and the length of the wrist.
@@ -125,11 +130,11 @@ void h6ar_determinant_batch(size_t n, const h6ar_params *params, const real_t
  * Returns factors: shape (..., 6).
  * NaN where the tips are farther apart than the wrist links can span.
  */
-void h6ar_singularities(const h6ar_params *params, const real_t q[6], real_t
-    factors[6]);
-void h6ar_singularities_batch(size_t n, const h6ar_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride);
+void h6ar_singularities(const h6ar_params *params, const real_t q[6],
+    real_t factors[6]);
+void h6ar_singularities_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * All postures of the published model that reach a tip.
@@ -138,10 +143,11 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params, const real_t
  * Returns q: shape (..., 4, 6).
  * Branches: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.
  */
-void h6ar_ik(const h6ar_params *params, const real_t x[6], real_t
-    q[24], uint8_t status[4]);
-void h6ar_ik_batch(size_t n, const h6ar_params *params, const real_t
-    *x, size_t x_stride, real_t *q, size_t q_stride,
+void h6ar_ik(const h6ar_params *params, const real_t x[6],
+    real_t q[24], uint8_t status[4]);
+void h6ar_ik_batch(size_t n, const h6ar_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride);
 
 /*
@@ -153,9 +159,10 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params, const real_t
  */
 void h6ar_wrist_length(const h6ar_params *params, const real_t psi[1],
     const real_t phi[1], real_t l_W[1]);
-void h6ar_wrist_length_batch(size_t n, const h6ar_params *params, const real_t
-    *psi, size_t psi_stride, const real_t *phi, size_t
-    phi_stride, real_t *l_W, size_t l_W_stride);
+void h6ar_wrist_length_batch(size_t n, const h6ar_params *params,
+    const real_t *psi, size_t psi_stride,
+    const real_t *phi, size_t phi_stride,
+    real_t *l_W, size_t l_W_stride);
 
 /*
  * The shortest wrist links that keep the separation angle up to the given yaw and roll.
@@ -168,11 +175,11 @@ void h6ar_wrist_length_batch(size_t n, const h6ar_params *params, const real_t
 void h6ar_minimum_link_length(const h6ar_params *params, const real_t psi_max[1],
     const real_t phi_max[1], const real_t beta_min[1],
     real_t al[1]);
-void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params, const real_t
-    *psi_max, size_t psi_max_stride, const real_t
-    *phi_max, size_t phi_max_stride, const real_t
-    *beta_min, size_t beta_min_stride, real_t *al,
-    size_t al_stride);
+void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params,
+    const real_t *psi_max, size_t psi_max_stride,
+    const real_t *phi_max, size_t phi_max_stride,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *al, size_t al_stride);
 
 /*
  * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
@@ -182,10 +189,10 @@ void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params, const r
  */
 void h6ar_largest_yaw(const h6ar_params *params, const real_t phi[1],
     const real_t beta_min[1], real_t psi[1]);
-void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params, const real_t
-    *phi, size_t phi_stride, const real_t *beta_min,
-    size_t beta_min_stride, real_t *psi, size_t
-    psi_stride);
+void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params,
+    const real_t *phi, size_t phi_stride,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *psi, size_t psi_stride);
 
 /*
  * The largest angle that yaw and roll may both have; NaN where there is none.
@@ -194,9 +201,9 @@ void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params, const real_t
  */
 void h6ar_largest_angle(const h6ar_params *params, const real_t beta_min[1],
     real_t angle[1]);
-void h6ar_largest_angle_batch(size_t n, const h6ar_params *params, const real_t
-    *beta_min, size_t beta_min_stride, real_t *angle,
-    size_t angle_stride);
+void h6ar_largest_angle_batch(size_t n, const h6ar_params *params,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *angle, size_t angle_stride);
 
 #ifdef __cplusplus
 }

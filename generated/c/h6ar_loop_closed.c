@@ -19,8 +19,9 @@
  */
 #include "h6ar_loop_closed.h"
 
-CF_INLINE void h6ar_loop_closed_fk_kernel(const int vector, const h6ar_loop_closed_params
-    *params, const real_t q[6], const real_t *sines,
+CF_INLINE void h6ar_loop_closed_fk_kernel(const int vector,
+    const h6ar_loop_closed_params *params,
+    const real_t q[6], const real_t *sines,
     const real_t *cosines, real_t x[6])
 {
     const real_t L1 = params->L1;
@@ -188,8 +189,8 @@ CF_INLINE void h6ar_loop_closed_fk_kernel(const int vector, const h6ar_loop_clos
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_fk(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t x[6])
+void h6ar_loop_closed_fk(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t x[6])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[5], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0) };
@@ -199,8 +200,8 @@ void h6ar_loop_closed_fk(const h6ar_loop_closed_params *params, const real_t
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_fk_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *x, size_t
-    x_stride)
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride)
 {
     const h6ar_loop_closed_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -241,9 +242,9 @@ void h6ar_loop_closed_fk_batch(size_t n, const h6ar_loop_closed_params *params,
     }
 }
 
-CF_INLINE void h6ar_loop_closed_pose_kernel(const h6ar_loop_closed_params *params, const real_t
-    q[6], const real_t *sines, const real_t *cosines,
-    real_t T[16])
+CF_INLINE void h6ar_loop_closed_pose_kernel(const h6ar_loop_closed_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t T[16])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -431,8 +432,8 @@ CF_INLINE void h6ar_loop_closed_pose_kernel(const h6ar_loop_closed_params *param
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_pose(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t T[16])
+void h6ar_loop_closed_pose(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t T[16])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[5] };
@@ -442,8 +443,8 @@ void h6ar_loop_closed_pose(const h6ar_loop_closed_params *params, const real_t
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride)
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const h6ar_loop_closed_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -494,8 +495,9 @@ void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params
     }
 }
 
-CF_INLINE void h6ar_loop_closed_arm_tips_kernel(const h6ar_loop_closed_params *params, const real_t
-    *sines, const real_t *cosines, real_t tips[6])
+CF_INLINE void h6ar_loop_closed_arm_tips_kernel(const h6ar_loop_closed_params *params,
+    const real_t *sines, const real_t *cosines,
+    real_t tips[6])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -529,8 +531,8 @@ CF_INLINE void h6ar_loop_closed_arm_tips_kernel(const h6ar_loop_closed_params *p
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_arm_tips(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t tips[6])
+void h6ar_loop_closed_arm_tips(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t tips[6])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4] };
@@ -540,8 +542,8 @@ void h6ar_loop_closed_arm_tips(const h6ar_loop_closed_params *params, const real
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_arm_tips_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *tips,
-    size_t tips_stride)
+    const real_t *q, size_t q_stride,
+    real_t *tips, size_t tips_stride)
 {
     const h6ar_loop_closed_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -568,8 +570,9 @@ void h6ar_loop_closed_arm_tips_batch(size_t n, const h6ar_loop_closed_params *pa
     }
 }
 
-CF_INLINE void h6ar_loop_closed_invariant_point_kernel(const h6ar_loop_closed_params *params, const real_t
-    *sines, const real_t *cosines, real_t p[3])
+CF_INLINE void h6ar_loop_closed_invariant_point_kernel(const h6ar_loop_closed_params *params,
+    const real_t *sines, const real_t *cosines,
+    real_t p[3])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -609,8 +612,8 @@ CF_INLINE void h6ar_loop_closed_invariant_point_kernel(const h6ar_loop_closed_pa
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_invariant_point(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t p[3])
+void h6ar_loop_closed_invariant_point(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t p[3])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0) };
@@ -620,8 +623,8 @@ void h6ar_loop_closed_invariant_point(const h6ar_loop_closed_params *params, con
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_invariant_point_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *p, size_t
-    p_stride)
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride)
 {
     const h6ar_loop_closed_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -657,9 +660,9 @@ void h6ar_loop_closed_invariant_point_batch(size_t n, const h6ar_loop_closed_par
     }
 }
 
-CF_INLINE void h6ar_loop_closed_jacobian_kernel(const h6ar_loop_closed_params *params, const real_t
-    q[6], const real_t *sines, const real_t *cosines,
-    real_t J[36])
+CF_INLINE void h6ar_loop_closed_jacobian_kernel(const h6ar_loop_closed_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t J[36])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -946,8 +949,8 @@ CF_INLINE void h6ar_loop_closed_jacobian_kernel(const h6ar_loop_closed_params *p
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_jacobian(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t J[36])
+void h6ar_loop_closed_jacobian(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t J[36])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[5], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0) };
@@ -957,8 +960,8 @@ void h6ar_loop_closed_jacobian(const h6ar_loop_closed_params *params, const real
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_jacobian_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride)
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const h6ar_loop_closed_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -1029,9 +1032,9 @@ void h6ar_loop_closed_jacobian_batch(size_t n, const h6ar_loop_closed_params *pa
     }
 }
 
-CF_INLINE void h6ar_loop_closed_determinant_kernel(const h6ar_loop_closed_params *params, const real_t
-    q[6], const real_t *sines, const real_t *cosines,
-    real_t det[1])
+CF_INLINE void h6ar_loop_closed_determinant_kernel(const h6ar_loop_closed_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t det[1])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -1187,8 +1190,8 @@ CF_INLINE void h6ar_loop_closed_determinant_kernel(const h6ar_loop_closed_params
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_determinant(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t det[1])
+void h6ar_loop_closed_determinant(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t det[1])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
@@ -1198,8 +1201,8 @@ void h6ar_loop_closed_determinant(const h6ar_loop_closed_params *params, const r
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_determinant_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *det,
-    size_t det_stride)
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     (void)det_stride;
     const h6ar_loop_closed_params local = *params;
@@ -1235,9 +1238,9 @@ void h6ar_loop_closed_determinant_batch(size_t n, const h6ar_loop_closed_params 
     }
 }
 
-CF_INLINE void h6ar_loop_closed_singularities_kernel(const h6ar_loop_closed_params *params, const real_t
-    q[6], const real_t *sines, const real_t *cosines,
-    real_t factors[6])
+CF_INLINE void h6ar_loop_closed_singularities_kernel(const h6ar_loop_closed_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t factors[6])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -1396,8 +1399,8 @@ CF_INLINE void h6ar_loop_closed_singularities_kernel(const h6ar_loop_closed_para
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_singularities(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t factors[6])
+void h6ar_loop_closed_singularities(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t factors[6])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[5] };
@@ -1407,8 +1410,8 @@ void h6ar_loop_closed_singularities(const h6ar_loop_closed_params *params, const
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *factors,
-    size_t factors_stride)
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     const h6ar_loop_closed_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -1448,10 +1451,11 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
     }
 }
 
-CF_INLINE void h6ar_loop_closed_ik_kernel(const int vector, const h6ar_loop_closed_params
-    *params, const real_t x[6], const real_t *sines,
-    const real_t *cosines, real_t q[48], real_t
-    status[8])
+CF_INLINE void h6ar_loop_closed_ik_kernel(const int vector,
+    const h6ar_loop_closed_params *params,
+    const real_t x[6], const real_t *sines,
+    const real_t *cosines, real_t q[48],
+    real_t status[8])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -2228,8 +2232,8 @@ CF_INLINE void h6ar_loop_closed_ik_kernel(const int vector, const h6ar_loop_clos
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_ik(const h6ar_loop_closed_params *params, const real_t
-    x[6], real_t q[48], uint8_t status[8])
+void h6ar_loop_closed_ik(const h6ar_loop_closed_params *params,
+    const real_t x[6], real_t q[48], uint8_t status[8])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { x[4], x[5], x[3] };
@@ -2242,8 +2246,9 @@ void h6ar_loop_closed_ik(const h6ar_loop_closed_params *params, const real_t
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_ik_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *x, size_t x_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride)
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
 {
     const h6ar_loop_closed_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -2345,9 +2350,9 @@ void h6ar_loop_closed_ik_batch(size_t n, const h6ar_loop_closed_params *params,
     }
 }
 
-CF_INLINE void h6ar_loop_closed_wrist_length_kernel(const h6ar_loop_closed_params *params, const real_t
-    psi[1], const real_t phi[1], const real_t *cosines,
-    real_t l_W[1])
+CF_INLINE void h6ar_loop_closed_wrist_length_kernel(const h6ar_loop_closed_params *params,
+    const real_t psi[1], const real_t phi[1],
+    const real_t *cosines, real_t l_W[1])
 {
     const real_t d = params->d;
     const real_t gs = params->gs;
@@ -2370,8 +2375,9 @@ CF_INLINE void h6ar_loop_closed_wrist_length_kernel(const h6ar_loop_closed_param
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_wrist_length(const h6ar_loop_closed_params *params, const real_t
-    psi[1], const real_t phi[1], real_t l_W[1])
+void h6ar_loop_closed_wrist_length(const h6ar_loop_closed_params *params,
+    const real_t psi[1], const real_t phi[1],
+    real_t l_W[1])
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { phi[0], psi[0] };
@@ -2381,9 +2387,9 @@ void h6ar_loop_closed_wrist_length(const h6ar_loop_closed_params *params, const 
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_wrist_length_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *psi, size_t psi_stride, const real_t
-    *phi, size_t phi_stride, real_t *l_W, size_t
-    l_W_stride)
+    const real_t *psi, size_t psi_stride,
+    const real_t *phi, size_t phi_stride,
+    real_t *l_W, size_t l_W_stride)
 {
     (void)psi_stride;
     (void)phi_stride;
@@ -2406,8 +2412,8 @@ void h6ar_loop_closed_wrist_length_batch(size_t n, const h6ar_loop_closed_params
     }
 }
 
-CF_INLINE void h6ar_loop_closed_minimum_link_length_kernel(const h6ar_loop_closed_params *params, const real_t
-    *cosines, real_t al[1])
+CF_INLINE void h6ar_loop_closed_minimum_link_length_kernel(const h6ar_loop_closed_params *params,
+    const real_t *cosines, real_t al[1])
 {
     const real_t d = params->d;
     const real_t gs = params->gs;
@@ -2419,9 +2425,9 @@ CF_INLINE void h6ar_loop_closed_minimum_link_length_kernel(const h6ar_loop_close
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_minimum_link_length(const h6ar_loop_closed_params *params, const real_t
-    psi_max[1], const real_t phi_max[1], const real_t
-    beta_min[1], real_t al[1])
+void h6ar_loop_closed_minimum_link_length(const h6ar_loop_closed_params *params,
+    const real_t psi_max[1], const real_t phi_max[1],
+    const real_t beta_min[1], real_t al[1])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { phi_max[0], psi_max[0], beta_min[0] };
@@ -2431,10 +2437,10 @@ void h6ar_loop_closed_minimum_link_length(const h6ar_loop_closed_params *params,
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_minimum_link_length_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *psi_max, size_t psi_max_stride, const
-    real_t *phi_max, size_t phi_max_stride, const real_t
-    *beta_min, size_t beta_min_stride, real_t *al,
-    size_t al_stride)
+    const real_t *psi_max, size_t psi_max_stride,
+    const real_t *phi_max, size_t phi_max_stride,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *al, size_t al_stride)
 {
     (void)psi_max_stride;
     (void)phi_max_stride;
@@ -2457,9 +2463,9 @@ void h6ar_loop_closed_minimum_link_length_batch(size_t n, const h6ar_loop_closed
     }
 }
 
-CF_INLINE void h6ar_loop_closed_largest_yaw_kernel(const h6ar_loop_closed_params *params, const real_t
-    phi[1], const real_t beta_min[1], const real_t
-    *cosines, real_t psi[1])
+CF_INLINE void h6ar_loop_closed_largest_yaw_kernel(const h6ar_loop_closed_params *params,
+    const real_t phi[1], const real_t beta_min[1],
+    const real_t *cosines, real_t psi[1])
 {
     const real_t d = params->d;
     const real_t gs = params->gs;
@@ -2481,8 +2487,9 @@ CF_INLINE void h6ar_loop_closed_largest_yaw_kernel(const h6ar_loop_closed_params
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_largest_yaw(const h6ar_loop_closed_params *params, const real_t
-    phi[1], const real_t beta_min[1], real_t psi[1])
+void h6ar_loop_closed_largest_yaw(const h6ar_loop_closed_params *params,
+    const real_t phi[1], const real_t beta_min[1],
+    real_t psi[1])
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { beta_min[0], phi[0] };
@@ -2492,9 +2499,9 @@ void h6ar_loop_closed_largest_yaw(const h6ar_loop_closed_params *params, const r
 
 CLOSEDFORM_DISPATCHED
 void h6ar_loop_closed_largest_yaw_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *phi, size_t phi_stride, const real_t
-    *beta_min, size_t beta_min_stride, real_t *psi,
-    size_t psi_stride)
+    const real_t *phi, size_t phi_stride,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *psi, size_t psi_stride)
 {
     (void)phi_stride;
     (void)beta_min_stride;
@@ -2517,8 +2524,9 @@ void h6ar_loop_closed_largest_yaw_batch(size_t n, const h6ar_loop_closed_params 
     }
 }
 
-CF_INLINE void h6ar_loop_closed_largest_angle_kernel(const h6ar_loop_closed_params *params, const real_t
-    beta_min[1], const real_t *cosines, real_t angle[1])
+CF_INLINE void h6ar_loop_closed_largest_angle_kernel(const h6ar_loop_closed_params *params,
+    const real_t beta_min[1], const real_t *cosines,
+    real_t angle[1])
 {
     const real_t d = params->d;
     const real_t gs = params->gs;
@@ -2537,8 +2545,8 @@ CF_INLINE void h6ar_loop_closed_largest_angle_kernel(const h6ar_loop_closed_para
 }
 
 CLOSEDFORM_DISPATCHED
-void h6ar_loop_closed_largest_angle(const h6ar_loop_closed_params *params, const real_t
-    beta_min[1], real_t angle[1])
+void h6ar_loop_closed_largest_angle(const h6ar_loop_closed_params *params,
+    const real_t beta_min[1], real_t angle[1])
 {
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { beta_min[0] };

@@ -58,11 +58,11 @@ typedef struct {
  * Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
  *     yaw and roll.
  */
-void h6ar_loop_closed_fk(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t x[6]);
+void h6ar_loop_closed_fk(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t x[6]);
 void h6ar_loop_closed_fk_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *x, size_t
-    x_stride);
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride);
 
 /*
  * Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
@@ -74,11 +74,11 @@ void h6ar_loop_closed_fk_batch(size_t n, const h6ar_loop_closed_params *params,
  * Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
  *     yaw and roll.
  */
-void h6ar_loop_closed_pose(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t T[16]);
+void h6ar_loop_closed_pose(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t T[16]);
 void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride);
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Tips of the right and of the left fore-arm.
@@ -86,11 +86,11 @@ void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params
  * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
  * Returns tips: shape (..., 2, 3).
  */
-void h6ar_loop_closed_arm_tips(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t tips[6]);
+void h6ar_loop_closed_arm_tips(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t tips[6]);
 void h6ar_loop_closed_arm_tips_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *tips,
-    size_t tips_stride);
+    const real_t *q, size_t q_stride,
+    real_t *tips, size_t tips_stride);
 
 /*
  * The invariant point, the middle of the tips.
@@ -98,11 +98,11 @@ void h6ar_loop_closed_arm_tips_batch(size_t n, const h6ar_loop_closed_params *pa
  * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
  * Returns p: shape (..., 3).
  */
-void h6ar_loop_closed_invariant_point(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t p[3]);
+void h6ar_loop_closed_invariant_point(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t p[3]);
 void h6ar_loop_closed_invariant_point_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *p, size_t
-    p_stride);
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride);
 
 /*
  * Derivative of the task by the joints.
@@ -115,11 +115,11 @@ void h6ar_loop_closed_invariant_point_batch(size_t n, const h6ar_loop_closed_par
  *     yaw and roll.
  * Unbounded where the wrist links are stretched: there l_W turns over.
  */
-void h6ar_loop_closed_jacobian(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t J[36]);
+void h6ar_loop_closed_jacobian(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t J[36]);
 void h6ar_loop_closed_jacobian_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride);
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the Jacobian; it has a pole where the virtual arm is straight.
@@ -130,11 +130,11 @@ void h6ar_loop_closed_jacobian_batch(size_t n, const h6ar_loop_closed_params *pa
  * Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
  *     yaw and roll.
  */
-void h6ar_loop_closed_determinant(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t det[1]);
+void h6ar_loop_closed_determinant(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t det[1]);
 void h6ar_loop_closed_determinant_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *det,
-    size_t det_stride);
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * The factors of the determinant, its pole, and the length of the wrist.
@@ -145,11 +145,11 @@ void h6ar_loop_closed_determinant_batch(size_t n, const h6ar_loop_closed_params 
  * Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
  *     yaw and roll.
  */
-void h6ar_loop_closed_singularities(const h6ar_loop_closed_params *params, const real_t
-    q[6], real_t factors[6]);
+void h6ar_loop_closed_singularities(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t factors[6]);
 void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *q, size_t q_stride, real_t *factors,
-    size_t factors_stride);
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other
@@ -167,11 +167,12 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  * A straight right arm is returned bent by a few units in the last place, so that fk can read
  *     the side.
  */
-void h6ar_loop_closed_ik(const h6ar_loop_closed_params *params, const real_t
-    x[6], real_t q[48], uint8_t status[8]);
+void h6ar_loop_closed_ik(const h6ar_loop_closed_params *params,
+    const real_t x[6], real_t q[48], uint8_t status[8]);
 void h6ar_loop_closed_ik_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *x, size_t x_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride);
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride);
 
 /*
  * The variable length l_W of the wrist; NaN where the links are too short.
@@ -180,12 +181,13 @@ void h6ar_loop_closed_ik_batch(size_t n, const h6ar_loop_closed_params *params,
  * phi: shape (...): phi.
  * Returns l_W: shape (...).
  */
-void h6ar_loop_closed_wrist_length(const h6ar_loop_closed_params *params, const real_t
-    psi[1], const real_t phi[1], real_t l_W[1]);
+void h6ar_loop_closed_wrist_length(const h6ar_loop_closed_params *params,
+    const real_t psi[1], const real_t phi[1],
+    real_t l_W[1]);
 void h6ar_loop_closed_wrist_length_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *psi, size_t psi_stride, const real_t
-    *phi, size_t phi_stride, real_t *l_W, size_t
-    l_W_stride);
+    const real_t *psi, size_t psi_stride,
+    const real_t *phi, size_t phi_stride,
+    real_t *l_W, size_t l_W_stride);
 
 /*
  * The shortest wrist links that keep the separation angle up to the given yaw and roll.
@@ -195,14 +197,14 @@ void h6ar_loop_closed_wrist_length_batch(size_t n, const h6ar_loop_closed_params
  * beta_min: shape (...): beta_min.
  * Returns al: shape (...).
  */
-void h6ar_loop_closed_minimum_link_length(const h6ar_loop_closed_params *params, const real_t
-    psi_max[1], const real_t phi_max[1], const real_t
-    beta_min[1], real_t al[1]);
+void h6ar_loop_closed_minimum_link_length(const h6ar_loop_closed_params *params,
+    const real_t psi_max[1], const real_t phi_max[1],
+    const real_t beta_min[1], real_t al[1]);
 void h6ar_loop_closed_minimum_link_length_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *psi_max, size_t psi_max_stride, const
-    real_t *phi_max, size_t phi_max_stride, const real_t
-    *beta_min, size_t beta_min_stride, real_t *al,
-    size_t al_stride);
+    const real_t *psi_max, size_t psi_max_stride,
+    const real_t *phi_max, size_t phi_max_stride,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *al, size_t al_stride);
 
 /*
  * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
@@ -210,20 +212,21 @@ void h6ar_loop_closed_minimum_link_length_batch(size_t n, const h6ar_loop_closed
  * beta_min: shape (...): beta_min.
  * Returns psi: shape (...).
  */
-void h6ar_loop_closed_largest_yaw(const h6ar_loop_closed_params *params, const real_t
-    phi[1], const real_t beta_min[1], real_t psi[1]);
+void h6ar_loop_closed_largest_yaw(const h6ar_loop_closed_params *params,
+    const real_t phi[1], const real_t beta_min[1],
+    real_t psi[1]);
 void h6ar_loop_closed_largest_yaw_batch(size_t n, const h6ar_loop_closed_params *params,
-    const real_t *phi, size_t phi_stride, const real_t
-    *beta_min, size_t beta_min_stride, real_t *psi,
-    size_t psi_stride);
+    const real_t *phi, size_t phi_stride,
+    const real_t *beta_min, size_t beta_min_stride,
+    real_t *psi, size_t psi_stride);
 
 /*
  * The largest angle that yaw and roll may both have; NaN where there is none.
  * beta_min: shape (...): beta_min.
  * Returns angle: shape (...).
  */
-void h6ar_loop_closed_largest_angle(const h6ar_loop_closed_params *params, const real_t
-    beta_min[1], real_t angle[1]);
+void h6ar_loop_closed_largest_angle(const h6ar_loop_closed_params *params,
+    const real_t beta_min[1], real_t angle[1]);
 void h6ar_loop_closed_largest_angle_batch(size_t n, const h6ar_loop_closed_params *params,
     const real_t *beta_min, size_t beta_min_stride,
     real_t *angle, size_t angle_stride);

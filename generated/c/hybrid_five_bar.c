@@ -19,9 +19,9 @@
  */
 #include "hybrid_five_bar.h"
 
-CF_INLINE void hybrid_five_bar_fk_kernel(const hybrid_five_bar_params *params, const real_t
-    q[3], const real_t *sines, const real_t *cosines,
-    real_t p[6], real_t status[2])
+CF_INLINE void hybrid_five_bar_fk_kernel(const hybrid_five_bar_params *params,
+    const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t p[6], real_t status[2])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -76,8 +76,8 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const hybrid_five_bar_params *params, c
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_fk(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t p[6], uint8_t status[2])
+void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t p[6], uint8_t status[2])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[2], q[0] };
@@ -90,8 +90,9 @@ void hybrid_five_bar_fk(const hybrid_five_bar_params *params, const real_t
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *p, size_t
-    p_stride, uint8_t *status, size_t status_stride)
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -127,8 +128,9 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
     }
 }
 
-CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int vector, const hybrid_five_bar_params
-    *params, const real_t q[3], const real_t *sines,
+CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int vector,
+    const hybrid_five_bar_params *params,
+    const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t theta[4])
 {
     const real_t L0 = params->L0;
@@ -187,8 +189,8 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int vector, const hyb
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t theta[4])
+void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t theta[4])
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
@@ -198,8 +200,8 @@ void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params, const 
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *theta,
-    size_t theta_stride)
+    const real_t *q, size_t q_stride,
+    real_t *theta, size_t theta_stride)
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -222,9 +224,9 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
     }
 }
 
-CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const hybrid_five_bar_params *params, const real_t
-    q[3], const real_t *sines, const real_t *cosines,
-    real_t A[18])
+CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const hybrid_five_bar_params *params,
+    const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t A[18])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -294,8 +296,8 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const hybrid_five_bar_pa
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t A[18])
+void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t A[18])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
@@ -305,8 +307,8 @@ void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params, con
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *A, size_t
-    A_stride)
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride)
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -344,9 +346,9 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
     }
 }
 
-CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_params *params, const real_t
-    q[3], const real_t *sines, const real_t *cosines,
-    real_t B[6])
+CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_params *params,
+    const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t B[6])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -399,8 +401,8 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_para
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t B[6])
+void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t B[6])
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
@@ -410,8 +412,8 @@ void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params, const
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *B, size_t
-    B_stride)
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride)
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -436,9 +438,9 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
     }
 }
 
-CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *params, const real_t
-    q[3], const real_t *sines, const real_t *cosines,
-    real_t J[18])
+CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *params,
+    const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t J[18])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -517,8 +519,8 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *par
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t J[18])
+void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t J[18])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[2], q[0] };
@@ -528,8 +530,8 @@ void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params, const real_t
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride)
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -567,9 +569,9 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
     }
 }
 
-CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *params, const real_t
-    q[3], const real_t *sines, const real_t *cosines,
-    real_t det[2])
+CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *params,
+    const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t det[2])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -623,8 +625,8 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_determinant(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t det[2])
+void hybrid_five_bar_determinant(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t det[2])
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
@@ -634,8 +636,8 @@ void hybrid_five_bar_determinant(const hybrid_five_bar_params *params, const rea
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *det,
-    size_t det_stride)
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -656,9 +658,9 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
     }
 }
 
-CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params *params, const real_t
-    q[3], const real_t *sines, const real_t *cosines,
-    real_t factors[8])
+CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params *params,
+    const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t factors[8])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -714,8 +716,8 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_singularities(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t factors[8])
+void hybrid_five_bar_singularities(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t factors[8])
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
@@ -725,8 +727,8 @@ void hybrid_five_bar_singularities(const hybrid_five_bar_params *params, const r
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *factors,
-    size_t factors_stride)
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -753,9 +755,9 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
     }
 }
 
-CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_params *params, const real_t
-    q[3], const real_t *sines, const real_t *cosines,
-    real_t kappa[2])
+CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_params *params,
+    const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t kappa[2])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -792,8 +794,8 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_par
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t kappa[2])
+void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t kappa[2])
 {
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
@@ -803,8 +805,8 @@ void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params, cons
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *kappa,
-    size_t kappa_stride)
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride)
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -825,9 +827,9 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
     }
 }
 
-CF_INLINE void hybrid_five_bar_ik_kernel(const int vector, const hybrid_five_bar_params
-    *params, const real_t x[3], real_t q[24], real_t
-    status[8])
+CF_INLINE void hybrid_five_bar_ik_kernel(const int vector,
+    const hybrid_five_bar_params *params,
+    const real_t x[3], real_t q[24], real_t status[8])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -932,8 +934,8 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int vector, const hybrid_five_bar
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_ik(const hybrid_five_bar_params *params, const real_t
-    x[3], real_t q[24], uint8_t status[8])
+void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
+    const real_t x[3], real_t q[24], uint8_t status[8])
 {
     real_t status_real[8];
     hybrid_five_bar_ik_kernel(1, params, x, q, status_real);
@@ -943,8 +945,9 @@ void hybrid_five_bar_ik(const hybrid_five_bar_params *params, const real_t
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *x, size_t x_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride)
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
 {
     const hybrid_five_bar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -1016,8 +1019,8 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
     }
 }
 
-CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_params *params, const real_t
-    p[3], real_t inside[1])
+CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_params *params,
+    const real_t p[3], real_t inside[1])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -1043,8 +1046,8 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params, const real_t
-    p[3], uint8_t inside[1])
+void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params,
+    const real_t p[3], uint8_t inside[1])
 {
     real_t inside_real[1];
     hybrid_five_bar_workspace_contains_kernel(params, p, inside_real);
@@ -1054,8 +1057,8 @@ void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params, co
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *p, size_t p_stride, uint8_t *inside,
-    size_t inside_stride)
+    const real_t *p, size_t p_stride,
+    uint8_t *inside, size_t inside_stride)
 {
     (void)inside_stride;
     const hybrid_five_bar_params local = *params;
@@ -1075,8 +1078,8 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
     }
 }
 
-CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_params *params, real_t
-    volume[1])
+CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_params *params,
+    real_t volume[1])
 {
     const real_t L0 = params->L0;
     const real_t L1 = params->L1;
@@ -1115,8 +1118,8 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_par
 }
 
 CLOSEDFORM_DISPATCHED
-void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params, real_t
-    volume[1])
+void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params,
+    real_t volume[1])
 {
     hybrid_five_bar_workspace_volume_kernel(params, volume);
 }

@@ -53,11 +53,12 @@ typedef struct {
  *     theta4 = theta5 = +90 or -90 degrees is returned.
  * Ill-conditioned near the parallel singularities, where both modes meet or P is free.
  */
-void hybrid_five_bar_fk(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t p[6], uint8_t status[2]);
+void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t p[6], uint8_t status[2]);
 void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *p, size_t
-    p_stride, uint8_t *status, size_t status_stride);
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride);
 
 /*
  * Angles theta4 and theta5 of CP and DP in both assembly modes.
@@ -67,11 +68,11 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
  * NaN for an assembly mode that does not exist.
  * Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
  */
-void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t theta[4]);
+void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t theta[4]);
 void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *theta,
-    size_t theta_stride);
+    const real_t *q, size_t q_stride,
+    real_t *theta, size_t theta_stride);
 
 /*
  * A of A*dp = B*dq; its rows are L2*k, p - c and p - d.
@@ -80,11 +81,11 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
  * Branches: left_of_CD, right_of_CD.
  * NaN for an assembly mode that does not exist.
  */
-void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t A[18]);
+void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t A[18]);
 void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *A, size_t
-    A_stride);
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride);
 
 /*
  * The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 -
@@ -95,11 +96,11 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
  * NaN for an assembly mode that does not exist.
  * Its signs tell the working modes apart, in the order of BRANCHES.
  */
-void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t B[6]);
+void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t B[6]);
 void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *B, size_t
-    B_stride);
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride);
 
 /*
  * Derivative of p with respect to q: A^-1*B.
@@ -109,11 +110,11 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
  * NaN for an assembly mode that does not exist.
  * Not finite at a parallel singularity.
  */
-void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t J[18]);
+void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t J[18]);
 void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride);
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the Jacobian.
@@ -123,11 +124,11 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
  * NaN for an assembly mode that does not exist.
  * Not finite at a parallel singularity.
  */
-void hybrid_five_bar_determinant(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t det[2]);
+void hybrid_five_bar_determinant(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t det[2]);
 void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *det,
-    size_t det_stride);
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and
@@ -137,11 +138,11 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
  * Branches: left_of_CD, right_of_CD.
  * NaN for an assembly mode that does not exist.
  */
-void hybrid_five_bar_singularities(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t factors[8]);
+void hybrid_five_bar_singularities(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t factors[8]);
 void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *factors,
-    size_t factors_stride);
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * Ratio of the largest to the smallest singular value of A.
@@ -152,11 +153,11 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
  * Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
  *     same.
  */
-void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params, const real_t
-    q[3], real_t kappa[2]);
+void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t kappa[2]);
 void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *q, size_t q_stride, real_t *kappa,
-    size_t kappa_stride);
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride);
 
 /*
  * The driven angles of all eight working modes.
@@ -174,11 +175,12 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
  *     the loop still closes.  fk loses them again near a parallel singularity.
  * If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.
  */
-void hybrid_five_bar_ik(const hybrid_five_bar_params *params, const real_t
-    x[3], real_t q[24], uint8_t status[8]);
+void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
+    const real_t x[3], real_t q[24], uint8_t status[8]);
 void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *x, size_t x_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride);
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride);
 
 /*
  * Whether P can be reached: it lies in both hollow spheres.
@@ -186,11 +188,11 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
  * p: shape (..., 3): x, y, z.
  * Returns inside: shape (...).
  */
-void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params, const real_t
-    p[3], uint8_t inside[1]);
+void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params,
+    const real_t p[3], uint8_t inside[1]);
 void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_params *params,
-    const real_t *p, size_t p_stride, uint8_t *inside,
-    size_t inside_stride);
+    const real_t *p, size_t p_stride,
+    uint8_t *inside, size_t inside_stride);
 
 /*
  * Volume of the workspace.
@@ -198,8 +200,8 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
  * Returns volume: shape (...).
  * NaN for a length that is negative or not finite.
  */
-void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params, real_t
-    volume[1]);
+void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params,
+    real_t volume[1]);
 void hybrid_five_bar_workspace_volume_batch(size_t n, const hybrid_five_bar_params *params,
     real_t *volume, size_t volume_stride);
 

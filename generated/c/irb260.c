@@ -23,8 +23,8 @@
  */
 #include "irb260.h"
 
-CF_INLINE void irb260_joint4_kernel(const real_t *sines, const real_t *cosines, real_t
-    theta4[1])
+CF_INLINE void irb260_joint4_kernel(const real_t *sines, const real_t *cosines,
+    real_t theta4[1])
 {
     const real_t s2 = sines[0];
     const real_t c2 = cosines[0];
@@ -46,9 +46,9 @@ void irb260_joint4(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_joint4_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *theta4, size_t
-    theta4_stride)
+void irb260_joint4_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *theta4, size_t theta4_stride)
 {
     (void)params;
     (void)theta4_stride;
@@ -89,9 +89,9 @@ void irb260_joints_from_motors(const irb260_params *params, const real_t motors[
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_joints_from_motors_batch(size_t n, const irb260_params *params, const real_t
-    *motors, size_t motors_stride, real_t *q, size_t
-    q_stride)
+void irb260_joints_from_motors_batch(size_t n, const irb260_params *params,
+    const real_t *motors, size_t motors_stride,
+    real_t *q, size_t q_stride)
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -130,9 +130,9 @@ void irb260_motors_from_joints(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_motors_from_joints_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *motors, size_t
-    motors_stride)
+void irb260_motors_from_joints_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *motors, size_t motors_stride)
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -186,8 +186,9 @@ void irb260_fk(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_fk_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *x, size_t x_stride)
+void irb260_fk_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride)
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -260,8 +261,9 @@ void irb260_pose(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_pose_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride)
+void irb260_pose_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -344,8 +346,9 @@ void irb260_jacobian(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_jacobian_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void irb260_jacobian_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -435,8 +438,9 @@ void irb260_jacobian_space(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_jacobian_space_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void irb260_jacobian_space_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -534,8 +538,9 @@ void irb260_jacobian_body(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_jacobian_body_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void irb260_jacobian_body_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -625,8 +630,9 @@ void irb260_jacobian_motors(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_jacobian_motors_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void irb260_jacobian_motors_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -687,8 +693,9 @@ void irb260_determinant(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_determinant_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride)
+void irb260_determinant_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     (void)det_stride;
     const irb260_params local = *params;
@@ -734,9 +741,9 @@ void irb260_singularities(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_singularities_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride)
+void irb260_singularities_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -757,8 +764,8 @@ void irb260_singularities_batch(size_t n, const irb260_params *params, const rea
 }
 
 CF_INLINE void irb260_point_velocity_kernel(const irb260_params *params, const real_t qdot[4],
-    const real_t *sines, const real_t *cosines, real_t
-    v[3])
+    const real_t *sines, const real_t *cosines,
+    real_t v[3])
 {
     const real_t l1 = params->l1;
     const real_t l3 = params->l3;
@@ -796,9 +803,10 @@ void irb260_point_velocity(const irb260_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_point_velocity_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, const real_t *qdot, size_t
-    qdot_stride, real_t *v, size_t v_stride)
+void irb260_point_velocity_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    const real_t *qdot, size_t qdot_stride,
+    real_t *v, size_t v_stride)
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -821,9 +829,10 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params, const re
     }
 }
 
-CF_INLINE void irb260_ik_kernel(const int vector, const irb260_params *params, const
-    real_t x[4], const real_t *sines, const real_t
-    *cosines, real_t q[16], real_t status[4])
+CF_INLINE void irb260_ik_kernel(const int vector, const irb260_params *params,
+    const real_t x[4], const real_t *sines,
+    const real_t *cosines, real_t q[16],
+    real_t status[4])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -956,8 +965,9 @@ void irb260_ik(const irb260_params *params, const real_t x[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_ik_batch(size_t n, const irb260_params *params, const real_t
-    *x, size_t x_stride, real_t *q, size_t q_stride,
+void irb260_ik_batch(size_t n, const irb260_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
     const irb260_params local = *params;
@@ -1031,8 +1041,8 @@ void irb260_workspace_section(const irb260_params *params, real_t section[4])
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_workspace_section_batch(size_t n, const irb260_params *params, real_t
-    *section, size_t section_stride)
+void irb260_workspace_section_batch(size_t n, const irb260_params *params,
+    real_t *section, size_t section_stride)
 {
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -1083,9 +1093,9 @@ void irb260_workspace_margin(const irb260_params *params, const real_t p[3],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_workspace_margin_batch(size_t n, const irb260_params *params, const real_t
-    *p, size_t p_stride, real_t *margin, size_t
-    margin_stride)
+void irb260_workspace_margin_batch(size_t n, const irb260_params *params,
+    const real_t *p, size_t p_stride,
+    real_t *margin, size_t margin_stride)
 {
     (void)margin_stride;
     const irb260_params local = *params;
@@ -1146,9 +1156,9 @@ void irb260_workspace_contains(const irb260_params *params, const real_t p[3],
 }
 
 CLOSEDFORM_DISPATCHED
-void irb260_workspace_contains_batch(size_t n, const irb260_params *params, const real_t
-    *p, size_t p_stride, uint8_t *inside, size_t
-    inside_stride)
+void irb260_workspace_contains_batch(size_t n, const irb260_params *params,
+    const real_t *p, size_t p_stride,
+    uint8_t *inside, size_t inside_stride)
 {
     (void)inside_stride;
     const irb260_params local = *params;

@@ -57,9 +57,9 @@ typedef struct {
  */
 void irb260_joint4(const irb260_params *params, const real_t q[4],
     real_t theta4[1]);
-void irb260_joint4_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *theta4, size_t
-    theta4_stride);
+void irb260_joint4_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *theta4, size_t theta4_stride);
 
 /*
  * Joint angles of motor angles: theta3 = m3 - m2.
@@ -69,9 +69,9 @@ void irb260_joint4_batch(size_t n, const irb260_params *params, const real_t
  */
 void irb260_joints_from_motors(const irb260_params *params, const real_t motors[4],
     real_t q[4]);
-void irb260_joints_from_motors_batch(size_t n, const irb260_params *params, const real_t
-    *motors, size_t motors_stride, real_t *q, size_t
-    q_stride);
+void irb260_joints_from_motors_batch(size_t n, const irb260_params *params,
+    const real_t *motors, size_t motors_stride,
+    real_t *q, size_t q_stride);
 
 /*
  * Motor angles of joint angles: m3 = theta2 + theta3.
@@ -81,9 +81,9 @@ void irb260_joints_from_motors_batch(size_t n, const irb260_params *params, cons
  */
 void irb260_motors_from_joints(const irb260_params *params, const real_t q[4],
     real_t motors[4]);
-void irb260_motors_from_joints_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *motors, size_t
-    motors_stride);
+void irb260_motors_from_joints_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *motors, size_t motors_stride);
 
 /*
  * Position of the hand and its angle about z.
@@ -94,8 +94,9 @@ void irb260_motors_from_joints_batch(size_t n, const irb260_params *params, cons
  */
 void irb260_fk(const irb260_params *params, const real_t q[4],
     real_t x[4]);
-void irb260_fk_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *x, size_t x_stride);
+void irb260_fk_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride);
 
 /*
  * Pose of the hand in the base frame.
@@ -105,8 +106,9 @@ void irb260_fk_batch(size_t n, const irb260_params *params, const real_t
  */
 void irb260_pose(const irb260_params *params, const real_t q[4],
     real_t T[16]);
-void irb260_pose_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride);
+void irb260_pose_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Derivative of (x, y, z, yaw) with respect to the joint angles.
@@ -116,8 +118,9 @@ void irb260_pose_batch(size_t n, const irb260_params *params, const real_t
  */
 void irb260_jacobian(const irb260_params *params, const real_t q[4],
     real_t J[16]);
-void irb260_jacobian_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void irb260_jacobian_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Twist (v; omega) of the hand in the base frame per joint rate.
@@ -127,8 +130,9 @@ void irb260_jacobian_batch(size_t n, const irb260_params *params, const real_t
  */
 void irb260_jacobian_space(const irb260_params *params, const real_t q[4],
     real_t J[24]);
-void irb260_jacobian_space_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void irb260_jacobian_space_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Twist (v; omega) of the hand in its own frame per joint rate.
@@ -137,8 +141,9 @@ void irb260_jacobian_space_batch(size_t n, const irb260_params *params, const re
  */
 void irb260_jacobian_body(const irb260_params *params, const real_t q[4],
     real_t J[24]);
-void irb260_jacobian_body_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void irb260_jacobian_body_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Derivative of (x, y, z, yaw) with respect to the motor angles, at joint angles.
@@ -147,8 +152,9 @@ void irb260_jacobian_body_batch(size_t n, const irb260_params *params, const rea
  */
 void irb260_jacobian_motors(const irb260_params *params, const real_t q[4],
     real_t J[16]);
-void irb260_jacobian_motors_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void irb260_jacobian_motors_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the task Jacobian.
@@ -157,8 +163,9 @@ void irb260_jacobian_motors_batch(size_t n, const irb260_params *params, const r
  */
 void irb260_determinant(const irb260_params *params, const real_t q[4],
     real_t det[1]);
-void irb260_determinant_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride);
+void irb260_determinant_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * The factors rho (hand on the base axis) and cos(theta3) (arm straight or folded).
@@ -167,9 +174,9 @@ void irb260_determinant_batch(size_t n, const irb260_params *params, const real_
  */
 void irb260_singularities(const irb260_params *params, const real_t q[4],
     real_t factors[2]);
-void irb260_singularities_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride);
+void irb260_singularities_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * Velocity of the origin of the hand, in the base frame.
@@ -180,9 +187,10 @@ void irb260_singularities_batch(size_t n, const irb260_params *params, const rea
  */
 void irb260_point_velocity(const irb260_params *params, const real_t q[4],
     const real_t qdot[4], real_t v[3]);
-void irb260_point_velocity_batch(size_t n, const irb260_params *params, const real_t
-    *q, size_t q_stride, const real_t *qdot, size_t
-    qdot_stride, real_t *v, size_t v_stride);
+void irb260_point_velocity_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    const real_t *qdot, size_t qdot_stride,
+    real_t *v, size_t v_stride);
 
 /*
  * All four configurations of a position and a yaw.
@@ -201,8 +209,9 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params, const re
  */
 void irb260_ik(const irb260_params *params, const real_t x[4],
     real_t q[16], uint8_t status[4]);
-void irb260_ik_batch(size_t n, const irb260_params *params, const real_t
-    *x, size_t x_stride, real_t *q, size_t q_stride,
+void irb260_ik_batch(size_t n, const irb260_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride);
 
 /*
@@ -211,8 +220,8 @@ void irb260_ik_batch(size_t n, const irb260_params *params, const real_t
  * Radius and height of the centre, inner and outer radius.
  */
 void irb260_workspace_section(const irb260_params *params, real_t section[4]);
-void irb260_workspace_section_batch(size_t n, const irb260_params *params, real_t
-    *section, size_t section_stride);
+void irb260_workspace_section_batch(size_t n, const irb260_params *params,
+    real_t *section, size_t section_stride);
 
 /*
  * How far a position is inside the workspace, in the plane of the arm; negative outside.
@@ -221,9 +230,9 @@ void irb260_workspace_section_batch(size_t n, const irb260_params *params, real_
  */
 void irb260_workspace_margin(const irb260_params *params, const real_t p[3],
     real_t margin[1]);
-void irb260_workspace_margin_batch(size_t n, const irb260_params *params, const real_t
-    *p, size_t p_stride, real_t *margin, size_t
-    margin_stride);
+void irb260_workspace_margin_batch(size_t n, const irb260_params *params,
+    const real_t *p, size_t p_stride,
+    real_t *margin, size_t margin_stride);
 
 /*
  * Whether some configuration reaches a position, whatever the yaw.
@@ -233,9 +242,9 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params, const 
  */
 void irb260_workspace_contains(const irb260_params *params, const real_t p[3],
     uint8_t inside[1]);
-void irb260_workspace_contains_batch(size_t n, const irb260_params *params, const real_t
-    *p, size_t p_stride, uint8_t *inside, size_t
-    inside_stride);
+void irb260_workspace_contains_batch(size_t n, const irb260_params *params,
+    const real_t *p, size_t p_stride,
+    uint8_t *inside, size_t inside_stride);
 
 #ifdef __cplusplus
 }

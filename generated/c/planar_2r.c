@@ -41,9 +41,9 @@ void planar_2r_fk(const planar_2r_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_fk_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *x, size_t
-    x_stride)
+void planar_2r_fk_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride)
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -103,9 +103,9 @@ void planar_2r_pose(const planar_2r_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_pose_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride)
+void planar_2r_pose_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -139,8 +139,8 @@ void planar_2r_pose_batch(size_t n, const planar_2r_params *params, const
     }
 }
 
-CF_INLINE void planar_2r_orientation_kernel(const real_t *sines, const real_t *cosines, real_t
-    phi[1])
+CF_INLINE void planar_2r_orientation_kernel(const real_t *sines, const real_t *cosines,
+    real_t phi[1])
 {
     const real_t s1 = sines[0];
     const real_t c1 = cosines[0];
@@ -162,9 +162,9 @@ void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_orientation_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *phi, size_t
-    phi_stride)
+void planar_2r_orientation_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *phi, size_t phi_stride)
 {
     (void)params;
     (void)phi_stride;
@@ -214,9 +214,9 @@ void planar_2r_jacobian(const planar_2r_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_jacobian_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride)
+void planar_2r_jacobian_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -260,9 +260,9 @@ void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_determinant_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *det, size_t
-    det_stride)
+void planar_2r_determinant_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     (void)det_stride;
     const planar_2r_params local = *params;
@@ -300,9 +300,9 @@ void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *w, size_t
-    w_stride)
+void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *w, size_t w_stride)
 {
     (void)w_stride;
     const planar_2r_params local = *params;
@@ -338,9 +338,9 @@ void planar_2r_singularities(const planar_2r_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_singularities_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *factors, size_t
-    factors_stride)
+void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     (void)params;
     (void)factors_stride;
@@ -417,9 +417,10 @@ void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_ik_batch(size_t n, const planar_2r_params *params, const
-    real_t *x, size_t x_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride)
+void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -526,9 +527,10 @@ void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params, const
-    real_t *T, size_t T_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride)
+void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
 {
     (void)status_stride;
     const planar_2r_params local = *params;
@@ -566,8 +568,8 @@ void planar_2r_workspace_radii(const planar_2r_params *params, real_t radii[2])
 }
 
 CLOSEDFORM_DISPATCHED
-void planar_2r_workspace_radii_batch(size_t n, const planar_2r_params *params, real_t
-    *radii, size_t radii_stride)
+void planar_2r_workspace_radii_batch(size_t n, const planar_2r_params *params,
+    real_t *radii, size_t radii_stride)
 {
     const planar_2r_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {

@@ -47,9 +47,9 @@ typedef struct {
  */
 void planar_2r_fk(const planar_2r_params *params, const real_t q[2],
     real_t x[2]);
-void planar_2r_fk_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *x, size_t
-    x_stride);
+void planar_2r_fk_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride);
 
 /*
  * Pose of the hand frame in the base frame.
@@ -59,9 +59,9 @@ void planar_2r_fk_batch(size_t n, const planar_2r_params *params, const
  */
 void planar_2r_pose(const planar_2r_params *params, const real_t q[2],
     real_t T[16]);
-void planar_2r_pose_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride);
+void planar_2r_pose_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Angle phi of the last link against the x axis: the sum of the joint angles, in (-pi, pi].
@@ -71,9 +71,9 @@ void planar_2r_pose_batch(size_t n, const planar_2r_params *params, const
  */
 void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
     real_t phi[1]);
-void planar_2r_orientation_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *phi, size_t
-    phi_stride);
+void planar_2r_orientation_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *phi, size_t phi_stride);
 
 /*
  * Derivative of (x, y, phi) with respect to (theta1, theta2).
@@ -83,9 +83,9 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params, const
  */
 void planar_2r_jacobian(const planar_2r_params *params, const real_t q[2],
     real_t J[6]);
-void planar_2r_jacobian_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride);
+void planar_2r_jacobian_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the rows of x and y of the Jacobian.
@@ -94,9 +94,9 @@ void planar_2r_jacobian_batch(size_t n, const planar_2r_params *params, const
  */
 void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
     real_t det[1]);
-void planar_2r_determinant_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *det, size_t
-    det_stride);
+void planar_2r_determinant_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * Yoshikawa's manipulability of the position, the modulus of the determinant.
@@ -105,9 +105,9 @@ void planar_2r_determinant_batch(size_t n, const planar_2r_params *params, const
  */
 void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
     real_t w[1]);
-void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *w, size_t
-    w_stride);
+void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *w, size_t w_stride);
 
 /*
  * The factor that vanishes exactly where the arm is stretched or folded.
@@ -116,9 +116,9 @@ void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params, co
  */
 void planar_2r_singularities(const planar_2r_params *params, const real_t q[2],
     real_t factors[1]);
-void planar_2r_singularities_batch(size_t n, const planar_2r_params *params, const
-    real_t *q, size_t q_stride, real_t *factors, size_t
-    factors_stride);
+void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * Both elbow configurations that reach a position.
@@ -133,9 +133,10 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params, con
  */
 void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
     real_t q[4], uint8_t status[2]);
-void planar_2r_ik_batch(size_t n, const planar_2r_params *params, const
-    real_t *x, size_t x_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride);
+void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride);
 
 /*
  * The joint angles of a full pose; there is at most one.
@@ -147,17 +148,18 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params, const
  */
 void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
     real_t q[2], uint8_t status[1]);
-void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params, const
-    real_t *T, size_t T_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride);
+void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride);
 
 /*
  * Inner and outer radius of the annulus that the hand can reach.
  * Returns radii: shape (..., 2).
  */
 void planar_2r_workspace_radii(const planar_2r_params *params, real_t radii[2]);
-void planar_2r_workspace_radii_batch(size_t n, const planar_2r_params *params, real_t
-    *radii, size_t radii_stride);
+void planar_2r_workspace_radii_batch(size_t n, const planar_2r_params *params,
+    real_t *radii, size_t radii_stride);
 
 #ifdef __cplusplus
 }

@@ -79,8 +79,9 @@ void puma560_fk(const puma560_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void puma560_fk_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride)
+void puma560_fk_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const puma560_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -182,8 +183,9 @@ void puma560_pose(const puma560_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void puma560_pose_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride)
+void puma560_pose_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const puma560_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -297,8 +299,9 @@ void puma560_jacobian(const puma560_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void puma560_jacobian_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void puma560_jacobian_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const puma560_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -443,8 +446,9 @@ void puma560_jacobian_space(const puma560_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void puma560_jacobian_space_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void puma560_jacobian_space_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const puma560_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -590,8 +594,9 @@ void puma560_jacobian_body(const puma560_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void puma560_jacobian_body_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void puma560_jacobian_body_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const puma560_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -682,8 +687,9 @@ void puma560_determinant(const puma560_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void puma560_determinant_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride)
+void puma560_determinant_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     (void)det_stride;
     const puma560_params local = *params;
@@ -732,9 +738,9 @@ void puma560_singularities(const puma560_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void puma560_singularities_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride)
+void puma560_singularities_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     const puma560_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -1049,8 +1055,9 @@ void puma560_ik(const puma560_params *params, const real_t T[16],
 }
 
 CLOSEDFORM_DISPATCHED
-void puma560_ik_batch(size_t n, const puma560_params *params, const real_t
-    *T, size_t T_stride, real_t *q, size_t q_stride,
+void puma560_ik_batch(size_t n, const puma560_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
     const puma560_params local = *params;

@@ -46,8 +46,9 @@ typedef struct {
  */
 void puma560_fk(const puma560_params *params, const real_t q[6],
     real_t T[16]);
-void puma560_fk_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride);
+void puma560_fk_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * The same as fk.
@@ -56,8 +57,9 @@ void puma560_fk_batch(size_t n, const puma560_params *params, const real_t
  */
 void puma560_pose(const puma560_params *params, const real_t q[6],
     real_t T[16]);
-void puma560_pose_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride);
+void puma560_pose_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
@@ -67,8 +69,9 @@ void puma560_pose_batch(size_t n, const puma560_params *params, const real_t
  */
 void puma560_jacobian(const puma560_params *params, const real_t q[6],
     real_t J[36]);
-void puma560_jacobian_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void puma560_jacobian_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Twist (v; omega) of the hand in the base frame per joint rate.
@@ -77,8 +80,9 @@ void puma560_jacobian_batch(size_t n, const puma560_params *params, const real_t
  */
 void puma560_jacobian_space(const puma560_params *params, const real_t q[6],
     real_t J[36]);
-void puma560_jacobian_space_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void puma560_jacobian_space_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Twist (v; omega) of the hand in its own frame per joint rate.
@@ -87,8 +91,9 @@ void puma560_jacobian_space_batch(size_t n, const puma560_params *params, const 
  */
 void puma560_jacobian_body(const puma560_params *params, const real_t q[6],
     real_t J[36]);
-void puma560_jacobian_body_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void puma560_jacobian_body_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the Jacobian.
@@ -97,8 +102,9 @@ void puma560_jacobian_body_batch(size_t n, const puma560_params *params, const r
  */
 void puma560_determinant(const puma560_params *params, const real_t q[6],
     real_t det[1]);
-void puma560_determinant_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride);
+void puma560_determinant_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * The factors whose zeros are the singular set: shoulder, elbow, wrist.
@@ -107,9 +113,9 @@ void puma560_determinant_batch(size_t n, const puma560_params *params, const rea
  */
 void puma560_singularities(const puma560_params *params, const real_t q[6],
     real_t factors[3]);
-void puma560_singularities_batch(size_t n, const puma560_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride);
+void puma560_singularities_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * All 8 configurations of a pose.
@@ -131,8 +137,9 @@ void puma560_singularities_batch(size_t n, const puma560_params *params, const r
  */
 void puma560_ik(const puma560_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8]);
-void puma560_ik_batch(size_t n, const puma560_params *params, const real_t
-    *T, size_t T_stride, real_t *q, size_t q_stride,
+void puma560_ik_batch(size_t n, const puma560_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride);
 
 #ifdef __cplusplus

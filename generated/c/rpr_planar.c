@@ -60,9 +60,10 @@ void rpr_planar_fk(const rpr_planar_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *p, size_t
-    p_stride, uint8_t *status, size_t status_stride)
+void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
 {
     const rpr_planar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -140,9 +141,9 @@ void rpr_planar_passive_angles(const rpr_planar_params *params, const real_t q[2
 }
 
 CLOSEDFORM_DISPATCHED
-void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *theta, size_t
-    theta_stride)
+void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *theta, size_t theta_stride)
 {
     const rpr_planar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -209,9 +210,9 @@ void rpr_planar_jacobian(const rpr_planar_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride)
+void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const rpr_planar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -269,9 +270,9 @@ void rpr_planar_determinant(const rpr_planar_params *params, const real_t q[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *det, size_t
-    det_stride)
+void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     const rpr_planar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -329,9 +330,9 @@ void rpr_planar_singularities(const rpr_planar_params *params, const real_t q[2]
 }
 
 CLOSEDFORM_DISPATCHED
-void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *factors, size_t
-    factors_stride)
+void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     const rpr_planar_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -378,9 +379,10 @@ void rpr_planar_ik(const rpr_planar_params *params, const real_t x[2],
 }
 
 CLOSEDFORM_DISPATCHED
-void rpr_planar_ik_batch(size_t n, const rpr_planar_params *params, const
-    real_t *x, size_t x_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride)
+void rpr_planar_ik_batch(size_t n, const rpr_planar_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
 {
     (void)status_stride;
     const rpr_planar_params local = *params;

@@ -44,9 +44,10 @@ typedef struct {
  */
 void rpr_planar_fk(const rpr_planar_params *params, const real_t q[2],
     real_t p[4], uint8_t status[2]);
-void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *p, size_t
-    p_stride, uint8_t *status, size_t status_stride);
+void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride);
 
 /*
  * Angles of the legs in both assembly modes.
@@ -56,9 +57,9 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params, const
  */
 void rpr_planar_passive_angles(const rpr_planar_params *params, const real_t q[2],
     real_t theta[4]);
-void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *theta, size_t
-    theta_stride);
+void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *theta, size_t theta_stride);
 
 /*
  * Derivative of p with respect to q, A^-1 B.
@@ -68,9 +69,9 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params, 
  */
 void rpr_planar_jacobian(const rpr_planar_params *params, const real_t q[2],
     real_t J[8]);
-void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride);
+void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the Jacobian.
@@ -80,9 +81,9 @@ void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params, const
  */
 void rpr_planar_determinant(const rpr_planar_params *params, const real_t q[2],
     real_t det[2]);
-void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *det, size_t
-    det_stride);
+void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * rho1 and rho2 (serial) and y (parallel).
@@ -92,9 +93,9 @@ void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params, con
  */
 void rpr_planar_singularities(const rpr_planar_params *params, const real_t q[2],
     real_t factors[6]);
-void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params, const
-    real_t *q, size_t q_stride, real_t *factors, size_t
-    factors_stride);
+void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * The lengths of the legs.
@@ -104,9 +105,10 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params, c
  */
 void rpr_planar_ik(const rpr_planar_params *params, const real_t x[2],
     real_t q[2], uint8_t status[1]);
-void rpr_planar_ik_batch(size_t n, const rpr_planar_params *params, const
-    real_t *x, size_t x_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride);
+void rpr_planar_ik_batch(size_t n, const rpr_planar_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride);
 
 #ifdef __cplusplus
 }

@@ -14,8 +14,9 @@
  */
 #include "scara.h"
 
-CF_INLINE void scara_pose_kernel(const scara_params *params, const real_t q[4], const
-    real_t *sines, const real_t *cosines, real_t T[16])
+CF_INLINE void scara_pose_kernel(const scara_params *params, const real_t q[4],
+    const real_t *sines, const real_t *cosines,
+    real_t T[16])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -60,8 +61,9 @@ void scara_pose(const scara_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void scara_pose_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride)
+void scara_pose_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const scara_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -97,8 +99,9 @@ void scara_pose_batch(size_t n, const scara_params *params, const real_t
     }
 }
 
-CF_INLINE void scara_fk_kernel(const scara_params *params, const real_t q[4], const
-    real_t *sines, const real_t *cosines, real_t x[4])
+CF_INLINE void scara_fk_kernel(const scara_params *params, const real_t q[4],
+    const real_t *sines, const real_t *cosines,
+    real_t x[4])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -130,8 +133,9 @@ void scara_fk(const scara_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void scara_fk_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *x, size_t x_stride)
+void scara_fk_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride)
 {
     const scara_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -195,8 +199,9 @@ void scara_jacobian(const scara_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void scara_jacobian_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void scara_jacobian_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const scara_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -250,8 +255,9 @@ void scara_determinant(const scara_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void scara_determinant_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride)
+void scara_determinant_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     (void)det_stride;
     const scara_params local = *params;
@@ -287,9 +293,9 @@ void scara_singularities(const scara_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void scara_singularities_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride)
+void scara_singularities_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     (void)params;
     (void)factors_stride;
@@ -355,8 +361,9 @@ void scara_jacobian_space(const scara_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void scara_jacobian_space_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void scara_jacobian_space_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const scara_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -446,8 +453,9 @@ void scara_jacobian_body(const scara_params *params, const real_t q[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void scara_jacobian_body_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void scara_jacobian_body_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const scara_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -489,9 +497,9 @@ void scara_jacobian_body_batch(size_t n, const scara_params *params, const real_
     }
 }
 
-CF_INLINE void scara_ik_kernel(const int vector, const scara_params *params, const
-    real_t x[4], const real_t *sines, const real_t
-    *cosines, real_t q[8], real_t status[2])
+CF_INLINE void scara_ik_kernel(const int vector, const scara_params *params,
+    const real_t x[4], const real_t *sines,
+    const real_t *cosines, real_t q[8], real_t status[2])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -587,8 +595,9 @@ void scara_ik(const scara_params *params, const real_t x[4],
 }
 
 CLOSEDFORM_DISPATCHED
-void scara_ik_batch(size_t n, const scara_params *params, const real_t
-    *x, size_t x_stride, real_t *q, size_t q_stride,
+void scara_ik_batch(size_t n, const scara_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
     const scara_params local = *params;

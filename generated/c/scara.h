@@ -44,8 +44,9 @@ typedef struct {
  */
 void scara_pose(const scara_params *params, const real_t q[4],
     real_t T[16]);
-void scara_pose_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride);
+void scara_pose_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Task coordinates (x, y, z, yaw).
@@ -55,8 +56,9 @@ void scara_pose_batch(size_t n, const scara_params *params, const real_t
  */
 void scara_fk(const scara_params *params, const real_t q[4],
     real_t x[4]);
-void scara_fk_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *x, size_t x_stride);
+void scara_fk_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride);
 
 /*
  * Derivative of (x, y, z, yaw) by the joints.
@@ -65,8 +67,9 @@ void scara_fk_batch(size_t n, const scara_params *params, const real_t
  */
 void scara_jacobian(const scara_params *params, const real_t q[4],
     real_t J[16]);
-void scara_jacobian_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void scara_jacobian_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the Jacobian.
@@ -75,8 +78,9 @@ void scara_jacobian_batch(size_t n, const scara_params *params, const real_t
  */
 void scara_determinant(const scara_params *params, const real_t q[4],
     real_t det[1]);
-void scara_determinant_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride);
+void scara_determinant_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * The factors of the determinant that hold a joint.
@@ -85,9 +89,9 @@ void scara_determinant_batch(size_t n, const scara_params *params, const real_t
  */
 void scara_singularities(const scara_params *params, const real_t q[4],
     real_t factors[1]);
-void scara_singularities_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride);
+void scara_singularities_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * Twist (v; omega) of the tool in the base frame per joint rate.
@@ -96,8 +100,9 @@ void scara_singularities_batch(size_t n, const scara_params *params, const real_
  */
 void scara_jacobian_space(const scara_params *params, const real_t q[4],
     real_t J[24]);
-void scara_jacobian_space_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void scara_jacobian_space_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Twist (v; omega) of the tool in its own frame per joint rate.
@@ -106,8 +111,9 @@ void scara_jacobian_space_batch(size_t n, const scara_params *params, const real
  */
 void scara_jacobian_body(const scara_params *params, const real_t q[4],
     real_t J[24]);
-void scara_jacobian_body_batch(size_t n, const scara_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void scara_jacobian_body_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Both elbows of a position and a yaw.
@@ -119,8 +125,9 @@ void scara_jacobian_body_batch(size_t n, const scara_params *params, const real_
  */
 void scara_ik(const scara_params *params, const real_t x[4],
     real_t q[8], uint8_t status[2]);
-void scara_ik_batch(size_t n, const scara_params *params, const real_t
-    *x, size_t x_stride, real_t *q, size_t q_stride,
+void scara_ik_batch(size_t n, const scara_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride);
 
 #ifdef __cplusplus

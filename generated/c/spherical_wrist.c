@@ -14,8 +14,8 @@
  */
 #include "spherical_wrist.h"
 
-CF_INLINE void spherical_wrist_fk_kernel(const real_t *sines, const real_t *cosines, real_t
-    R[9])
+CF_INLINE void spherical_wrist_fk_kernel(const real_t *sines, const real_t *cosines,
+    real_t R[9])
 {
     const real_t s5 = sines[0];
     const real_t c5 = cosines[0];
@@ -39,8 +39,8 @@ CF_INLINE void spherical_wrist_fk_kernel(const real_t *sines, const real_t *cosi
 }
 
 CLOSEDFORM_DISPATCHED
-void spherical_wrist_fk(const spherical_wrist_params *params, const real_t
-    q[3], real_t R[9])
+void spherical_wrist_fk(const spherical_wrist_params *params,
+    const real_t q[3], real_t R[9])
 {
     (void)params;
     real_t sines[4], cosines[4];
@@ -51,8 +51,8 @@ void spherical_wrist_fk(const spherical_wrist_params *params, const real_t
 
 CLOSEDFORM_DISPATCHED
 void spherical_wrist_fk_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *R, size_t
-    R_stride)
+    const real_t *q, size_t q_stride,
+    real_t *R, size_t R_stride)
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -80,8 +80,9 @@ void spherical_wrist_fk_batch(size_t n, const spherical_wrist_params *params,
     }
 }
 
-CF_INLINE void spherical_wrist_pose_kernel(const spherical_wrist_params *params, const real_t
-    *sines, const real_t *cosines, real_t T[16])
+CF_INLINE void spherical_wrist_pose_kernel(const spherical_wrist_params *params,
+    const real_t *sines, const real_t *cosines,
+    real_t T[16])
 {
     const real_t d6 = params->d6;
     const real_t s5 = sines[0];
@@ -114,8 +115,8 @@ CF_INLINE void spherical_wrist_pose_kernel(const spherical_wrist_params *params,
 }
 
 CLOSEDFORM_DISPATCHED
-void spherical_wrist_pose(const spherical_wrist_params *params, const real_t
-    q[3], real_t T[16])
+void spherical_wrist_pose(const spherical_wrist_params *params,
+    const real_t q[3], real_t T[16])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[0], q[2] };
@@ -125,8 +126,8 @@ void spherical_wrist_pose(const spherical_wrist_params *params, const real_t
 
 CLOSEDFORM_DISPATCHED
 void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride)
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const spherical_wrist_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -161,8 +162,8 @@ void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
     }
 }
 
-CF_INLINE void spherical_wrist_jacobian_space_kernel(const real_t *sines, const real_t *cosines, real_t
-    J[9])
+CF_INLINE void spherical_wrist_jacobian_space_kernel(const real_t *sines, const real_t *cosines,
+    real_t J[9])
 {
     const real_t s4 = sines[0];
     const real_t c4 = cosines[0];
@@ -180,8 +181,8 @@ CF_INLINE void spherical_wrist_jacobian_space_kernel(const real_t *sines, const 
 }
 
 CLOSEDFORM_DISPATCHED
-void spherical_wrist_jacobian_space(const spherical_wrist_params *params, const real_t
-    q[3], real_t J[9])
+void spherical_wrist_jacobian_space(const spherical_wrist_params *params,
+    const real_t q[3], real_t J[9])
 {
     (void)params;
     real_t sines[2], cosines[2];
@@ -192,8 +193,8 @@ void spherical_wrist_jacobian_space(const spherical_wrist_params *params, const 
 
 CLOSEDFORM_DISPATCHED
 void spherical_wrist_jacobian_space_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride)
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -220,8 +221,8 @@ void spherical_wrist_jacobian_space_batch(size_t n, const spherical_wrist_params
     }
 }
 
-CF_INLINE void spherical_wrist_jacobian_body_kernel(const real_t *sines, const real_t *cosines, real_t
-    J[9])
+CF_INLINE void spherical_wrist_jacobian_body_kernel(const real_t *sines, const real_t *cosines,
+    real_t J[9])
 {
     const real_t s5 = sines[0];
     const real_t c5 = cosines[0];
@@ -239,8 +240,8 @@ CF_INLINE void spherical_wrist_jacobian_body_kernel(const real_t *sines, const r
 }
 
 CLOSEDFORM_DISPATCHED
-void spherical_wrist_jacobian_body(const spherical_wrist_params *params, const real_t
-    q[3], real_t J[9])
+void spherical_wrist_jacobian_body(const spherical_wrist_params *params,
+    const real_t q[3], real_t J[9])
 {
     (void)params;
     real_t sines[2], cosines[2];
@@ -251,8 +252,8 @@ void spherical_wrist_jacobian_body(const spherical_wrist_params *params, const r
 
 CLOSEDFORM_DISPATCHED
 void spherical_wrist_jacobian_body_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride)
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -286,8 +287,8 @@ CF_INLINE void spherical_wrist_determinant_kernel(const real_t *sines, real_t de
 }
 
 CLOSEDFORM_DISPATCHED
-void spherical_wrist_determinant(const spherical_wrist_params *params, const real_t
-    q[3], real_t det[1])
+void spherical_wrist_determinant(const spherical_wrist_params *params,
+    const real_t q[3], real_t det[1])
 {
     (void)params;
     real_t sines[1], cosines[1];
@@ -298,8 +299,8 @@ void spherical_wrist_determinant(const spherical_wrist_params *params, const rea
 
 CLOSEDFORM_DISPATCHED
 void spherical_wrist_determinant_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *det,
-    size_t det_stride)
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     (void)params;
     (void)det_stride;
@@ -324,8 +325,8 @@ CF_INLINE void spherical_wrist_singularities_kernel(const real_t *sines, real_t 
 }
 
 CLOSEDFORM_DISPATCHED
-void spherical_wrist_singularities(const spherical_wrist_params *params, const real_t
-    q[3], real_t factors[1])
+void spherical_wrist_singularities(const spherical_wrist_params *params,
+    const real_t q[3], real_t factors[1])
 {
     (void)params;
     real_t sines[1], cosines[1];
@@ -336,8 +337,8 @@ void spherical_wrist_singularities(const spherical_wrist_params *params, const r
 
 CLOSEDFORM_DISPATCHED
 void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *factors,
-    size_t factors_stride)
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     (void)params;
     (void)factors_stride;
@@ -404,8 +405,8 @@ CF_INLINE void spherical_wrist_ik_kernel(const int vector, const real_t R[9], re
 }
 
 CLOSEDFORM_DISPATCHED
-void spherical_wrist_ik(const spherical_wrist_params *params, const real_t
-    R[9], real_t q[6], uint8_t status[2])
+void spherical_wrist_ik(const spherical_wrist_params *params,
+    const real_t R[9], real_t q[6], uint8_t status[2])
 {
     (void)params;
     real_t status_real[2];
@@ -416,8 +417,9 @@ void spherical_wrist_ik(const spherical_wrist_params *params, const real_t
 
 CLOSEDFORM_DISPATCHED
 void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *R, size_t R_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride)
+    const real_t *R, size_t R_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {

@@ -41,11 +41,11 @@ typedef struct {
  * q: shape (..., 3): theta4, theta5, theta6.
  * Returns R: shape (..., 3, 3).
  */
-void spherical_wrist_fk(const spherical_wrist_params *params, const real_t
-    q[3], real_t R[9]);
+void spherical_wrist_fk(const spherical_wrist_params *params,
+    const real_t q[3], real_t R[9]);
 void spherical_wrist_fk_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *R, size_t
-    R_stride);
+    const real_t *q, size_t q_stride,
+    real_t *R, size_t R_stride);
 
 /*
  * Pose of the hand, with its offset d6.
@@ -53,55 +53,55 @@ void spherical_wrist_fk_batch(size_t n, const spherical_wrist_params *params,
  * q: shape (..., 3): theta4, theta5, theta6.
  * Returns T: shape (..., 4, 4).
  */
-void spherical_wrist_pose(const spherical_wrist_params *params, const real_t
-    q[3], real_t T[16]);
+void spherical_wrist_pose(const spherical_wrist_params *params,
+    const real_t q[3], real_t T[16]);
 void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride);
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Angular velocity in the base frame per joint rate.
  * q: shape (..., 3): theta4, theta5, theta6.
  * Returns J: shape (..., 3, 3).
  */
-void spherical_wrist_jacobian_space(const spherical_wrist_params *params, const real_t
-    q[3], real_t J[9]);
+void spherical_wrist_jacobian_space(const spherical_wrist_params *params,
+    const real_t q[3], real_t J[9]);
 void spherical_wrist_jacobian_space_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride);
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Angular velocity in the hand frame per joint rate.
  * q: shape (..., 3): theta4, theta5, theta6.
  * Returns J: shape (..., 3, 3).
  */
-void spherical_wrist_jacobian_body(const spherical_wrist_params *params, const real_t
-    q[3], real_t J[9]);
+void spherical_wrist_jacobian_body(const spherical_wrist_params *params,
+    const real_t q[3], real_t J[9]);
 void spherical_wrist_jacobian_body_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride);
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of either angular Jacobian.
  * q: shape (..., 3): theta4, theta5, theta6.
  * Returns det: shape (...).
  */
-void spherical_wrist_determinant(const spherical_wrist_params *params, const real_t
-    q[3], real_t det[1]);
+void spherical_wrist_determinant(const spherical_wrist_params *params,
+    const real_t q[3], real_t det[1]);
 void spherical_wrist_determinant_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *det,
-    size_t det_stride);
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * The factor that vanishes exactly where the axes 4 and 6 coincide.
  * q: shape (..., 3): theta4, theta5, theta6.
  * Returns factors: shape (..., 1).
  */
-void spherical_wrist_singularities(const spherical_wrist_params *params, const real_t
-    q[3], real_t factors[1]);
+void spherical_wrist_singularities(const spherical_wrist_params *params,
+    const real_t q[3], real_t factors[1]);
 void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *q, size_t q_stride, real_t *factors,
-    size_t factors_stride);
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * Both wrist configurations of a rotation.
@@ -115,11 +115,12 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
  * Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or
  *     difference.
  */
-void spherical_wrist_ik(const spherical_wrist_params *params, const real_t
-    R[9], real_t q[6], uint8_t status[2]);
+void spherical_wrist_ik(const spherical_wrist_params *params,
+    const real_t R[9], real_t q[6], uint8_t status[2]);
 void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
-    const real_t *R, size_t R_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride);
+    const real_t *R, size_t R_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride);
 
 #ifdef __cplusplus
 }

@@ -15,9 +15,9 @@
  */
 #include "stanford_arm.h"
 
-CF_INLINE void stanford_arm_fk_kernel(const stanford_arm_params *params, const real_t
-    q[6], const real_t *sines, const real_t *cosines,
-    real_t T[16])
+CF_INLINE void stanford_arm_fk_kernel(const stanford_arm_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t T[16])
 {
     const real_t d2 = params->d2;
     const real_t d3 = q[2];
@@ -64,8 +64,8 @@ CF_INLINE void stanford_arm_fk_kernel(const stanford_arm_params *params, const r
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_fk(const stanford_arm_params *params, const real_t
-    q[6], real_t T[16])
+void stanford_arm_fk(const stanford_arm_params *params,
+    const real_t q[6], real_t T[16])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0] };
@@ -74,9 +74,9 @@ void stanford_arm_fk(const stanford_arm_params *params, const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride)
+void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const stanford_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -114,9 +114,9 @@ void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params, const
     }
 }
 
-CF_INLINE void stanford_arm_pose_kernel(const stanford_arm_params *params, const real_t
-    q[6], const real_t *sines, const real_t *cosines,
-    real_t T[16])
+CF_INLINE void stanford_arm_pose_kernel(const stanford_arm_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t T[16])
 {
     const real_t d2 = params->d2;
     const real_t d3 = q[2];
@@ -163,8 +163,8 @@ CF_INLINE void stanford_arm_pose_kernel(const stanford_arm_params *params, const
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_pose(const stanford_arm_params *params, const real_t
-    q[6], real_t T[16])
+void stanford_arm_pose(const stanford_arm_params *params,
+    const real_t q[6], real_t T[16])
 {
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0] };
@@ -173,9 +173,9 @@ void stanford_arm_pose(const stanford_arm_params *params, const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride)
+void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const stanford_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -213,9 +213,9 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params, const
     }
 }
 
-CF_INLINE void stanford_arm_jacobian_kernel(const stanford_arm_params *params, const real_t
-    q[6], const real_t *sines, const real_t *cosines,
-    real_t J[36])
+CF_INLINE void stanford_arm_jacobian_kernel(const stanford_arm_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t J[36])
 {
     const real_t d2 = params->d2;
     const real_t d3 = q[2];
@@ -274,8 +274,8 @@ CF_INLINE void stanford_arm_jacobian_kernel(const stanford_arm_params *params, c
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_jacobian(const stanford_arm_params *params, const real_t
-    q[6], real_t J[36])
+void stanford_arm_jacobian(const stanford_arm_params *params,
+    const real_t q[6], real_t J[36])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[3], q[4] };
@@ -284,9 +284,9 @@ void stanford_arm_jacobian(const stanford_arm_params *params, const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_jacobian_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride)
+void stanford_arm_jacobian_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const stanford_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -343,9 +343,9 @@ void stanford_arm_jacobian_batch(size_t n, const stanford_arm_params *params, co
     }
 }
 
-CF_INLINE void stanford_arm_jacobian_space_kernel(const stanford_arm_params *params, const real_t
-    q[6], const real_t *sines, const real_t *cosines,
-    real_t J[36])
+CF_INLINE void stanford_arm_jacobian_space_kernel(const stanford_arm_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t J[36])
 {
     const real_t d2 = params->d2;
     const real_t d3 = q[2];
@@ -411,8 +411,8 @@ CF_INLINE void stanford_arm_jacobian_space_kernel(const stanford_arm_params *par
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_jacobian_space(const stanford_arm_params *params, const real_t
-    q[6], real_t J[36])
+void stanford_arm_jacobian_space(const stanford_arm_params *params,
+    const real_t q[6], real_t J[36])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[0], q[3], q[4] };
@@ -421,9 +421,9 @@ void stanford_arm_jacobian_space(const stanford_arm_params *params, const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_jacobian_space_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride)
+void stanford_arm_jacobian_space_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const stanford_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -480,9 +480,9 @@ void stanford_arm_jacobian_space_batch(size_t n, const stanford_arm_params *para
     }
 }
 
-CF_INLINE void stanford_arm_jacobian_body_kernel(const stanford_arm_params *params, const real_t
-    q[6], const real_t *sines, const real_t *cosines,
-    real_t J[36])
+CF_INLINE void stanford_arm_jacobian_body_kernel(const stanford_arm_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t J[36])
 {
     const real_t d2 = params->d2;
     const real_t d3 = q[2];
@@ -548,8 +548,8 @@ CF_INLINE void stanford_arm_jacobian_body_kernel(const stanford_arm_params *para
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_jacobian_body(const stanford_arm_params *params, const real_t
-    q[6], real_t J[36])
+void stanford_arm_jacobian_body(const stanford_arm_params *params,
+    const real_t q[6], real_t J[36])
 {
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[3], q[5], q[4] };
@@ -558,9 +558,9 @@ void stanford_arm_jacobian_body(const stanford_arm_params *params, const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride)
+void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const stanford_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -617,8 +617,8 @@ void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *param
     }
 }
 
-CF_INLINE void stanford_arm_determinant_kernel(const real_t q[6], const real_t *sines, real_t
-    det[1])
+CF_INLINE void stanford_arm_determinant_kernel(const real_t q[6], const real_t *sines,
+    real_t det[1])
 {
     const real_t d3 = q[2];
     const real_t s2 = sines[0];
@@ -627,8 +627,8 @@ CF_INLINE void stanford_arm_determinant_kernel(const real_t q[6], const real_t *
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_determinant(const stanford_arm_params *params, const real_t
-    q[6], real_t det[1])
+void stanford_arm_determinant(const stanford_arm_params *params,
+    const real_t q[6], real_t det[1])
 {
     (void)params;
     real_t sines[2], cosines[2];
@@ -638,9 +638,9 @@ void stanford_arm_determinant(const stanford_arm_params *params, const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *det, size_t
-    det_stride)
+void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     (void)params;
     (void)det_stride;
@@ -660,8 +660,8 @@ void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
     }
 }
 
-CF_INLINE void stanford_arm_singularities_kernel(const real_t q[6], const real_t *sines, real_t
-    factors[3])
+CF_INLINE void stanford_arm_singularities_kernel(const real_t q[6], const real_t *sines,
+    real_t factors[3])
 {
     const real_t d3 = q[2];
     const real_t s2 = sines[0];
@@ -672,8 +672,8 @@ CF_INLINE void stanford_arm_singularities_kernel(const real_t q[6], const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_singularities(const stanford_arm_params *params, const real_t
-    q[6], real_t factors[3])
+void stanford_arm_singularities(const stanford_arm_params *params,
+    const real_t q[6], real_t factors[3])
 {
     (void)params;
     real_t sines[2], cosines[2];
@@ -683,9 +683,9 @@ void stanford_arm_singularities(const stanford_arm_params *params, const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *factors, size_t
-    factors_stride)
+void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     (void)params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -930,8 +930,8 @@ CF_INLINE void stanford_arm_ik_kernel(const int vector, const stanford_arm_param
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_ik(const stanford_arm_params *params, const real_t
-    T[16], real_t q[48], uint8_t status[8])
+void stanford_arm_ik(const stanford_arm_params *params,
+    const real_t T[16], real_t q[48], uint8_t status[8])
 {
     real_t status_real[8];
     stanford_arm_ik_kernel(1, params, T, q, status_real);
@@ -940,9 +940,10 @@ void stanford_arm_ik(const stanford_arm_params *params, const real_t
 }
 
 CLOSEDFORM_DISPATCHED
-void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params, const
-    real_t *T, size_t T_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride)
+void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
 {
     const stanford_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {

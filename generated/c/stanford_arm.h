@@ -41,22 +41,22 @@ typedef struct {
  * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
  * Returns T: shape (..., 4, 4).
  */
-void stanford_arm_fk(const stanford_arm_params *params, const real_t
-    q[6], real_t T[16]);
-void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride);
+void stanford_arm_fk(const stanford_arm_params *params,
+    const real_t q[6], real_t T[16]);
+void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * The same as fk.
  * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
  * Returns T: shape (..., 4, 4).
  */
-void stanford_arm_pose(const stanford_arm_params *params, const real_t
-    q[6], real_t T[16]);
-void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *T, size_t
-    T_stride);
+void stanford_arm_pose(const stanford_arm_params *params,
+    const real_t q[6], real_t T[16]);
+void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
@@ -64,55 +64,55 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params, const
  * Returns J: shape (..., 6, 6).
  * The geometric Jacobian, in the order (v; omega).
  */
-void stanford_arm_jacobian(const stanford_arm_params *params, const real_t
-    q[6], real_t J[36]);
-void stanford_arm_jacobian_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride);
+void stanford_arm_jacobian(const stanford_arm_params *params,
+    const real_t q[6], real_t J[36]);
+void stanford_arm_jacobian_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Twist (v; omega) of the hand in the base frame per joint rate.
  * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
  * Returns J: shape (..., 6, 6).
  */
-void stanford_arm_jacobian_space(const stanford_arm_params *params, const real_t
-    q[6], real_t J[36]);
-void stanford_arm_jacobian_space_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride);
+void stanford_arm_jacobian_space(const stanford_arm_params *params,
+    const real_t q[6], real_t J[36]);
+void stanford_arm_jacobian_space_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Twist (v; omega) of the hand in its own frame per joint rate.
  * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
  * Returns J: shape (..., 6, 6).
  */
-void stanford_arm_jacobian_body(const stanford_arm_params *params, const real_t
-    q[6], real_t J[36]);
-void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *J, size_t
-    J_stride);
+void stanford_arm_jacobian_body(const stanford_arm_params *params,
+    const real_t q[6], real_t J[36]);
+void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the Jacobian.
  * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
  * Returns det: shape (...).
  */
-void stanford_arm_determinant(const stanford_arm_params *params, const real_t
-    q[6], real_t det[1]);
-void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *det, size_t
-    det_stride);
+void stanford_arm_determinant(const stanford_arm_params *params,
+    const real_t q[6], real_t det[1]);
+void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * The factors whose zeros are the singular set: shoulder, boom, wrist.
  * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
  * Returns factors: shape (..., 3).
  */
-void stanford_arm_singularities(const stanford_arm_params *params, const real_t
-    q[6], real_t factors[3]);
-void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *params, const
-    real_t *q, size_t q_stride, real_t *factors, size_t
-    factors_stride);
+void stanford_arm_singularities(const stanford_arm_params *params,
+    const real_t q[6], real_t factors[3]);
+void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * All 8 configurations of a pose.
@@ -128,11 +128,12 @@ void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *param
  * SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
  * INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  */
-void stanford_arm_ik(const stanford_arm_params *params, const real_t
-    T[16], real_t q[48], uint8_t status[8]);
-void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params, const
-    real_t *T, size_t T_stride, real_t *q, size_t
-    q_stride, uint8_t *status, size_t status_stride);
+void stanford_arm_ik(const stanford_arm_params *params,
+    const real_t T[16], real_t q[48], uint8_t status[8]);
+void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride);
 
 #ifdef __cplusplus
 }

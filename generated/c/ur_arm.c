@@ -84,8 +84,9 @@ void ur_arm_pose(const ur_arm_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_pose_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride)
+void ur_arm_pose_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const ur_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -193,8 +194,9 @@ void ur_arm_fk(const ur_arm_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_fk_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride)
+void ur_arm_fk_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
 {
     const ur_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -322,8 +324,9 @@ void ur_arm_jacobian(const ur_arm_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_jacobian_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void ur_arm_jacobian_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const ur_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -409,8 +412,9 @@ void ur_arm_determinant(const ur_arm_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_determinant_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride)
+void ur_arm_determinant_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
 {
     (void)det_stride;
     const ur_arm_params local = *params;
@@ -463,9 +467,9 @@ void ur_arm_singularities(const ur_arm_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_singularities_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride)
+void ur_arm_singularities_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
 {
     const ur_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -587,8 +591,9 @@ void ur_arm_jacobian_space(const ur_arm_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_jacobian_space_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void ur_arm_jacobian_space_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const ur_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -740,8 +745,9 @@ void ur_arm_jacobian_body(const ur_arm_params *params, const real_t q[6],
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride)
+void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
 {
     const ur_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
@@ -798,8 +804,8 @@ void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params, const rea
     }
 }
 
-CF_INLINE void ur_arm_ik_kernel(const int vector, const ur_arm_params *params, const
-    real_t T[16], real_t q[48], real_t status[8])
+CF_INLINE void ur_arm_ik_kernel(const int vector, const ur_arm_params *params,
+    const real_t T[16], real_t q[48], real_t status[8])
 {
     const real_t d1 = params->d1;
     const real_t L2 = params->L2;
@@ -1391,8 +1397,9 @@ void ur_arm_ik(const ur_arm_params *params, const real_t T[16],
 }
 
 CLOSEDFORM_DISPATCHED
-void ur_arm_ik_batch(size_t n, const ur_arm_params *params, const real_t
-    *T, size_t T_stride, real_t *q, size_t q_stride,
+void ur_arm_ik_batch(size_t n, const ur_arm_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
     const ur_arm_params local = *params;

@@ -47,8 +47,9 @@ typedef struct {
  */
 void ur_arm_pose(const ur_arm_params *params, const real_t q[6],
     real_t T[16]);
-void ur_arm_pose_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride);
+void ur_arm_pose_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Pose of the tool in the base frame.
@@ -57,8 +58,9 @@ void ur_arm_pose_batch(size_t n, const ur_arm_params *params, const real_t
  */
 void ur_arm_fk(const ur_arm_params *params, const real_t q[6],
     real_t T[16]);
-void ur_arm_fk_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *T, size_t T_stride);
+void ur_arm_fk_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
 
 /*
  * Velocity of the tool over its angular velocity, in base axes, per joint rate.
@@ -68,8 +70,9 @@ void ur_arm_fk_batch(size_t n, const ur_arm_params *params, const real_t
  */
 void ur_arm_jacobian(const ur_arm_params *params, const real_t q[6],
     real_t J[36]);
-void ur_arm_jacobian_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void ur_arm_jacobian_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Determinant of the Jacobian.
@@ -78,8 +81,9 @@ void ur_arm_jacobian_batch(size_t n, const ur_arm_params *params, const real_t
  */
 void ur_arm_determinant(const ur_arm_params *params, const real_t q[6],
     real_t det[1]);
-void ur_arm_determinant_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *det, size_t det_stride);
+void ur_arm_determinant_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride);
 
 /*
  * The factors of the determinant that hold a joint.
@@ -88,9 +92,9 @@ void ur_arm_determinant_batch(size_t n, const ur_arm_params *params, const real_
  */
 void ur_arm_singularities(const ur_arm_params *params, const real_t q[6],
     real_t factors[3]);
-void ur_arm_singularities_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *factors, size_t
-    factors_stride);
+void ur_arm_singularities_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
 
 /*
  * Twist (v; omega) of the tool in the base frame per joint rate.
@@ -99,8 +103,9 @@ void ur_arm_singularities_batch(size_t n, const ur_arm_params *params, const rea
  */
 void ur_arm_jacobian_space(const ur_arm_params *params, const real_t q[6],
     real_t J[36]);
-void ur_arm_jacobian_space_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void ur_arm_jacobian_space_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * Twist (v; omega) of the tool in its own frame per joint rate.
@@ -109,8 +114,9 @@ void ur_arm_jacobian_space_batch(size_t n, const ur_arm_params *params, const re
  */
 void ur_arm_jacobian_body(const ur_arm_params *params, const real_t q[6],
     real_t J[36]);
-void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params, const real_t
-    *q, size_t q_stride, real_t *J, size_t J_stride);
+void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * The joint angles of a pose, all eight postures.
@@ -126,8 +132,9 @@ void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params, const rea
  */
 void ur_arm_ik(const ur_arm_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8]);
-void ur_arm_ik_batch(size_t n, const ur_arm_params *params, const real_t
-    *T, size_t T_stride, real_t *q, size_t q_stride,
+void ur_arm_ik_batch(size_t n, const ur_arm_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride);
 
 #ifdef __cplusplus

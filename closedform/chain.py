@@ -64,8 +64,9 @@ class Chain:
         self.joints = self.d.actuated
         lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
         sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
-        self.size = sp.Add(*sized)
         self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
+        places = self.forward[:3, 3] if self.is_pose else self.forward
+        self.size = sp.Add(*sized) + max(map(_lengths_in_numbers, places))
         if self.is_pose:
             self.T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
             self.R, self.p = self.T[:3, :3], self.T[:3, 3]
@@ -263,6 +264,20 @@ class Chain:
         )
         d.inverses.append(inverse)
         return inverse
+
+
+def _lengths_in_numbers(place: sp.Expr) -> sp.Expr:
+    """The lengths in a coordinate that are numbers, not parameters: 3 of 3 cos(theta)."""
+    total = sp.S.Zero
+    for term in sp.Add.make_args(sp.expand(place)):
+        number, rest = term.as_independent(*term.free_symbols, as_Add=False)
+        if all(
+            isinstance(f.as_base_exp()[0], sp.sin | sp.cos)
+            for f in sp.Mul.make_args(rest)
+            if f != 1
+        ):
+            total += abs(number)
+    return total
 
 
 __all__ = ["Chain", "Choice"]

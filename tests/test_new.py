@@ -103,6 +103,17 @@ def test_the_joint_of_a_row_may_be_named(tmp_path: Path, monkeypatch: pytest.Mon
     assert len(arm.BRANCHES) == 2
 
 
+def test_lengths_may_be_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They count in the size of the arm, by which it is decided what is out of reach."""
+    table = "a, alpha, d, theta\n0, pi/2, 0.4, theta1\n0.5, 0, 0, theta2\n0.45, 0, 0, theta3\n"
+    arm = derived(tmp_path, "numbers", "dh", table, monkeypatch)
+    q = np.random.default_rng(0).uniform(-3, 3, (1000, 3))
+    q[:, 2] = 0  # at full stretch, where rounding puts half of the targets out of reach
+    solutions = arm.ik(arm.fk(q))
+    assert (solutions.status != arm.Status.UNREACHABLE).any(axis=-1).all()
+    np.testing.assert_array_equal(arm.ik(arm.fk(q[0]) * 1.01).status, arm.Status.UNREACHABLE)
+
+
 def test_screws(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     arm = derived(tmp_path, "screwed", "screws", SCREWS, monkeypatch)
     assert arm.Parameters() == (0.3, -0.1)

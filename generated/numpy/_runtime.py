@@ -81,7 +81,7 @@ def sincos(angle: Any) -> tuple[Any, Any]:
 
 def wrap(angle: Any) -> Any:
     """An angle of [-2 pi, 2 pi] in (-pi, pi]; by arithmetic, for selections are slow in NumPy."""
-    turns = (angle > np.pi).view(np.int8) - (angle <= -np.pi).view(np.int8)
+    turns = np.greater(angle, np.pi).view(np.int8) - np.less_equal(angle, -np.pi).view(np.int8)
     return angle - 2 * np.pi * turns
 
 
@@ -102,12 +102,14 @@ def wrap_cut(angle: Any) -> Any:
 
 def select(rare: Any, a: Any, b: Any) -> Any:
     """``a`` where a condition holds that hardly ever does, else ``b``."""
-    return np.where(rare, a, b) if rare.any() else b
+    if np.any(rare):
+        return np.where(rare, a, b)
+    return np.float64(b) if isinstance(b, float) else b
 
 
 def poison(failed: Any) -> Any:
     """NaN where ``failed``, else zero: added to an answer, it is one selection for all entries."""
-    return 0.0 / np.logical_not(failed) if failed.any() else 0.0
+    return 0.0 / np.logical_not(failed) if np.any(failed) else 0.0
 
 
 def status(invalid: Any, unreachable: Any, singular: Any) -> Any:

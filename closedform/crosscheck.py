@@ -148,8 +148,8 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
         computed = np.concatenate([o.reshape(rows, -1) for o in outputs], axis=1)
         for row in range(rows):
             values = [*map(float, sample.values[row]), *sample.parameters]
-            sizes = [to_float(size) for sizes in flags for size in sizes(values)]
-            if any(size < 2 * backend.tolerances.vanishing for size in sizes):
+            raised = (to_float(size) for flag in flags for size in flag(values))
+            if any(size < 2 * backend.tolerances.vanishing for size in raised):
                 continue  # where a flag is raised the value is a convention
             slack = 2 * backend.tolerances.feasibility
             exists = [_feasible(margin, values, slack) for margin in margins]

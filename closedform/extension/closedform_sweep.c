@@ -11,16 +11,17 @@
 #include <string.h>
 
 enum {
-    BATCH_MIN = 4,         /* fewer postures than this are cheaper one at a time */
-    BLOCK_MIN = 32,        /* long enough to amortise a kernel call ... */
-    BLOCK_MAX = 512,       /* ... and short enough for the first-level cache */
-    SCRATCH_BYTES = 32768, /* aimed at for all planes of a block together */
-    SHORT_RUN = 64,        /* an innermost axis below this yields to the longest one */
-    TILE = 16,             /* postures moved at a time, so that both sides stay cached */
-    LINE = 64,             /* bytes in a cache line */
-    ALIAS = 4096,          /* planes a multiple of this apart contend for the same cache lines, */
-    ALIAS_WAYS = 4,        /* which so many of them do without harm */
-    CROWD = 16             /* more planes than this, written at once, miss the address cache */
+    BATCH_MIN = 4,          /* fewer postures than this are cheaper one at a time */
+    BLOCK_MIN = 32,         /* long enough to amortise a kernel call ... */
+    BLOCK_MAX = 512,        /* ... and no longer than the first-level cache holds of a few planes */
+    SCRATCH_BYTES = 131072, /* aimed at for all planes of a block: the second-level cache holds
+                               them, and many planes in memory ask for long runs */
+    SHORT_RUN = 64,         /* an innermost axis below this yields to the longest one */
+    TILE = 16,              /* postures moved at a time, so that both sides stay cached */
+    LINE = 64,              /* bytes in a cache line */
+    ALIAS = 4096,           /* planes a multiple of this apart contend for the same cache lines, */
+    ALIAS_WAYS = 4,         /* which so many of them do without harm */
+    CROWD = 16              /* more planes than this, written at once, miss the address cache */
 };
 
 typedef struct {
@@ -28,6 +29,7 @@ typedef struct {
     const cf_view *view;
     size_t itemsize;
     bool in_place;     /* the kernel works on the view itself */
+    bool adjacent;     /* the coordinates of a posture follow one another */
     size_t plane;      /* elements from one coordinate to the next, as the kernel sees them */
     ptrdiff_t *offset; /* bytes from a posture to each of its coordinates, unless in_place */
     char *scratch;     /* planes of one block, unless in_place */
@@ -276,6 +278,7 @@ describe(const plan *p, operand *o, const cf_array *spec, const cf_view *view)
     o->view = view;
     o->itemsize = spec->kind == CF_REAL ? sizeof(double) : sizeof(uint8_t);
     o->in_place = usable_in_place(p, o);
+    o->adjacent = core_step(o) == (ptrdiff_t)o->itemsize;
     o->plane = o->in_place && !p->single ? (size_t)core_step(o) / o->itemsize : 1;
     o->offset = NULL;
     o->scratch = NULL;
@@ -424,6 +427,63 @@ scatter_tile(const operand *o, char *to, ptrdiff_t step, size_t at, size_t count
     }
 }
 
+/* The transpose of two neighbours in each of two lines: two shuffles on any x86-64. */
+static inline void
+turn(char *to, ptrdiff_t to_step, const char *from, ptrdiff_t from_step)
+{
+    double a[2], b[2];
+    memcpy(a, from, sizeof a);
+    memcpy(b, from + from_step, sizeof b);
+    const double c[2] = {a[0], b[0]}, d[2] = {a[1], b[1]};
+    memcpy(to, c, sizeof c);
+    memcpy(to + to_step, d, sizeof d);
+}
+
+static bool
+in_pairs(const operand *o, size_t count)
+{
+    return o->adjacent && o->spec->size >= 2 && count >= 2;
+}
+
+/* The k-th pair of n things; of an odd number, the last pair shares one with the pair before. */
+static inline size_t
+pair(size_t k, size_t n)
+{
+    return k + 2 <= n ? k : n - 2;
+}
+
+/* Adjacent coordinates, as of an (N, n) array, two by two of two postures at a time: so what lies
+ * in memory is walked from one end to the other. */
+static void
+gather_pairs(const operand *o, const char *from, ptrdiff_t step, size_t at, size_t count)
+{
+    const ptrdiff_t coordinate = (ptrdiff_t)sizeof(double);
+    const ptrdiff_t plane = (ptrdiff_t)o->plane * coordinate;
+    for (size_t k = 0; k < count; k += 2) {
+        const ptrdiff_t i = (ptrdiff_t)pair(k, count);
+        char *to = o->scratch + coordinate * ((ptrdiff_t)at + i);
+        for (size_t l = 0; l < o->spec->size; l += 2) {
+            const ptrdiff_t j = (ptrdiff_t)pair(l, o->spec->size);
+            turn(to + plane * j, plane, from + step * i + coordinate * j, step);
+        }
+    }
+}
+
+static void
+scatter_pairs(const operand *o, char *to, ptrdiff_t step, size_t at, size_t count)
+{
+    const ptrdiff_t coordinate = (ptrdiff_t)sizeof(double);
+    const ptrdiff_t plane = (ptrdiff_t)o->plane * coordinate;
+    for (size_t k = 0; k < count; k += 2) {
+        const ptrdiff_t i = (ptrdiff_t)pair(k, count);
+        const char *from = o->scratch + coordinate * ((ptrdiff_t)at + i);
+        for (size_t l = 0; l < o->spec->size; l += 2) {
+            const ptrdiff_t j = (ptrdiff_t)pair(l, o->spec->size);
+            turn(to + step * i + coordinate * j, step, from + plane * j, plane);
+        }
+    }
+}
+
 /* What the compiler knows makes these fast: that a full tile has a fixed length, or that postures
  * are adjacent. */
 static void
@@ -431,6 +491,10 @@ gather(const operand *o, char *from, ptrdiff_t step, size_t at, size_t count)
 {
     if (step == (ptrdiff_t)sizeof(double)) {
         gather_tile(o, from, sizeof(double), at, count);
+        return;
+    }
+    if (in_pairs(o, count)) {
+        gather_pairs(o, from, step, at, count);
         return;
     }
     size_t i = 0;
@@ -445,6 +509,10 @@ scatter_real(const operand *o, char *to, ptrdiff_t step, size_t at, size_t count
 {
     if (step == (ptrdiff_t)sizeof(double)) {
         scatter_tile(o, to, sizeof(double), at, count);
+        return;
+    }
+    if (in_pairs(o, count)) {
+        scatter_pairs(o, to, step, at, count);
         return;
     }
     size_t i = 0;

@@ -233,18 +233,18 @@ def from_dh(
                 f"{d.name}: row {i} of the Denavit-Hartenberg table must hold exactly one joint, "
                 f"not {', '.join(map(str, here)) or 'none'}"
             )
-        place, kind = (entries[3], "theta") if joints[here[0]] == "revolute" else (entries[2], "d")
+        column, kind = (3, "theta") if joints[here[0]] == "revolute" else (2, "d")
+        place = entries.pop(column)
         if not place.has(here[0]):
             raise RowError(
                 f"{d.name}: row {i} of the Denavit-Hartenberg table: the {joints[here[0]]} joint "
                 f"{here[0]} must stand in the column {kind}"
             )
-        others = [e for e in entries if e is not place]
-        if place.diff(here[0]) != 1 or any(e.has(here[0]) for e in others):
+        if place.diff(here[0]) != 1 or any(e.has(here[0]) for e in entries):
             raise RowError(
                 f"{d.name}: row {i} of the Denavit-Hartenberg table: the joint {here[0]} must "
                 f"stand in the column {kind} alone, as it is or with a constant added to it, not "
-                f"as {place if place.diff(here[0]) != 1 else tuple(entries)}"
+                f"as {place if place.diff(here[0]) != 1 else tuple(row)}"
             )
         motions.append((here[0], joints[here[0]]))
     exact = [tuple(map(sp.sympify, row)) for row in rows]
@@ -256,7 +256,7 @@ def from_dh(
         lead = denavit_hartenberg(exact[0][0], exact[0][1], sp.S.Zero, sp.S.Zero)
         following = [*(row[:2] for row in exact[1:]), (sp.S.Zero, sp.S.Zero)]
         exact = [(*x, *row[2:]) for row, x in zip(exact, following, strict=True)]
-    last = sp.eye(4) if tool is None else sp.Matrix(tool)
+    last = sp.eye(4) if tool is None else _rigid(d, tool, "the tool")
     rest = () if tool is None else (last,)
     return _assembled(motions, _groups(exact, motions), lead, last, (*moves, *rest))
 
@@ -266,8 +266,11 @@ def from_screws(
 ) -> Serial:
     """The chain of axes at home: ``(joint, direction, point)``, and the ``home`` pose of the tool.
 
-    A direction is a unit vector; the point of a prismatic joint does not matter.
+    A direction is a unit vector; the point of a prismatic joint does not matter.  What is no axis
+    or no pose raises :class:`RowError`.
     """
+    if not axes:
+        raise RowError(f"{d.name}: there are no axes")
     kinds = {j.symbol: j.kind for j in d.joints}
     motions: list[tuple[sp.Symbol, str]] = []
     directions, points, moves = [], [], []
@@ -275,19 +278,18 @@ def from_screws(
         where = f"{d.name}: axis {i}"
         if joint not in kinds:
             raise RowError(f"{where}: {joint} is not a joint; declare it with d.joint")
-        w = sp.Matrix([_exact(e, where) for e in direction])
-        at = sp.Matrix([_exact(e, where) for e in point])
+        w = _constant(d, direction, where)
+        at = _constant(d, point, where)
         if len(w) != 3 or len(at) != 3:
             raise RowError(f"{where} needs a direction and a point of 3 coordinates each")
-        if sp.simplify(w.dot(w) - 1) != 0:
-            raise RowError(f"{where}: the direction ({', '.join(map(str, w))}) has no unit length")
+        _check_unit(w, where)
         revolute = kinds[joint] == "revolute"
         twist = sp.Matrix([*at.cross(w), *w]) if revolute else sp.Matrix([*w, 0, 0, 0])
         motions.append((joint, kinds[joint]))
         directions.append(w)
         points.append(at)
         moves.append(exponential(twist, joint))
-    home = sp.Matrix(home)
+    home = _rigid(d, home, "the pose at home")
     frame = _frame_along(directions[0])
     lead = homogeneous(frame, tuple(points[0]))
     groups: list[Group] = []
@@ -305,6 +307,54 @@ def from_screws(
             groups.append(Group(tuple(current), frame.T * after))
             frame, current = after, []
     return _assembled(motions, groups, lead, sp.eye(4), (*moves, home))
+
+
+def _constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
+    """Exact entries in which only parameters stand."""
+    exact = sp.Matrix(entries)
+    exact = sp.Matrix(*exact.shape, [_exact(e, where) for e in exact])
+    joints = {j.symbol for j in d.joints}
+    for symbol in sorted(exact.free_symbols - {p.symbol for p in d.parameters}, key=str):
+        if symbol in joints:
+            raise RowError(f"{where}: the joint {symbol} stands in it; at home all joints are zero")
+        raise RowError(f"{where}: the symbol {symbol} is no parameter; declare it with d.parameter")
+    return exact
+
+
+def _check_unit(w: sp.Matrix, where: str) -> None:
+    length = sp.simplify(sp.sqrt(w.dot(w)))
+    if length == 1:
+        return
+    text = ", ".join(map(str, w))
+    if length == 0:
+        raise RowError(f"{where}: the direction ({text}) is zero; an axis needs a unit vector")
+    if w.free_symbols:
+        remedy = "write numbers, or the cosine and the sine of an angle"
+    elif all(e.is_Integer for e in w):
+        remedy = f"write ({', '.join(map(str, w / length))})"
+    else:
+        remedy = "numbers are exact: write sqrt(2)/2, not 0.7071"
+    raise RowError(f"{where}: the direction ({text}) has no unit length; {remedy}")
+
+
+def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
+    """A constant pose, 4x4, whose rotation is one."""
+    where = f"{d.name}: {what}"
+    T = _constant(d, pose, where)
+    if T.shape != (4, 4) or T.row(3) != sp.Matrix([[0, 0, 0, 1]]):
+        raise RowError(f"{where} must be a 4x4 matrix with the last row 0, 0, 0, 1")
+    R = T[:3, :3]
+    if sp.simplify(R.T * R) != sp.eye(3):
+        raise RowError(
+            f"{where}: its rotation {R.tolist()} is none: the rows must be unit vectors at right "
+            f"angles to each other, written exactly (sqrt(3)/2, not 0.866)"
+        )
+    if sp.simplify(R.det()) != 1:
+        raise RowError(
+            f"{where}: its rotation {R.tolist()} is mirrored; the third column must be the cross "
+            f"product of the first two, x, y and z of the tool"
+        )
+    return T
 
 
 def _frame_along(w: sp.Matrix) -> sp.Matrix:

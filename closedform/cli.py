@@ -223,12 +223,16 @@ def derive_command(options: argparse.Namespace) -> None:
 
 def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
     """Compare what was printed with the symbolic source, and write down what was found."""
+    from closedform.clibrary import CompileError
     from closedform.report import report
 
     with Progress() as progress:
         for source in chosen:
             progress(source.name, "cross-check")
-            text, failures = report(pipeline.load(source), root, backends)
+            try:
+                text, failures = report(pipeline.load(source), root, backends)
+            except CompileError as error:
+                raise CommandError(f"{source.name}: {error}") from error
             _write(root, {Path(f"{source.name}-crosscheck.md"): text})
             if failures:
                 raise CommandError(
@@ -254,7 +258,9 @@ def new_command(options: argparse.Namespace) -> None:
     if kind not in ("dh", "screws"):
         raise CommandError(f"--from dh TABLE.csv or --from screws FILE.toml, not {kind}", 2)
     if not path.is_file():
-        raise CommandError(f"there is no file {path}", 2)
+        raise CommandError(f"{path} is no file" if path.exists() else f"there is no file {path}", 2)
+    if options.modified and kind != "dh":
+        raise CommandError("--modified goes with --from dh: axes have no convention", 2)
     _require_extra()
     from closedform.new import new
 

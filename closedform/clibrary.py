@@ -27,6 +27,10 @@ def compiler() -> str:
     raise FileNotFoundError("no C compiler found: install gcc or clang, or set CC")
 
 
+class CompileError(Exception):
+    """The C compiler refuses a file, and the first thing it says about it."""
+
+
 class CLibrary:
     """The C of one robot as a shared library, called through its ``_batch`` functions."""
 
@@ -47,8 +51,12 @@ class CLibrary:
         library = scratch / f"{derivation.name}_{'float' if single else 'double'}.so"
         define = ["-DCLOSEDFORM_FLOAT"] if single else []
         command = [compiler(), *FLAGS, *define, *flags, f"-I{sources}"]
-        command += [str(sources / f"{derivation.name}.c"), "-o", str(library), "-lm"]
-        subprocess.run(command, check=True)
+        source = sources / f"{derivation.name}.c"
+        command += [str(source), "-o", str(library), "-lm"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            first = next((e for e in done.stderr.splitlines() if "error" in e), done.stderr[:200])
+            raise CompileError(f"{command[0]} does not compile {source}: {first}")
         self._library = ctypes.CDLL(str(library))
 
     def function(self, name: str) -> Callable[..., Any]:

@@ -25,6 +25,7 @@ from closedform.functions import (
     real,
     reject_floats,
 )
+from closedform.names import check_robot, check_symbol, check_text
 
 if TYPE_CHECKING:
     from closedform.claims import Check
@@ -301,6 +302,7 @@ class Derivation:
         holds on its closure, and a zero length is treated by the flags of the inverse.
         """
         self._check_new(name)
+        check_text(f"{self.name}: {name}", meaning, unit, source)
         symbol = real(name, positive=True) if nonnegative else real(name)
         exact = sp.sympify(value)
         if not exact.is_Rational:
@@ -425,7 +427,11 @@ class Derivation:
                 for entry in part if isinstance(part, sp.MatrixBase) else [part]:
                     reject_floats(entry, where)
 
+    def __post_init__(self) -> None:
+        check_robot(self.name)
+
     def _check_new(self, name: str) -> None:
+        check_symbol(name, self.name)
         kinds = {p.name: "parameter" for p in self.parameters}
         kinds |= {j.name: "joint" for j in self.joints}
         if name in kinds:

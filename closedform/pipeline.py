@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 BACKENDS = ("numpy", "c", "latex", "data")
 EXTRA = ("sympy", "flint", "jinja2")
-TOOLS = frozenset({"cli.py", "pipeline.py", "new.py", "report.py", "__main__.py"})
+TOOLS = frozenset({"cli.py", "pipeline.py", "new.py", "tables.py", "report.py", "__main__.py"})
 OUTPUT = frozenset({"emit", "lower", "derivations", "generated", "templates"})
 """With ``TOOLS`` what no proof depends on, by its first name below ``closedform/``."""
 COMPILED = frozenset({".so", ".pyd", ".pyc"})

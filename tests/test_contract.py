@@ -306,8 +306,18 @@ def test_out_is_filled_and_returned(arm) -> None:
     out = (np.empty((7, 2, 2)), np.empty((7, 2), np.uint8))
     solutions = arm.ik(x, out=out)
     assert solutions.q is out[0] and solutions.status is out[1]
+
+
+@pytest.mark.parametrize("n", [7, 20_001])
+def test_out_may_overlap_what_is_read(arm, n: int) -> None:
+    q = np.random.default_rng(3).uniform(1, 3, (n + 1, 2))
     alias = q.copy()
     np.testing.assert_array_equal(arm.fk(alias, out=alias), arm.fk(q))
+    alias = q.copy()
+    np.testing.assert_array_equal(arm.fk(alias[:-1], out=alias[1:]), arm.fk(q[:-1]))
+    alias = q.copy()  # the lengths of the first link, one posture behind the results
+    expected = arm.fk([0.3, 0.4], (q[:-1, 1], 1.0))
+    np.testing.assert_array_equal(arm.fk([0.3, 0.4], (alias[:-1, 1], 1.0), out=alias[1:]), expected)
 
 
 def test_wrong_shapes_say_what_is_expected(arm, wrist) -> None:
@@ -319,8 +329,14 @@ def test_wrong_shapes_say_what_is_expected(arm, wrist) -> None:
         arm.fk(np.zeros((3, 2)), (np.ones(4), 1.0))
     with pytest.raises(ValueError, match="params"):
         arm.fk(np.zeros(2), (1.0,))
-    with pytest.raises(ValueError, match="out"):
+    with pytest.raises(ValueError, match=r"out for x has shape \(2, 2\), expected \(3, 2\)"):
         arm.fk(np.zeros((3, 2)), out=np.empty((2, 2)))
+    with pytest.raises(ValueError, match="out for x has dtype float32, expected float64"):
+        arm.fk(np.zeros((3, 2)), out=np.empty((3, 2), np.float32))
+    with pytest.raises(TypeError, match="out for x must be an array, not list"):
+        arm.fk(np.zeros(2), out=[0.0, 0.0])
+    with pytest.raises(TypeError, match="out must be a tuple of 2 arrays"):
+        arm.ik(np.zeros(2), out=np.empty((2, 2)))
 
 
 def test_nothing_warns(arm, wrist) -> None:

@@ -106,7 +106,7 @@ def test_the_joint_of_a_row_may_be_named(tmp_path: Path, monkeypatch: pytest.Mon
 def test_lengths_may_be_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """They count in the size of the arm, by which it is decided what is out of reach."""
     table = "a, alpha, d, theta\n0, pi/2, 0.4, theta1\n0.5, 0, 0, theta2\n0.45, 0, 0, theta3\n"
-    arm = derived(tmp_path, "numbers", "dh", table, monkeypatch)
+    arm = derived(tmp_path, "plain", "dh", table, monkeypatch)
     q = np.random.default_rng(0).uniform(-3, 3, (1000, 3))
     q[:, 2] = 0  # at full stretch, where rounding puts half of the targets out of reach
     solutions = arm.ik(arm.fk(q))
@@ -122,59 +122,6 @@ def test_screws(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_allclose(arm.fk(q), [x.real, x.imag], atol=1e-15)
     np.testing.assert_allclose(arm.pose(q)[2, 3], -0.1)
     np.testing.assert_allclose(arm.ik(arm.fk(q)).q[0], q, atol=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("kind", "text", "message"),
-    [
-        ("dh", "a, alpha, d\n0, 0, 1\n", "table, line 1: the column theta is missing"),
-        ("dh", "a, alpha, d, theta\n0, 0, q1\n", "table, line 2: 3 entries in 4 columns"),
-        ("dh", "a, alpha, d, theta\n0, 0, 0, 0\n", "line 2: no joint"),
-        ("dh", "a, alpha, d, theta\n0, 0, 0, t1 + t2\n", "line 2: t1, t2 stand in theta"),
-        (
-            "dh",
-            "a, alpha, d, theta\n0, 0, 0, t\n0, 0, 0, t\n",
-            "line 3: two joints have the name t",
-        ),
-        ("dh", "a, alpha, d, theta\n(, 0, 0, t\n", "line 2, column a: cannot read '('"),
-        ("dh", "# L = 1 m: x\na, alpha, d, theta\n0, 0, 0, t\n", "the parameter L stands nowhere"),
-        ("dh", "", "the table is empty"),
-        ("dh", "a, alpha, d, theta\n", "the table has no rows"),
-        ("dh", "a; alpha; d; theta\n", "with commas between them"),
-        ("dh", "a, alpha, d, theta, m\n0, 0, 0, t, 1\n", "line 1: the column m is unknown"),
-        ("dh", "a, alpha, d, theta\n1, 90, 0, t\n", "column alpha: angles are in radians and"),
-        ("dh", "a, alpha, d, theta\n1, 1.5708, 0, t\n", "write pi/2 instead of 1.5708"),
-        ("dh", "a, alpha, d, theta\n1, 0, 0, t + 90\n", "write t + pi/2 instead of t + 90"),
-        ("dh", "a, alpha, d, theta\n1, 0.3, 0, t\n", "write a symbol, with its value in a line"),
-        ("dh", "a, alpha, d, theta\n1, 0, 0, 2*t\n", "as it is or with a constant added"),
-        ("dh", "a, alpha, d, theta\n1/0, 0, 0, t\n", "column a: '1/0' is no number or formula"),
-        ("dh", "a, alpha, d, theta\n1, 0, 0, foo(t)\n", "column theta: cannot read 'foo(t)'"),
-        ("dh", "a, alpha, d, theta\nlambda, 0, 0, t\n", "the name lambda has a meaning"),
-        ("dh", "a, alpha, d, theta\nx, 0, 0, t\n", "the name x has a meaning"),
-        ("dh", "# L = 1/0 m: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is '1/0'"),
-        ("screws", "axes = 3 4", "table: "),
-        ("screws", "[parameters]\n", "there are no [[axes]]"),
-        ("screws", '[[axes]]\njoint = "t"\n', "axis 1: direction is missing"),
-        ("screws", '[[axes]]\njoint = "t"\ndirection = [0, 1, 1]\n', "no unit length"),
-    ],
-)
-def test_a_table_that_cannot_be_read(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str, text: str, message: str
-) -> None:
-    table = tmp_path / "table"
-    table.write_text(text, "utf-8")
-    assert main(["new", "arm", "--from", kind, str(table), "-o", str(tmp_path)]) == 1
-    assert message in capsys.readouterr().err
-    assert not (tmp_path / "arm.py").exists()
-
-
-def test_a_table_that_is_no_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    table = tmp_path / "table.csv"
-    table.write_bytes(b"\xff\xfe\x00a")
-    assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
-    assert "is no text in UTF-8" in capsys.readouterr().err
-    table.write_bytes(b"\xef\xbb\xbf" + ELBOW.encode())
-    assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 0
 
 
 def test_a_forearm_without_extent_and_a_negative_link(
@@ -215,7 +162,6 @@ def test_new_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[st
     (tmp_path / "arm.py").write_text("mine", "utf-8")
     assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
     assert "exists already" in capsys.readouterr().err
-    assert main(["new", "my arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
     assert main(["new", "arm2", "--from", "urdf", str(table)]) == 2
     assert main(["new", "arm2", "--from", "dh", "nowhere.csv"]) == 2
     assert (tmp_path / "arm.py").read_text("utf-8") == "mine"

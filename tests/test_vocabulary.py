@@ -268,6 +268,12 @@ def test_mistakes_in_a_script_are_named() -> None:
         d.function("fk", "", {"q": (theta,)}, {"y": theta})
     with pytest.raises(TypeError, match="exact rational"):
         d.parameter("k", value=0.1, unit="m", meaning="")
+    with pytest.raises(ValueError, match="double is a word of Python or C"):
+        d.parameter("double", value=1, unit="m", meaning="")
+    with pytest.raises(ValueError, match="goes into comments"):
+        d.parameter("k", value=1, unit="m", meaning="a */ b")
+    with pytest.raises(ValueError, match="'my arm' is no name of a module"):
+        Derivation("my arm", "", PAPER, "")
 
 
 def test_tolerances_are_honoured() -> None:

@@ -126,7 +126,8 @@ def evaluate(kernel: Kernel, args: Sequence[ArrayLike], params: Sequence[ArrayLi
     lead = _leading_axes(kernel, arrays, fields)
     results = _results(kernel, lead, out)
     targets = results
-    if out is not None and any(np.may_share_memory(r, a) for r in results for a in arrays):
+    read = [*arrays, *fields]
+    if out is not None and any(np.may_share_memory(r, a) for r in results for a in read):
         targets = [np.empty_like(r) for r in results]
     with np.errstate(all="ignore"):
         _fill(kernel, arrays, fields, lead, targets)
@@ -178,18 +179,24 @@ def _leading_axes(
 def _results(kernel: Kernel, lead: tuple[int, ...], out: Any) -> list[NDArray[Any]]:
     if out is None:
         return [np.empty((*lead, *spec.shape), spec.dtype) for spec in kernel.outputs]
-    given = list(out) if len(kernel.outputs) > 1 else [out]
-    if len(given) != len(kernel.outputs):
-        raise ValueError(f"{kernel.name}: out needs {len(kernel.outputs)} arrays, got {len(given)}")
+    n = len(kernel.outputs)
+    if n > 1 and not (isinstance(out, tuple) and len(out) == n):
+        raise TypeError(f"{kernel.name}: out must be a tuple of {n} arrays")
+    given = list(out) if n > 1 else [out]
     for spec, array in zip(kernel.outputs, given, strict=True):
         expected = (*lead, *spec.shape)
-        if not isinstance(array, np.ndarray) or array.dtype != spec.dtype:
-            raise ValueError(
-                f"{kernel.name}: out for {spec.name} must be an array of {np.dtype(spec.dtype)}"
+        if not isinstance(array, np.ndarray):
+            raise TypeError(
+                f"{kernel.name}: out for {spec.name} must be an array, not {type(array).__name__}"
             )
         if array.shape != expected:
             raise ValueError(
                 f"{kernel.name}: out for {spec.name} has shape {array.shape}, expected {expected}"
+            )
+        if array.dtype != spec.dtype:
+            raise ValueError(
+                f"{kernel.name}: out for {spec.name} has dtype {array.dtype}, "
+                f"expected {np.dtype(spec.dtype)}"
             )
         if not array.flags.writeable:
             raise ValueError(f"{kernel.name}: out for {spec.name} is read-only")

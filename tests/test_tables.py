@@ -1,0 +1,175 @@
+"""Tables of joints that hold a mistake: one line says where it is and what to write instead."""
+
+from pathlib import Path
+
+import pytest
+
+from closedform.cli import main
+from closedform.pipeline import find, load
+
+HEADER = "a, alpha, d, theta\n"
+AXIS = '[[axes]]\njoint = "t1"\ndirection = [0, 0, 1]\n'
+HOME = '[home]\nposition = ["L", 0, 0]\n'
+
+
+def complaint(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[str]) -> str:
+    """What the command says of a table: one line, and no script."""
+    table = folder / "table"
+    table.write_text(text, "utf-8")
+    assert main(["new", "arm", "--from", kind, str(table), "-o", str(folder)]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("closedform: ") and said.count("\n") == 1
+    assert not (folder / "arm.py").exists()
+    return said
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a, alpha, d\n0, 0, 1\n", "table, line 1: the column theta is missing"),
+        ("a, alpha, d, theta\n0, 0, q1\n", "table, line 2: 3 entries in 4 columns"),
+        ("a, alpha, d, theta\n0, 0, 0, 0\n", "line 2: no joint"),
+        ("a, alpha, d, theta\n0, 0, 0, t1 + t2\n", "line 2: t1, t2 stand in theta"),
+        ("a, alpha, d, theta\n0, 0, 0, t\n0, 0, 0, t\n", "line 3: two joints have the name t"),
+        ("a, alpha, d, theta\n(, 0, 0, t\n", "line 2, column a: cannot read '('"),
+        ("# L = 1 m: x\na, alpha, d, theta\n0, 0, 0, t\n", "the parameter L stands nowhere"),
+        ("", "the table is empty"),
+        ("a, alpha, d, theta\n", "the table has no rows"),
+        ("a; alpha; d; theta\n", "with commas between them"),
+        ("a, alpha, d, theta, m\n0, 0, 0, t, 1\n", "line 1: the column m is unknown"),
+        ("a, alpha, d, theta\n1, 90, 0, t\n", "column alpha: angles are in radians and"),
+        ("a, alpha, d, theta\n1, 1.5708, 0, t\n", "write pi/2 instead of 1.5708"),
+        ("a, alpha, d, theta\n1, 0, 0, t + 90\n", "write t + pi/2 instead of t + 90"),
+        ("a, alpha, d, theta\n1, 0.3, 0, t\n", "write a symbol, with its value in a line"),
+        ("a, alpha, d, theta\n1, 0, 0, 2*t\n", "as it is or with a constant added"),
+        ("a, alpha, d, theta\n1/0, 0, 0, t\n", "column a: '1/0' is no number or formula"),
+        ("a, alpha, d, theta\n1, 0, 0, foo(t)\n", "column theta: cannot read 'foo(t)'"),
+        ("a, alpha, d, theta\nlambda, 0, 0, t\n", "lambda is a word of Python or C"),
+        ("a, alpha, d, theta\nx, 0, 0, t\n", "the name x has a meaning"),
+        ("# L = 1/0 m: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is '1/0'"),
+        ("a, alpha, d, theta, a\n0, 0, 0, t, 0\n", "line 1: there are two columns a"),
+        ("a, alpha, d, theta\nnan, 0, 0, t\n", "line 2, column a: nan is no finite number"),
+        ("a, alpha, d, theta\n-inf, 0, 0, t\n", "inf is no finite number"),
+        ("a, alpha, d, theta\nsqrt(-1), 0, 0, t\n", "'sqrt(-1)' is no number or formula"),
+        ("a, alpha, d, theta\n9**9**9, 0, 0, t\n", "powers are from 2 to 9"),
+        ("a, alpha, d, theta\n1e99999, 0, 0, t\n", "exponent of ten has at most three digits"),
+        ("a, alpha, d, theta\n((L, 0, 0, t\n", "column a: cannot read '((L'"),
+        ("a, alpha, d, theta\nt, 0, 0, t\n", "row 1 of the Denavit-Hartenberg table: the joint t"),
+        ("a, alpha, d, theta\ndouble, 0, 0, t\n", "take another name, such as double_0"),
+        ("a, alpha, d, theta\n_L, 0, 0, t\n", "'_L' is no name"),
+        ("# L = 1 m: x\n# L = 2 m: x\na, alpha, d, theta\nL, 0, 0, t\n", "line 2: the parameter L"),
+        ("# L = nan m: x\na, alpha, d, theta\nL, 0, 0, t\n", "line 1: the value of L is 'nan'"),
+        ("# L = pi/2 rad: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is 'pi/2'"),
+        ("# L = 1e400 m: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is '1e400'"),
+    ],
+)
+def test_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, message: str) -> None:
+    assert message in complaint(tmp_path, "dh", text, capsys)
+
+
+def axis(**given: str) -> str:
+    """A file whose one axis has these entries instead of sound ones."""
+    entries = {"joint": '"t1"', "direction": "[0, 0, 1]"} | given
+    return "[[axes]]\n" + "".join(f"{k} = {v}\n" for k, v in entries.items() if v) + HOME
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "there are no [[axes]]"),
+        ("axes = 3 4", "table is no TOML: "),
+        ("axes = [1, 2]\n", "axis 1 must be a table of keys and values"),
+        ("[parameters]\n", "there are no [[axes]]"),
+        ("[[axis]]\n", "the key axis is unknown; there are parameters, axes, home"),
+        ("parameters = [1]\n" + axis(), "[parameters] must be a table of keys and values"),
+        ("[parameters]\nL = nan\n" + axis(), "the value of L is 'nan'; it must be a number"),
+        ("[parameters]\nL = [1]\n" + axis(), "the value of L is '[1]'; it must be a number"),
+        ("[parameters]\nL = 1e-400\n" + axis(), "the value of L is '1e-400'"),
+        ("[parameters]\nL = { units = 1 }\n" + axis(), "there are value, unit, meaning"),
+        ("[parameters]\nL = { unit = 1 }\n" + axis(), "the unit of L is a text, not 1"),
+        ("[parameters]\nL = { meaning = 'a */ b' }\n" + axis(), "goes into comments"),
+        ("[parameters]\nL = 1\nK = 1\n" + axis(), "the parameter K stands nowhere"),
+        (axis(direction=""), "axis 1: direction is missing"),
+        (axis(joint=""), "axis 1: joint is missing"),
+        (axis(joint="3"), 'axis 1: a joint has a name, such as "theta1", not 3'),
+        ("[parameters]\nL = 1\n" + axis(joint='"L"'), "L is a joint and a parameter"),
+        (axis(joint='"my joint"'), "'my joint' is no name"),
+        (axis(joint='"while"'), "while is a word of Python or C"),
+        (AXIS + axis(), "axis 2: two joints have the name t1"),
+        (axis(kind='"helical"'), "the kind is revolute or prismatic, not helical"),
+        (axis(pitch="3"), "axis 1: the key pitch is unknown"),
+        (axis(direction="[0, 1, 1]"), "no unit length; write (0, sqrt(2)/2, sqrt(2)/2)"),
+        (axis(direction="[0, 0.7071, 0.7071]"), "write sqrt(2)/2, not 0.7071"),
+        (axis(direction='["u", 0, 0]'), "write numbers, or the cosine and the sine of an angle"),
+        (axis(direction="[0, 0, 0]"), "the direction (0, 0, 0) is zero"),
+        (axis(direction='["cos(t1)", "sin(t1)", 0]'), "axis 1: the joint t1 stands in it"),
+        (axis(direction="[0, 0, nan]"), "axis 1, direction: nan is no finite number"),
+        (axis(direction="[0, 0, true]"), "axis 1, direction: True is no number or formula"),
+        (axis(direction='"z"'), "direction needs 3 coordinates, such as [0, 0, 1], not 'z'"),
+        (axis(point="[0, 0]"), "axis 1, point needs 3 coordinates"),
+        (axis(point='["0,3", 0, 0]'), "'0,3' is no number or formula"),
+        (AXIS, "[home]: position is missing"),
+        (AXIS + "[home]\nposition = [0, 0]\n", "[home], position needs 3 coordinates"),
+        (AXIS + '[home]\nposition = ["t1", 0, 0]\n', "at home all joints are zero"),
+        (axis() + "rotation = 3\n", "rotation has 3 rows of 3 entries, not 3"),
+        (axis() + "rotation = [[1, 0], [0, 1, 0], [0, 0, 1]]\n", "rotation, row 1 needs 3"),
+        (axis() + "rotation = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]\n", "is none: the rows must be"),
+        (axis() + "rotation = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]\n", "is mirrored"),
+    ],
+)
+def test_axes(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, message: str) -> None:
+    assert message in complaint(tmp_path, "screws", text, capsys)
+
+
+def test_a_table_that_is_no_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = tmp_path / "table.csv"
+    table.write_bytes(b"\xff\xfe\x00a")
+    assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
+    assert "is no text in UTF-8" in capsys.readouterr().err
+    table.write_bytes(b"\xef\xbb\xbf" + (HEADER + "L, 0, 0, t\n").encode())
+    assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("my arm", "'my arm' is no name of a module"),
+        ("../arm", "is no name of a module"),
+        ("_arm", "is no name of a module"),
+        ("Ärm", "is no name of a module"),
+        ("class", "the name class is taken"),
+        ("closedform", "the name closedform is taken"),
+        ("sympy", "sympy is a module of Python"),
+        ("math", "math is a module of Python"),
+    ],
+)
+def test_names_of_robots(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, message: str
+) -> None:
+    table = tmp_path / "table.csv"
+    table.write_text(HEADER + "L, 0, 0, t\n", "utf-8")
+    assert main(["new", name, "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.glob("**/*.py"))
+
+
+def test_files_and_options(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = tmp_path / "table.toml"
+    table.write_text(axis(), "utf-8")
+    for arguments, message in (
+        (["screws", "nowhere.toml"], "there is no file nowhere.toml"),
+        (["screws", str(tmp_path)], "is no file"),
+        (["urdf", str(table)], "--from dh TABLE.csv or --from screws FILE.toml, not urdf"),
+        (["screws", str(table), "--modified"], "--modified goes with --from dh"),
+    ):
+        assert main(["new", "arm", "-o", str(tmp_path), "--from", *arguments]) == 2
+        assert message in capsys.readouterr().err
+
+
+def test_any_text_may_say_what_a_parameter_is(tmp_path: Path) -> None:
+    table = tmp_path / "table.toml"
+    entry = """L = { value = 1, unit = 'k"', meaning = 'the "long" one, 5 % of it' }"""
+    table.write_text(f"[parameters]\n{entry}\n{axis()}", "utf-8")
+    assert main(["new", "quoted", "--from", "screws", str(table), "-o", str(tmp_path)]) == 0
+    (parameter,) = load(find([str(tmp_path / "quoted.py")])[0]).parameters
+    assert (parameter.unit, parameter.meaning) == ('k"', 'the "long" one, 5 % of it')

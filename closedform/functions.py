@@ -261,9 +261,10 @@ class Function:
             if isinstance(statement, Vanishes):
                 known[statement.symbol] = sp.sympify((flags or {}).get(statement.symbol, False))
             elif isinstance(statement, (Let, Bound)) and statement.symbol in needed:
-                known[statement.symbol] = substitute(statement.value, known)
-                if isinstance(statement, Bound):
-                    bounds.append(known[statement.symbol])
+                value = known[statement.symbol] = substitute(statement.value, known)
+                sum_of_squares = value.is_Add and statement.symbol.is_nonnegative
+                if isinstance(statement, Bound) or (sum_of_squares and value.is_nonnegative):
+                    bounds.append(value)
         return tuple(substitute(e, known) for e in exprs), tuple(bounds)
 
 

@@ -2,8 +2,8 @@
 
 Each is a function that adds its statements to a :class:`~closedform.functions.Program` and returns
 a :class:`Lemma`: the equations, the unknowns and the closed form of each.  The closed forms are
-chosen for the boundary of the workspace: differences of lengths under the roots instead of
-``1 - cos(x)**2``, and ``atan2`` of half angles instead of ``acos``.
+chosen for the boundary of the workspace: differences of lengths, or of their squares, under the
+roots instead of ``1 - cos(x)**2``, and ``atan2`` instead of ``acos``.
 
 :func:`closedform.prove_lemma.prove_lemma` proves a lemma once, for symbolic coefficients: its
 solutions satisfy the equations, and the equations have no others.
@@ -185,6 +185,69 @@ def two_link_triangle(
         },
         2,
     )
+
+
+def triangle_angles(
+    first: sp.Expr, second: sp.Expr, N: sp.Expr, M: sp.Expr, sigma: sp.Expr
+) -> tuple[sp.Expr, sp.Expr]:
+    """Elbow and base of :func:`two_link_triangle_by_square`, for N and M."""
+    elbow = 2 * sigma * sp.atan2(sp.sqrt(N), sp.sqrt(M))
+    beyond = 2 * sigma * second * (sp.sqrt(N) * sp.sqrt(M))
+    return elbow, sp.atan2(beyond, (first - second) * N + (first + second) * M)
+
+
+def two_link_triangle_by_square(
+    program: Program,
+    first: sp.Expr,
+    second: sp.Expr,
+    square: sp.Expr,
+    elbow: sp.Symbol,
+    base: sp.Symbol,
+    sigma: sp.Symbol,
+    *,
+    scale: sp.Expr | None = None,
+    suffix: str = "",
+    free: Sequence[sp.Symbol] = (),
+) -> tuple[Lemma, tuple[sp.Expr, sp.Expr]]:
+    """As :func:`two_link_triangle`, by the ``square`` of the distance R of the ends.
+
+    With N = (l1 + l2)^2 - R^2 and M = R^2 - (l1 - l2)^2
+
+        tan(elbow / 2) = sqrt(N / M),
+        tan(base) = 2 l2 sqrt(N M) / ((l1 - l2) N + (l1 + l2) M),
+
+    without R itself.  Cosine and sine of the base, times 4 l1 l2 R, are returned too, for what
+    turns with it.  Both angles rest on the same N and M, whose rounding counts as some of R; so
+    the links end where they should even where their angles are ill-conditioned.
+
+    The elbow is free where a link has no length: the convention is a stretched one, and the
+    ``free`` joints get the status for it.  The base is free where R = 0.  ``scale`` is the natural
+    scale of the lengths: by default that of the links, more where R comes from larger ones.
+    """
+    total, apart = first + second, first - second
+    scale = total if scale is None else scale
+    N = program.bound(
+        f"N{suffix}", total**2 - square, 2 * total * scale, "nearer than full stretch"
+    )
+    M = program.bound(
+        f"M{suffix}", square - apart**2, 2 * sp.Abs(apart) * scale, "farther than the fold"
+    )
+    bend, lead = triangle_angles(first, second, N, M, sigma)
+    no_link = program.vanishes(
+        f"no_link{suffix}", first * second, total**2, "a link has no length", free
+    )
+    ahead = program.let(f"ahead{suffix}", choose(no_link, 1, lead.args[1]))
+    beyond = program.let(f"beyond{suffix}", choose(no_link, 0, lead.args[0]))
+    lemma = Lemma(
+        "two-link triangle",
+        r"N = (l_1 + l_2)^2 - R^2,\ M = R^2 - (l_1 - l_2)^2:\quad "
+        r"\tan\frac{\theta}{2} = \sigma\frac{\sqrt N}{\sqrt M},\quad "
+        r"\tan\alpha = \sigma\frac{2 l_2 \sqrt{N M}}{(l_1 - l_2) N + (l_1 + l_2) M}",
+        triangle_equations(first, second, sp.sqrt(square), elbow, base),
+        {elbow: choose(no_link, 0, bend), base: sp.atan2(beyond, ahead)},
+        2,
+    )
+    return lemma, (ahead, beyond)
 
 
 def parallelogram(

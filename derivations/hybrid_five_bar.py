@@ -10,8 +10,13 @@ from sympy import atan2, cos, sin, sqrt
 from closedform.algebra import normal
 from closedform.derivation import Continuum, Derivation, Inverse, Solved, Stage
 from closedform.frames import merge_angles, rotation
-from closedform.functions import Program, branches, choose, real
-from closedform.lemmas import circle_intersection, linear_pair, two_link_triangle
+from closedform.functions import Bound, Program, branches, choose, real
+from closedform.lemmas import (
+    circle_intersection,
+    linear_pair,
+    triangle_angles,
+    two_link_triangle_by_square,
+)
 from closedform.loops import velocity_matrices
 
 d = Derivation(
@@ -317,32 +322,42 @@ d.branches = working.labels
 base2, base3, elbow4, elbow5 = (real(name) for name in ("base2", "base3", "elbow4", "elbow5"))
 
 w = Program()
-r = w.let("r", sqrt(x**2 + z**2), nonnegative=True)
-reach_c = w.let("reach_c", sqrt(y**2 + r**2), nonnegative=True)
-reach_d = w.let("reach_d", sqrt((y - L0) ** 2 + r**2), nonnegative=True)
-triangle_c = two_link_triangle(w, L1, L2, reach_c, elbow4, base2, sigma2, suffix="_c")
-triangle_d = two_link_triangle(w, L1, L2, reach_d, elbow5, base3, sigma3, suffix="_d")
-inside = Program(list(w.body))
+r2 = w.let("r2", x**2 + z**2, nonnegative=True)
+square_c = w.let("square_c", r2 + y**2, nonnegative=True)
+square_d = w.let("square_d", r2 + (y - L0) ** 2, nonnegative=True)
+squares = list(w.body)
+triangle_c, arm_c = two_link_triangle_by_square(
+    w, L1, L2, square_c, elbow4, base2, sigma2, suffix="_c"
+)
+triangle_d, arm_d = two_link_triangle_by_square(
+    w, L1, L2, square_d, elbow5, base3, sigma3, suffix="_d"
+)
+inside = Program([*squares, *(s for s in w.body if isinstance(s, Bound))])
 size = L0 + L1 + L2
+r = w.let("r", sqrt(r2), nonnegative=True)
 on_axis = w.vanishes("on_axis", r, size, "P is on the axis", free=(theta1,))
-at_a = w.vanishes("at_A", reach_c, size, "P is at A", free=(theta2,))
-at_b = w.vanishes("at_B", reach_d, size, "P is at B", free=(theta3,))
+at_a = w.vanishes("at_A", r + sp.Abs(y), size, "P is at A", free=(theta2,))
+at_b = w.vanishes("at_B", r + sp.Abs(y - L0), size, "P is at B", free=(theta3,))
 w.vanishes("no_bar", L1, L1 + L2, "the driven bars have no length", free=(theta2, theta3))
 turn = linear_pair(theta1, tau * z, -tau * x)
-bearing_c, bearing_d = linear_pair(theta2, tau * r, y), linear_pair(theta3, tau * r, y - L0)
-legs = (
-    (bearing_c[theta2], triangle_c[base2], at_a),
-    (bearing_d[theta3], triangle_d[base3], at_b),
+bearing_c, bearing_d = (
+    linear_pair(theta, tau * r * ahead - along * beyond, along * ahead + tau * r * beyond)
+    for theta, along, (ahead, beyond) in ((theta2, y, arm_c), (theta3, y - L0, arm_d))
 )
-driven_angles = [choose(flag, 0, toward - base) for toward, base, flag in legs]
+driven_angles = [choose(at_a, 0, bearing_c[theta2]), choose(at_b, 0, bearing_d[theta3])]
 
 
-def spelled(angle: sp.Expr, reach: sp.Symbol, name: sp.Symbol) -> sp.Expr:
-    """An angle with the sides of its triangle written out, the distance of P by its name."""
-    values = {s.symbol: s.value for s in inside.body if s.symbol not in (r, reach)}
-    while angle.free_symbols & values.keys():
-        angle = angle.subs(values)
-    return angle.subs(reach, name)
+def spelled(name: str, square: sp.Expr, along: sp.Expr, sign: sp.Symbol) -> dict[str, sp.Expr]:
+    """What a leg turns by: the distance of P from its pivot, N, M and the angle of its bar."""
+    N, M = (real(f"{n}_{name}", nonnegative=True) for n in "NM")
+    distance = real(name) ** 2
+    return {
+        f"{name}^2": square,
+        f"N_{name}": (L1 + L2) ** 2 - distance,
+        f"M_{name}": distance - (L1 - L2) ** 2,
+        rf"\theta_{ {'a': 2, 'b': 3}[name] }": atan2(tau * real("r"), along)
+        - triangle_angles(L1, L2, N, M, sign)[1],
+    }
 
 
 d.step(
@@ -355,10 +370,8 @@ d.step(
     {
         "r": sqrt(x**2 + z**2),
         r"\theta_1": turn[theta1],
-        r"a": sqrt(y**2 + r**2),
-        r"\theta_2": spelled(bearing_c[theta2] - triangle_c[base2], reach_c, real("a")),
-        r"b": sqrt((y - L0) ** 2 + r**2),
-        r"\theta_3": spelled(bearing_d[theta3] - triangle_d[base3], reach_d, real("b")),
+        **spelled("a", y**2 + real("r") ** 2, y, sigma2),
+        **spelled("b", (y - L0) ** 2 + real("r") ** 2, y - L0, sigma3),
     },
 )
 d.function(

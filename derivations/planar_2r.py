@@ -8,7 +8,7 @@ from sympy import atan2, cos, sin, sqrt
 from closedform.derivation import Continuum, Derivation, Inverse, Solved
 from closedform.frames import chain, denavit_hartenberg, determinant, jacobian, rotation
 from closedform.functions import SINGLE, Program, branches, choose, real
-from closedform.lemmas import linear_pair, two_link_triangle
+from closedform.lemmas import linear_pair, triangle_angles, two_link_triangle_by_square
 
 d = Derivation(
     "planar_2r",
@@ -133,13 +133,16 @@ elbow = branches((sigma, {+1: "elbow_down", -1: "elbow_up"}))
 d.branches = elbow.labels
 
 p = Program()
-r = p.let("r", sqrt(px**2 + py**2), nonnegative=True)
-triangle = two_link_triangle(p, l1, l2, r, theta2, alpha, sigma)
-at_base = p.vanishes("at_base", r, l1 + l2, "the hand is on the base axis", free=(theta1,))
-p.vanishes("no_link", l1 * l2, (l1 + l2) ** 2, "a link has no length", free=(theta2,))
-bearing = linear_pair(theta1, py, px)
+r2 = p.let("r2", px**2 + py**2, nonnegative=True)
+triangle, (ahead, beyond) = two_link_triangle_by_square(
+    p, l1, l2, r2, theta2, alpha, sigma, free=(theta2,)
+)
+at_base = p.vanishes(
+    "at_base", sp.Abs(px) + sp.Abs(py), l1 + l2, "the hand is on the base axis", free=(theta1,)
+)
+bearing = linear_pair(theta1, py * ahead - px * beyond, px * ahead + py * beyond)
 solution = {
-    theta1: choose(at_base, 0, bearing[theta1] - triangle[alpha]),
+    theta1: choose(at_base, 0, bearing[theta1]),
     theta2: triangle[theta2],
 }
 d.solved += [
@@ -152,19 +155,29 @@ d.solved += [
         - cos(theta1) * (py * (l1 + l2 * cos(theta2)) - px * l2 * sin(theta2)),
     ),
 ]
+N, M = real("N", nonnegative=True), real("M", nonnegative=True)
+bend, lead = triangle_angles(l1, l2, N, M, sigma)
 d.step(
     "Inverse: the elbow",
     "The links and the line from the base to the hand form a triangle with the sides l1, l2 and r. "
-    "Half-angle formulas with the four factors of Heron's formula keep full accuracy at both "
-    "boundaries of the workspace, where the textbook's sqrt(1 - D^2) loses half the digits.",
-    {r"r": sqrt(px**2 + py**2), r"\theta_2": triangle[theta2], r"\alpha": triangle[alpha]},
+    "N and M tell how far the hand is from both boundaries of the workspace; there the arctangent "
+    "of their roots keeps the hand in place to rounding, where the textbook's sqrt(1 - D^2) loses "
+    "half the digits or is not real.",
+    {
+        "r^2": px**2 + py**2,
+        "N": (l1 + l2) ** 2 - real("r") ** 2,
+        "M": real("r") ** 2 - (l1 - l2) ** 2,
+        r"\theta_2": bend,
+        r"\alpha": lead,
+    },
     published=("(3)",),
 )
 d.step(
     "Inverse: the shoulder",
-    "The first link leaves the bearing of the hand by the angle alpha at the base of the triangle. "
-    "If the hand is on the base axis, which takes l1 = l2, every theta1 serves; we return 0.",
-    {r"\theta_1": bearing[theta1] - alpha},
+    "The first link leaves the bearing of the hand by the angle alpha at the base of the triangle; "
+    "the sine and cosine of both give their difference in one arctangent.  If the hand is on the "
+    "base axis, which takes l1 = l2, every theta1 serves; we return 0.",
+    {r"\theta_1": atan2(py, px) - alpha},
     published=("(4)",),
 )
 d.function(
@@ -175,7 +188,7 @@ d.function(
     program=p,
     branches=elbow,
     result="Solutions",
-    source="eqs. (3) and (4), in half-angle form",
+    source="eqs. (3) and (4), by arctangents",
     notes=(
         "SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a "
         "link without length, whose angle is free.",

@@ -14,6 +14,7 @@ from closedform.lemmas import (
     parallelogram,
     sine_cosine,
     two_link_triangle,
+    two_link_triangle_by_square,
     two_sines,
     zyz_angles,
 )
@@ -41,6 +42,11 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         first, second = (real(n, positive=True) for n in ("l1", "l2"))
         reach = real("r", positive=True)
         return two_link_triangle(program, first, second, reach, x, y, sigma), program, {}
+    if name == "triangle by square":
+        first, second = (real(n, positive=True) for n in ("l1", "l2"))
+        square = real("r", positive=True) ** 2
+        lemma, _ = two_link_triangle_by_square(program, first, second, square, x, y, sigma)
+        return lemma, program, {}
     if name == "sine and cosine by pairs":
         return sine_cosine_pair(program, x, a, b, c, sigma, a + b)[0], program, {}
     if name == "triangle by pairs":
@@ -80,6 +86,7 @@ NAMES = [
     "linear pair",
     "sine and cosine",
     "triangle",
+    "triangle by square",
     "arm",
     "arm beside another",
     "two sines",

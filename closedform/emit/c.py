@@ -17,11 +17,11 @@ from typing import Any
 
 from closedform import __version__
 from closedform.derivation import Derivation
-from closedform.emit.code import WRAPS, Printer, Text
+from closedform.emit.code import COMPARE, WRAPS, Printer, Text
 from closedform.emit.text import WIDTH, banner, describe, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.lower.graph import Node
+from closedform.lower.graph import Node, hardly_ever
 from closedform.tolerances import DOUBLE, FLOAT
 
 LANES = 8
@@ -31,15 +31,13 @@ CALLS = {
     "abs": "cf_abs",
     "max": "cf_max",
     "min": "cf_min",
-    "finite": "cf_is_finite",
     **{op: f"cf_{op}" for op in WRAPS},
-    "poison": "cf_poison",
-    "status": "cf_status",
     "select": "cf_select",
 }
+RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
 LOCALS = frozenset(
     ["params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start"]
-) | frozenset(["vector", "opposite", "adjacent", "angles"])
+) | frozenset(["single", "opposite", "adjacent", "angles"])
 RESERVED = LOCALS | frozenset(
     [
         "auto",
@@ -136,13 +134,17 @@ class CPrinter(Printer):
             return Text(f"!{self.text[node.args[0].id].at(6)}", 5)  # gcc warns of `!a | b`
         if op == "tolerance":
             return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
+        if op == "finite":
+            return Text(f"{' + '.join(f'cf_nought({a})' for a in args)} == 0", COMPARE)
+        if op in RARE and (op != "select" or hardly_ever(node.args[0])):
+            return Text(f"{RARE[op]}({', '.join(['single', *args])})")
         return Text(f"{CALLS[op]}({', '.join(args)})")
 
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
         """Comparisons of calls get a name: clang warns of ``&`` between them, names are int."""
         if self._together(node):
             return False
-        compares_calls = node.op in ("lt", "le", "eq") and "cf_" in text.code
+        compares_calls = node.op in ("lt", "le", "eq", "finite") and "cf_" in text.code
         return compares_calls or super().deserves_name(node, text, uses)
 
 
@@ -286,6 +288,7 @@ class _Emission:
         narrowed = tuple(o for o in self.outputs if o.kind != "CF_REAL")
         shared = ["params"] * bool(self.parameters)
         kernel_lines = self._kernel_lines()
+        single = _occurs("single", kernel_lines)
         trig = [name for name in ("sines", "cosines") if _occurs(name, kernel_lines)]
         names = [o.name for o in self.outputs]
         return CFunction(
@@ -322,7 +325,7 @@ class _Emission:
             single=_folded([params, *(a.single for a in arrays)]),
             batch=_folded(["size_t n", params, *(a.batch for a in arrays)]),
             kernel=_folded(
-                ["const int vector"] * bool(self.printer.arctangents)
+                ["const int single"] * single
                 + [params] * bool(self.parameters)
                 + [a.single for a in self.raw]
                 + [f"const real_t *{name}" for name in trig]
@@ -330,14 +333,14 @@ class _Emission:
             ),
             kernel_lines=tuple(kernel_lines),
             kernel_call_single=", ".join(
-                ["1"] * bool(self.printer.arctangents)
+                ["1"] * single
                 + shared
                 + [a.name for a in self.raw]
                 + trig
                 + [f"{o.name}_real" if o in narrowed else o.name for o in self.outputs]
             ),
             kernel_call_batch=", ".join(
-                ["0"] * bool(self.printer.arctangents)
+                ["0"] * single
                 + ["&local"] * bool(self.parameters)
                 + [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)]
             ),
@@ -406,7 +409,7 @@ class _Emission:
             f"const real_t opposite[{n}] = {{ {', '.join(y for y, _ in pairs)} }};",
             f"const real_t adjacent[{n}] = {{ {', '.join(x for _, x in pairs)} }};",
             f"real_t angles[{n}];",
-            "if (vector) {",
+            "if (single) {",
             f"    cf_atan2_lanes({n}, opposite, adjacent, angles);",
             "} else {",
             *one_by_one,

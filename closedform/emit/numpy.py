@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from closedform.derivation import Derivation
-from closedform.emit.code import WRAPS, Printer, Text
+from closedform.emit.code import ATOM, LOGIC, WRAPS, Printer, Text
 from closedform.emit.text import WIDTH, banner, call_signature, docstring, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
@@ -23,7 +23,6 @@ CALLS = {
     "min": "np.minimum",
     "select": "_runtime.select",
     "not": "np.logical_not",
-    "finite": "np.isfinite",
     **{op: f"_runtime.{op}" for op in WRAPS},
     "poison": "_runtime.poison",
     "status": "_runtime.status",
@@ -44,6 +43,9 @@ class NumpyPrinter(Printer):
             return Text(f"np.{op.capitalize()}_")
         if op == "tolerance":
             return Text(f"_runtime.{str(node.payload).upper()}")
+        if op == "finite":
+            tests = [f"np.isfinite({a})" for a in args]
+            return Text(" & ".join(tests), LOGIC if len(tests) > 1 else ATOM)
         return Text(f"{CALLS[op]}({', '.join(args)})")
 
 

@@ -216,6 +216,15 @@ def reachable(
             stack.extend((a, False) for a in reversed(operands(node)) if a.id not in seen)
 
 
+def hardly_ever(condition: Node) -> bool:
+    """Whether a condition is made of the flags of free joints alone: true at singularities."""
+    if condition.op in ("or", "and"):
+        return all(map(hardly_ever, condition.args))
+    return condition.op == "le" and any(
+        n.op == "tolerance" and n.payload == "vanishing" for n in reachable(condition.args[1:])
+    )
+
+
 def rebuild(
     roots: Sequence[Node],
     change: Callable[[Node, tuple[Node, ...]], Node],

@@ -243,15 +243,21 @@ class _Branch:
             for e in statement.values
             for s in e.free_symbols
         }
+
+        def finite(symbols: Iterable[sp.Symbol]) -> list[Node]:
+            tested = [self.leaves[s] for s in symbols if s not in required]
+            return [graph.node("finite", *tested)] if tested else []
+
         # The parameters first: what is the same for all postures is tested once a batch.
-        entries = [*(p.symbol for p in parameters), *self.function.symbols]
-        finite = {s: graph.node("finite", self.leaves[s]) for s in entries if s not in required}
-        lengths = {
-            p.symbol: graph.node("le", graph.const(0), self.leaves[p.symbol])
-            for p in parameters
-            if p.nonnegative
-        }
-        return [test[s] for s in entries for test in (finite, lengths) if s in test]
+        return [
+            *finite(p.symbol for p in parameters),
+            *(
+                graph.node("le", graph.const(0), self.leaves[p.symbol])
+                for p in parameters
+                if p.nonnegative
+            ),
+            *finite(self.function.symbols),
+        ]
 
     def _name(
         self, names: dict[int, str], build: Builder, symbol: sp.Symbol, node: Node, label: str

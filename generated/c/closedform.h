@@ -9,7 +9,6 @@
 #ifndef CLOSEDFORM_H
 #define CLOSEDFORM_H
 
-#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -26,10 +25,12 @@
 #define CF_INLINE static inline __attribute__((always_inline))
 #define CF_RARE static __attribute__((cold, noinline, unused))
 #define CF_RESTRICT __restrict
+#define CF_UNLIKELY(condition) __builtin_expect((condition), 0)
 #else
 #define CF_INLINE static inline
 #define CF_RARE static inline
 #define CF_RESTRICT
+#define CF_UNLIKELY(condition) (condition)
 #endif
 
 /* Before a loop over the postures of a batch: no iteration reads what another writes, for outputs
@@ -70,12 +71,10 @@ enum closedform_status {
 #ifdef CLOSEDFORM_FLOAT
 typedef float real_t;
 typedef uint32_t cf_word; /* the bits of a real_t */
-#define CF_REAL_MAX FLT_MAX
 #define CF_LIBM(name) name##f
 #else
 typedef double real_t;
 typedef uint64_t cf_word;
-#define CF_REAL_MAX DBL_MAX
 #define CF_LIBM(name) name
 #endif
 
@@ -121,15 +120,24 @@ CF_INLINE real_t cf_select(int condition, real_t a, real_t b)
     return cf_from_word((cf_to_word(a) & mask) | (cf_to_word(b) & ~mask));
 }
 
-/* NaN where `failed`, else zero: added to an answer, it is one selection for all entries. */
-CF_INLINE real_t cf_poison(int failed)
+/* The same where `condition` hardly ever is 1. A single call jumps, which a processor foresees, so
+ * that nothing waits for the condition; a batch selects. */
+CF_INLINE real_t cf_rarely(int single, int condition, real_t a, real_t b)
 {
-    return cf_select(failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
+    if (single) return CF_UNLIKELY(condition) ? a : b;
+    return cf_select(condition, a, b);
+}
+
+/* NaN where `failed`, else zero: added to an answer, it is one selection for all entries. */
+CF_INLINE real_t cf_poison(int single, int failed)
+{
+    return cf_rarely(single, failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
 }
 
 /* The status of a branch; an invalid input outweighs all, a free joint nothing. */
-CF_INLINE real_t cf_status(int invalid, int unreachable, int singular)
+CF_INLINE real_t cf_status(int single, int invalid, int unreachable, int singular)
 {
+    if (single && !CF_UNLIKELY(invalid | unreachable | singular)) return CLOSEDFORM_C(0.0);
     const real_t reached = cf_select(singular, CLOSEDFORM_C(2.0), CLOSEDFORM_C(0.0));
     const real_t valid = cf_select(unreachable, CLOSEDFORM_C(1.0), reached);
     return cf_select(invalid, CLOSEDFORM_C(3.0), valid);
@@ -143,7 +151,8 @@ CF_INLINE real_t cf_copysign(real_t size, real_t sign) { return CF_LIBM(copysign
 CF_INLINE real_t cf_max(real_t a, real_t b) { return a > b ? a : b; }
 CF_INLINE real_t cf_min(real_t a, real_t b) { return a < b ? a : b; }
 
-CF_INLINE int cf_is_finite(real_t x) { return cf_abs(x) <= CF_REAL_MAX; }
+/* Zero, or NaN if x is not finite: of several numbers the sum tells whether all are. */
+CF_INLINE real_t cf_nought(real_t x) { return CLOSEDFORM_C(0.0) * x; }
 
 /* The constants of the two types. Polynomials: Remez in 260 bits, relative error of the function
  * as the weight, coefficients then rounded in turn. Odd or even in the argument, with z its square:
@@ -214,7 +223,7 @@ CF_INLINE real_t cf_cos_poly(real_t z)
 
 CF_INLINE real_t cf_atan_poly(real_t z)
 {
-    const real_t z2 = z * z, z4 = z2 * z2;
+    const real_t z2 = z * z, z4 = z2 * z2, z8 = z4 * z4;
     const real_t a0 = (-0.33333333333333071 + z * 0.19999999999951748) +
                       z2 * (-0.14285714282587961 + z * 0.11111111007337657);
     const real_t a4 = (-0.090909070077165921 + z * 0.076922798879409296) +
@@ -225,7 +234,7 @@ CF_INLINE real_t cf_atan_poly(real_t z)
                        z2 * (-0.013902553426051959 + z * 0.0071978698112242813);
     const real_t a16 = (-0.0028856017598414704 + z * 0.00083155685524330175) +
                        z2 * (-0.00015221055130022849 + z * 1.3229941982294489e-5);
-    return a0 + z4 * (a4 + z4 * (a8 + z4 * (a12 + z4 * a16)));
+    return (a0 + z4 * a4) + z8 * ((a8 + z4 * a12) + z8 * a16);
 }
 
 #endif

@@ -2686,7 +2686,7 @@ const cf_function cf_functions[] = {
       planar_2r_singularities_one, planar_2r_singularities_many },
     { "planar_2r.ik",
       "Both elbow configurations that reach a position.\n"
-      "Source: eqs. (3) and (4), in half-angle form.\n"
+      "Source: eqs. (3) and (4), by arctangents.\n"
       "x: shape (..., 2): px, py.\n"
       "Returns q: shape (..., 2, 2).\n"
       "Branches: elbow_down, elbow_up.\n"

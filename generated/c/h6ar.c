@@ -4,22 +4,22 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 45 add, 63 compare and select, 3 atan2, 8 divide, 60 multiply, 6 sincos, 4 sqrt
- *   pose: 72 add, 60 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
+ *   fk: 45 add, 37 compare and select, 3 atan2, 8 divide, 60 multiply, 6 sincos, 4 sqrt
+ *   pose: 72 add, 34 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 4 compare and select, 34 multiply, 5 sincos
- *   jacobian: 133 add, 56 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
- *   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
- *   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
- *   ik: 190 add, 239 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
- *   wrist_length: 5 add, 26 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
+ *   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
+ *   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
+ *   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
+ *   ik: 190 add, 213 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
+ *   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
- *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
- *   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
+ *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
+ *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
  */
 #include "h6ar.h"
 
-CF_INLINE void h6ar_fk_kernel(const int vector, const h6ar_params *params,
+CF_INLINE void h6ar_fk_kernel(const int single, const h6ar_params *params,
     const real_t q[6], const real_t *sines,
     const real_t *cosines, real_t x[6])
 {
@@ -97,37 +97,32 @@ CF_INLINE void h6ar_fk_kernel(const int vector, const h6ar_params *params,
     const real_t t36 = L2 + c_psi * t33;
     const real_t t37 = L1 * (side2A * t3) + c23A * t35 + s23A * t36;
     const real_t t38 = t18 * t26 - c_phi * t34;
-    const int t39 = cf_is_finite(L1) & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(a3);
-    const int t41 = t40 & (CLOSEDFORM_C(0.0) <= a3) & cf_is_finite(d1);
-    const int t42 = t41 & (CLOSEDFORM_C(0.0) <= d1) & cf_is_finite(d);
-    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= d) & cf_is_finite(gs);
-    const int t44 = t43 & (CLOSEDFORM_C(0.0) <= gs) & cf_is_finite(al);
-    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= al) & cf_is_finite(loff);
-    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= loff) & cf_is_finite(lp);
-    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= lp) & cf_is_finite(theta1);
-    const int t48 = t47 & cf_is_finite(theta2R) & cf_is_finite(theta3R);
-    const int t49 = t48 & cf_is_finite(theta2L) & cf_is_finite(theta3L);
-    const real_t t50 = -(CLOSEDFORM_FEASIBILITY * t31);
-    const int failed = (!(t49 & cf_is_finite(theta))) | (!((t50 <= t32) & (t50 <= t30)));
-    const real_t t51 = cf_poison(failed);
-    const real_t t52 = d1 + L1 * (side2A * t27) - c23A * t36 + s23A * t35;
+    const int t39 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t41 = t40 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
+    const int t42 = t41 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
+    const int t44 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
+    const real_t t45 = -(CLOSEDFORM_FEASIBILITY * t31);
+    const int failed = (!(t43 & (CLOSEDFORM_C(0.0) <= lp) & t44)) | (!((t45 <= t32) & (t45 <= t30)));
+    const real_t t46 = cf_poison(single, failed);
+    const real_t t47 = d1 + L1 * (side2A * t27) - c23A * t36 + s23A * t35;
     const real_t opposite[4] = { -t29, t26, s };
     const real_t adjacent[4] = { c_psi, c_phi, c };
     real_t angles[4];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(4, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
     }
-    x[0] = c1 * t37 - s1 * t38 + t51;
-    x[1] = c1 * t38 + s1 * t37 + t51;
-    x[2] = t52 + t51;
-    x[3] = cf_wrap_cut(angles[0]) + t51;
-    x[4] = cf_wrap_cut(-angles[1]) + t51;
-    x[5] = cf_wrap_cut(angles[2]) + t51;
+    x[0] = c1 * t37 - s1 * t38 + t46;
+    x[1] = c1 * t38 + s1 * t37 + t46;
+    x[2] = t47 + t46;
+    x[3] = cf_wrap_cut(angles[0]) + t46;
+    x[4] = cf_wrap_cut(-angles[1]) + t46;
+    x[5] = cf_wrap_cut(angles[2]) + t46;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -184,9 +179,9 @@ void h6ar_fk_batch(size_t n, const h6ar_params *params,
     }
 }
 
-CF_INLINE void h6ar_pose_kernel(const h6ar_params *params, const real_t q[6],
-    const real_t *sines, const real_t *cosines,
-    real_t T[16])
+CF_INLINE void h6ar_pose_kernel(const int single, const h6ar_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t T[16])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -257,60 +252,55 @@ CF_INLINE void h6ar_pose_kernel(const h6ar_params *params, const real_t q[6],
     const real_t t33 = s23A * c1;
     const real_t c_psi = d / base;
     const real_t t34 = s * c_psi;
-    const int t35 = cf_is_finite(L1) & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t36 = t35 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(a3);
-    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= a3) & cf_is_finite(d1);
-    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= d1) & cf_is_finite(d);
-    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= d) & cf_is_finite(gs);
-    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= gs) & cf_is_finite(al);
-    const int t41 = t40 & (CLOSEDFORM_C(0.0) <= al) & cf_is_finite(loff);
-    const int t42 = t41 & (CLOSEDFORM_C(0.0) <= loff) & cf_is_finite(lp);
-    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= lp) & cf_is_finite(theta1);
-    const int t44 = t43 & cf_is_finite(theta2R) & cf_is_finite(theta3R);
-    const int t45 = t44 & cf_is_finite(theta2L) & cf_is_finite(theta3L);
-    const real_t t46 = gs + al;
-    const real_t t47 = -(CLOSEDFORM_FEASIBILITY * t46);
-    const real_t t48 = t46 - base;
-    const real_t t49 = base - (gs - al);
-    const int failed = (!(t45 & cf_is_finite(theta))) | (!((t47 <= t48) & (t47 <= t49)));
-    const real_t t50 = cf_poison(failed);
+    const int t35 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t36 = t35 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
+    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
+    const int t40 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
+    const real_t t41 = gs + al;
+    const real_t t42 = -(CLOSEDFORM_FEASIBILITY * t41);
+    const real_t t43 = t41 - base;
+    const real_t t44 = base - (gs - al);
+    const int failed = (!(t39 & (CLOSEDFORM_C(0.0) <= lp) & t40)) | (!((t42 <= t43) & (t42 <= t44)));
+    const real_t t45 = cf_poison(single, failed);
     const real_t hand_12 = t29 * c_psi;
     const real_t hand_22 = c_phi * c_psi;
-    const real_t t51 = t15 * hand_12 + s1 * hand_22 - t33 * t28 + t50;
+    const real_t t46 = t15 * hand_12 + s1 * hand_22 - t33 * t28 + t45;
     const real_t hand_13 = s * c_phi + c * t30;
-    const real_t t52 = c * t31 - s * t29;
+    const real_t t47 = c * t31 - s * t29;
     const real_t hand_33 = c * c_psi;
-    const real_t t53 = t15 * hand_13 + s1 * t52 + t33 * hand_33 + t50;
+    const real_t t48 = t15 * hand_13 + s1 * t47 + t33 * hand_33 + t45;
     const real_t side2A = cf_select(CLOSEDFORM_C(0.0) <= t19 + t20, CLOSEDFORM_C(1.0), -CLOSEDFORM_C(1.0));
-    const real_t t54 = lp * s;
-    const real_t wrist = cf_sqrt(cf_max(t49, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t48, CLOSEDFORM_C(0.0)));
-    const real_t t55 = loff + lp * c + wrist;
-    const real_t t56 = a3 + t54 * c_phi + t30 * t55;
-    const real_t t57 = L2 + c_psi * t55;
-    const real_t t58 = L1 * (side2A * t21) + c23A * t56 + s23A * t57;
-    const real_t t59 = t54 * t29 - t31 * t55;
-    const real_t t60 = c23A * s1;
-    const real_t t61 = s23A * s1;
-    const real_t t62 = t60 * hand_12 - c1 * hand_22 - t61 * t28 + t50;
-    const real_t t63 = t60 * hand_13 - c1 * t52 + t61 * hand_33 + t50;
-    const real_t t64 = d1 + L1 * (side2A * t26) - c23A * t57 + s23A * t56;
-    const real_t t65 = CLOSEDFORM_C(0.0) + t50;
-    T[0] = t15 * hand_11 - s1 * t32 - t33 * t34 + t50;
-    T[1] = t51;
-    T[2] = t53;
-    T[3] = c1 * t58 - s1 * t59 + t50;
-    T[4] = t60 * hand_11 + c1 * t32 - t61 * t34 + t50;
-    T[5] = t62;
-    T[6] = t63;
-    T[7] = c1 * t59 + s1 * t58 + t50;
-    T[8] = c23A * t34 + s23A * hand_11 + t50;
-    T[9] = c23A * t28 + s23A * hand_12 + t50;
-    T[10] = s23A * hand_13 - c23A * hand_33 + t50;
-    T[11] = t64 + t50;
-    T[12] = t65;
-    T[13] = t65;
-    T[14] = t65;
-    T[15] = CLOSEDFORM_C(1.0) + t50;
+    const real_t t49 = lp * s;
+    const real_t wrist = cf_sqrt(cf_max(t44, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t43, CLOSEDFORM_C(0.0)));
+    const real_t t50 = loff + lp * c + wrist;
+    const real_t t51 = a3 + t49 * c_phi + t30 * t50;
+    const real_t t52 = L2 + c_psi * t50;
+    const real_t t53 = L1 * (side2A * t21) + c23A * t51 + s23A * t52;
+    const real_t t54 = t49 * t29 - t31 * t50;
+    const real_t t55 = c23A * s1;
+    const real_t t56 = s23A * s1;
+    const real_t t57 = t55 * hand_12 - c1 * hand_22 - t56 * t28 + t45;
+    const real_t t58 = t55 * hand_13 - c1 * t47 + t56 * hand_33 + t45;
+    const real_t t59 = d1 + L1 * (side2A * t26) - c23A * t52 + s23A * t51;
+    const real_t t60 = CLOSEDFORM_C(0.0) + t45;
+    T[0] = t15 * hand_11 - s1 * t32 - t33 * t34 + t45;
+    T[1] = t46;
+    T[2] = t48;
+    T[3] = c1 * t53 - s1 * t54 + t45;
+    T[4] = t55 * hand_11 + c1 * t32 - t56 * t34 + t45;
+    T[5] = t57;
+    T[6] = t58;
+    T[7] = c1 * t54 + s1 * t53 + t45;
+    T[8] = c23A * t34 + s23A * hand_11 + t45;
+    T[9] = c23A * t28 + s23A * hand_12 + t45;
+    T[10] = s23A * hand_13 - c23A * hand_33 + t45;
+    T[11] = t59 + t45;
+    T[12] = t60;
+    T[13] = t60;
+    T[14] = t60;
+    T[15] = CLOSEDFORM_C(1.0) + t45;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -320,7 +310,7 @@ void h6ar_pose(const h6ar_params *params, const real_t q[6],
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[0], q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
-    h6ar_pose_kernel(params, q, sines, cosines, T);
+    h6ar_pose_kernel(1, params, q, sines, cosines, T);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -356,7 +346,7 @@ void h6ar_pose_batch(size_t n, const h6ar_params *params,
             const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
             const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t T_i[16];
-            h6ar_pose_kernel(&local, q_i, sines_i, cosines_i, T_i);
+            h6ar_pose_kernel(0, &local, q_i, sines_i, cosines_i, T_i);
             T[start + i] = T_i[0];
             T[T_stride + start + i] = T_i[1];
             T[2 * T_stride + start + i] = T_i[2];
@@ -541,9 +531,9 @@ void h6ar_invariant_point_batch(size_t n, const h6ar_params *params,
     }
 }
 
-CF_INLINE void h6ar_jacobian_kernel(const h6ar_params *params, const real_t q[6],
-    const real_t *sines, const real_t *cosines,
-    real_t J[36])
+CF_INLINE void h6ar_jacobian_kernel(const int single, const h6ar_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t J[36])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -626,122 +616,118 @@ CF_INLINE void h6ar_jacobian_kernel(const h6ar_params *params, const real_t q[6]
     const real_t t43 = L2 + t42;
     const real_t outer_33 = c23A * t41 + s23A * t43;
     const real_t t44 = outer_32 + outer_33;
-    const int t45 = cf_is_finite(L1) & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(a3);
-    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= a3) & cf_is_finite(d);
-    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= d) & cf_is_finite(gs);
-    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= gs) & cf_is_finite(al);
-    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= al) & cf_is_finite(loff);
-    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= loff) & cf_is_finite(lp);
-    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= lp) & cf_is_finite(theta1);
-    const int t53 = t52 & cf_is_finite(theta2R) & cf_is_finite(theta3R);
-    const int t54 = t53 & cf_is_finite(theta2L) & cf_is_finite(theta3L);
-    const real_t t55 = -(CLOSEDFORM_FEASIBILITY * t34);
-    const int failed = (!(t54 & cf_is_finite(theta))) | (!((t55 <= t35) & (t55 <= t33)));
-    const real_t t56 = cf_poison(failed);
-    const real_t t57 = c23A * t37;
-    const real_t outer_15 = c1 * t57 + s1 * t40;
-    const real_t t58 = c2R_half * c2R_half - s2R_half * s2R_half;
-    const real_t t59 = s2R_half * c2R_half;
-    const real_t t60 = t59 + t59;
-    const real_t t61 = c3R_half * c3R_half - s3R_half * s3R_half;
-    const real_t t62 = s3R_half * c3R_half;
-    const real_t t63 = t62 + t62;
-    const real_t s2R3R = t60 * t61 + t58 * t63;
-    const real_t c2R3R = t58 * t61 - t60 * t63;
-    const real_t t64 = L2 * s2R3R / CLOSEDFORM_C(2.0) + a3 * c2R3R / CLOSEDFORM_C(2.0);
-    const real_t t65 = d * (CLOSEDFORM_C(1.0) + t25 / t24);
-    const real_t inner_52 = (L1 * t58 / CLOSEDFORM_C(2.0) + t64) / t65;
-    const real_t t66 = L1 * (side2A * t27);
-    const real_t t67 = c23A * t43 - s23A * t41;
-    const real_t t68 = c1 * t67 / CLOSEDFORM_C(2.0);
-    const real_t t69 = c1 * t66 / CLOSEDFORM_C(2.0) - t68;
-    const real_t t70 = c_phi * t42;
-    const real_t t71 = t26 * t42;
-    const real_t t72 = t30 * t36;
-    const real_t t73 = c23A * t71 - s23A * t72;
-    const real_t t74 = (gs - d / c_psi) * (d * t30);
-    const real_t t75 = s23A * c_psi;
-    const real_t t76 = c23A * t39 + t75;
-    const real_t t77 = c_psi * c_psi * wrist;
-    const real_t t78 = s1 * t70 + c1 * t73 + t74 * (s1 * t31 + c1 * t76) / t77;
-    const real_t t79 = L2 * c2R3R / CLOSEDFORM_C(2.0) - a3 * s2R3R / CLOSEDFORM_C(2.0);
-    const real_t t80 = d * (CLOSEDFORM_C(1.0) + t29 / t24);
-    const real_t t81 = (L1 * t60 / CLOSEDFORM_C(2.0) - t79) / t80;
-    const real_t t82 = outer_15 * inner_52 - (t69 - t78 * t81) + t56;
-    const real_t inner_43 = t79 / t80;
-    const real_t inner_53 = t64 / t65;
-    const real_t t83 = t68 - inner_43 * t78 + inner_53 * outer_15 + t56;
-    const real_t t84 = s2L_half * c2L_half;
+    const int t45 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d);
+    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
+    const int t50 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
+    const real_t t51 = -(CLOSEDFORM_FEASIBILITY * t34);
+    const int failed = (!(t49 & t50)) | (!((t51 <= t35) & (t51 <= t33)));
+    const real_t t52 = cf_poison(single, failed);
+    const real_t t53 = c23A * t37;
+    const real_t outer_15 = c1 * t53 + s1 * t40;
+    const real_t t54 = c2R_half * c2R_half - s2R_half * s2R_half;
+    const real_t t55 = s2R_half * c2R_half;
+    const real_t t56 = t55 + t55;
+    const real_t t57 = c3R_half * c3R_half - s3R_half * s3R_half;
+    const real_t t58 = s3R_half * c3R_half;
+    const real_t t59 = t58 + t58;
+    const real_t s2R3R = t56 * t57 + t54 * t59;
+    const real_t c2R3R = t54 * t57 - t56 * t59;
+    const real_t t60 = L2 * s2R3R / CLOSEDFORM_C(2.0) + a3 * c2R3R / CLOSEDFORM_C(2.0);
+    const real_t t61 = d * (CLOSEDFORM_C(1.0) + t25 / t24);
+    const real_t inner_52 = (L1 * t54 / CLOSEDFORM_C(2.0) + t60) / t61;
+    const real_t t62 = L1 * (side2A * t27);
+    const real_t t63 = c23A * t43 - s23A * t41;
+    const real_t t64 = c1 * t63 / CLOSEDFORM_C(2.0);
+    const real_t t65 = c1 * t62 / CLOSEDFORM_C(2.0) - t64;
+    const real_t t66 = c_phi * t42;
+    const real_t t67 = t26 * t42;
+    const real_t t68 = t30 * t36;
+    const real_t t69 = c23A * t67 - s23A * t68;
+    const real_t t70 = (gs - d / c_psi) * (d * t30);
+    const real_t t71 = s23A * c_psi;
+    const real_t t72 = c23A * t39 + t71;
+    const real_t t73 = c_psi * c_psi * wrist;
+    const real_t t74 = s1 * t66 + c1 * t69 + t70 * (s1 * t31 + c1 * t72) / t73;
+    const real_t t75 = L2 * c2R3R / CLOSEDFORM_C(2.0) - a3 * s2R3R / CLOSEDFORM_C(2.0);
+    const real_t t76 = d * (CLOSEDFORM_C(1.0) + t29 / t24);
+    const real_t t77 = (L1 * t56 / CLOSEDFORM_C(2.0) - t75) / t76;
+    const real_t t78 = outer_15 * inner_52 - (t65 - t74 * t77) + t52;
+    const real_t inner_43 = t75 / t76;
+    const real_t inner_53 = t60 / t61;
+    const real_t t79 = t64 - inner_43 * t74 + inner_53 * outer_15 + t52;
+    const real_t t80 = s2L_half * c2L_half;
+    const real_t t81 = t80 + t80;
+    const real_t t82 = c2L_half * c2L_half - s2L_half * s2L_half;
+    const real_t t83 = c3L_half * c3L_half - s3L_half * s3L_half;
+    const real_t t84 = s3L_half * c3L_half;
     const real_t t85 = t84 + t84;
-    const real_t t86 = c2L_half * c2L_half - s2L_half * s2L_half;
-    const real_t t87 = c3L_half * c3L_half - s3L_half * s3L_half;
-    const real_t t88 = s3L_half * c3L_half;
-    const real_t t89 = t88 + t88;
-    const real_t c2L3L = t86 * t87 - t85 * t89;
-    const real_t s2L3L = t85 * t87 + t86 * t89;
-    const real_t t90 = L2 * c2L3L / CLOSEDFORM_C(2.0) - a3 * s2L3L / CLOSEDFORM_C(2.0);
-    const real_t inner_44 = (L1 * t85 / CLOSEDFORM_C(2.0) - t90) / t80;
-    const real_t t91 = L2 * s2L3L / CLOSEDFORM_C(2.0) + a3 * c2L3L / CLOSEDFORM_C(2.0);
-    const real_t t92 = (L1 * t86 / CLOSEDFORM_C(2.0) + t91) / t65;
-    const real_t t93 = -(t69 + t78 * inner_44 + outer_15 * t92) + t56;
-    const real_t t94 = t90 / t80;
-    const real_t t95 = t91 / t65;
-    const real_t t96 = t32 * c_phi - t1 * t39;
-    const real_t t97 = c23A * t96 - t1 * t75;
-    const real_t t98 = t1 * t31 + t32 * t26;
-    const real_t outer_25 = s1 * t57 - c1 * t40;
-    const real_t t99 = s1 * t67 / CLOSEDFORM_C(2.0);
-    const real_t t100 = s1 * t66 / CLOSEDFORM_C(2.0) - t99;
-    const real_t outer_24 = c1 * t70 - s1 * t73 + t74 * (c1 * t31 - s1 * t76) / t77;
-    const real_t t101 = inner_52 * outer_25 - (t100 + t81 * outer_24);
-    const real_t t102 = t99 + inner_43 * outer_24 + inner_53 * outer_25;
-    const real_t t103 = -(t100 - inner_44 * outer_24 + t92 * outer_25);
-    const real_t t104 = CLOSEDFORM_C(0.0) + t56;
-    const real_t t105 = outer_33 / CLOSEDFORM_C(2.0);
-    const real_t t106 = outer_32 / CLOSEDFORM_C(2.0) + t105;
-    const real_t t107 = c23A * c_psi;
-    const real_t t108 = c23A * t72 + s23A * t71 - t74 * (t107 - s23A * t39) / t77;
+    const real_t c2L3L = t82 * t83 - t81 * t85;
+    const real_t s2L3L = t81 * t83 + t82 * t85;
+    const real_t t86 = L2 * c2L3L / CLOSEDFORM_C(2.0) - a3 * s2L3L / CLOSEDFORM_C(2.0);
+    const real_t inner_44 = (L1 * t81 / CLOSEDFORM_C(2.0) - t86) / t76;
+    const real_t t87 = L2 * s2L3L / CLOSEDFORM_C(2.0) + a3 * c2L3L / CLOSEDFORM_C(2.0);
+    const real_t t88 = (L1 * t82 / CLOSEDFORM_C(2.0) + t87) / t61;
+    const real_t t89 = -(t65 + t74 * inner_44 + outer_15 * t88) + t52;
+    const real_t t90 = t86 / t76;
+    const real_t t91 = t87 / t61;
+    const real_t t92 = t32 * c_phi - t1 * t39;
+    const real_t t93 = c23A * t92 - t1 * t71;
+    const real_t t94 = t1 * t31 + t32 * t26;
+    const real_t outer_25 = s1 * t53 - c1 * t40;
+    const real_t t95 = s1 * t63 / CLOSEDFORM_C(2.0);
+    const real_t t96 = s1 * t62 / CLOSEDFORM_C(2.0) - t95;
+    const real_t outer_24 = c1 * t66 - s1 * t69 + t70 * (c1 * t31 - s1 * t72) / t73;
+    const real_t t97 = inner_52 * outer_25 - (t96 + t77 * outer_24) + t52;
+    const real_t t98 = t95 + inner_43 * outer_24 + inner_53 * outer_25;
+    const real_t t99 = -(t96 - inner_44 * outer_24 + t88 * outer_25);
+    const real_t t100 = CLOSEDFORM_C(0.0) + t52;
+    const real_t t101 = outer_33 / CLOSEDFORM_C(2.0);
+    const real_t t102 = outer_32 / CLOSEDFORM_C(2.0) + t101;
+    const real_t t103 = c23A * c_psi;
+    const real_t t104 = c23A * t68 + s23A * t67 - t70 * (t103 - s23A * t39) / t73;
     const real_t outer_35 = s23A * t37;
-    const real_t t109 = t106 + t81 * t108 + inner_52 * outer_35 + t56;
-    const real_t t110 = t105 - inner_43 * t108 + inner_53 * outer_35 + t56;
-    const real_t t111 = t106 - inner_44 * t108 - t92 * outer_35 + t56;
-    J[0] = -(c1 * t37 + s1 * t44) + t56;
-    J[1] = t82;
-    J[2] = t83;
-    J[3] = t93;
-    J[4] = t68 + t94 * t78 - t95 * outer_15 + t56;
-    J[5] = c1 * t97 - s1 * t98 + t56;
-    J[6] = c1 * t44 - s1 * t37 + t56;
-    J[7] = t101 + t56;
-    J[8] = t102 + t56;
-    J[9] = t103 + t56;
-    J[10] = t99 - t94 * outer_24 - t95 * outer_25 + t56;
-    J[11] = s1 * t97 + c1 * t98 + t56;
-    J[12] = t104;
-    J[13] = t109;
-    J[14] = t110;
-    J[15] = t111;
-    J[16] = t105 + t94 * t108 - t95 * outer_35 + t56;
-    J[17] = t1 * t107 + s23A * t96 + t56;
-    J[18] = t104;
-    J[19] = -t81 + t56;
-    J[20] = inner_43 + t56;
-    J[21] = inner_44 + t56;
-    J[22] = -t94 + t56;
-    J[23] = t104;
-    J[24] = t104;
-    J[25] = inner_52 + t56;
-    J[26] = inner_53 + t56;
-    J[27] = -t92 + t56;
-    J[28] = -t95 + t56;
-    J[29] = t104;
-    J[30] = t104;
-    J[31] = t104;
-    J[32] = t104;
-    J[33] = t104;
-    J[34] = t104;
-    J[35] = CLOSEDFORM_C(1.0) + t56;
+    const real_t t105 = t102 + t77 * t104 + inner_52 * outer_35 + t52;
+    const real_t t106 = t101 - inner_43 * t104 + inner_53 * outer_35 + t52;
+    const real_t t107 = t102 - inner_44 * t104 - t88 * outer_35 + t52;
+    J[0] = -(c1 * t37 + s1 * t44) + t52;
+    J[1] = t78;
+    J[2] = t79;
+    J[3] = t89;
+    J[4] = t64 + t90 * t74 - t91 * outer_15 + t52;
+    J[5] = c1 * t93 - s1 * t94 + t52;
+    J[6] = c1 * t44 - s1 * t37 + t52;
+    J[7] = t97;
+    J[8] = t98 + t52;
+    J[9] = t99 + t52;
+    J[10] = t95 - t90 * outer_24 - t91 * outer_25 + t52;
+    J[11] = s1 * t93 + c1 * t94 + t52;
+    J[12] = t100;
+    J[13] = t105;
+    J[14] = t106;
+    J[15] = t107;
+    J[16] = t101 + t90 * t104 - t91 * outer_35 + t52;
+    J[17] = t1 * t103 + s23A * t92 + t52;
+    J[18] = t100;
+    J[19] = -t77 + t52;
+    J[20] = inner_43 + t52;
+    J[21] = inner_44 + t52;
+    J[22] = -t90 + t52;
+    J[23] = t100;
+    J[24] = t100;
+    J[25] = inner_52 + t52;
+    J[26] = inner_53 + t52;
+    J[27] = -t88 + t52;
+    J[28] = -t91 + t52;
+    J[29] = t100;
+    J[30] = t100;
+    J[31] = t100;
+    J[32] = t100;
+    J[33] = t100;
+    J[34] = t100;
+    J[35] = CLOSEDFORM_C(1.0) + t52;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -751,7 +737,7 @@ void h6ar_jacobian(const h6ar_params *params, const real_t q[6],
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[5], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
-    h6ar_jacobian_kernel(params, q, sines, cosines, J);
+    h6ar_jacobian_kernel(1, params, q, sines, cosines, J);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -787,7 +773,7 @@ void h6ar_jacobian_batch(size_t n, const h6ar_params *params,
             const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
             const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t J_i[36];
-            h6ar_jacobian_kernel(&local, q_i, sines_i, cosines_i, J_i);
+            h6ar_jacobian_kernel(0, &local, q_i, sines_i, cosines_i, J_i);
             J[start + i] = J_i[0];
             J[J_stride + start + i] = J_i[1];
             J[2 * J_stride + start + i] = J_i[2];
@@ -828,9 +814,9 @@ void h6ar_jacobian_batch(size_t n, const h6ar_params *params,
     }
 }
 
-CF_INLINE void h6ar_determinant_kernel(const h6ar_params *params, const real_t q[6],
-    const real_t *sines, const real_t *cosines,
-    real_t det[1])
+CF_INLINE void h6ar_determinant_kernel(const int single, const h6ar_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t det[1])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -905,19 +891,15 @@ CF_INLINE void h6ar_determinant_kernel(const h6ar_params *params, const real_t q
     const real_t t36 = a3 + lp * s * c_phi + t30 / base * (t29 / rise) * t34;
     const real_t t37 = t25 * (c_phi * c_phi) * (c_psi * c_psi) * (t23 * t35 + t24 * t36);
     const real_t t38 = t37 * (L1 * c2A + c23A * t36 + s23A * t35) / (t26 * CLOSEDFORM_C(4.0));
-    const int t39 = cf_is_finite(L1) & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(a3);
-    const int t41 = t40 & (CLOSEDFORM_C(0.0) <= a3) & cf_is_finite(d);
-    const int t42 = t41 & (CLOSEDFORM_C(0.0) <= d) & cf_is_finite(gs);
-    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= gs) & cf_is_finite(al);
-    const int t44 = t43 & (CLOSEDFORM_C(0.0) <= al) & cf_is_finite(loff);
-    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= loff) & cf_is_finite(lp);
-    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= lp) & cf_is_finite(theta1);
-    const int t47 = t46 & cf_is_finite(theta2R) & cf_is_finite(theta3R);
-    const int t48 = t47 & cf_is_finite(theta2L) & cf_is_finite(theta3L);
-    const real_t t49 = -(CLOSEDFORM_FEASIBILITY * t32);
-    const int failed = (!(t48 & cf_is_finite(theta))) | (!((t49 <= t33) & (t49 <= t31)));
-    det[0] = -t38 + cf_poison(failed);
+    const int t39 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t41 = t40 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d);
+    const int t42 = t41 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
+    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
+    const int t44 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
+    const real_t t45 = -(CLOSEDFORM_FEASIBILITY * t32);
+    const int failed = (!(t43 & t44)) | (!((t45 <= t33) & (t45 <= t31)));
+    det[0] = -t38 + cf_poison(single, failed);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -927,7 +909,7 @@ void h6ar_determinant(const h6ar_params *params, const real_t q[6],
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
-    h6ar_determinant_kernel(params, q, sines, cosines, det);
+    h6ar_determinant_kernel(1, params, q, sines, cosines, det);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -963,15 +945,15 @@ void h6ar_determinant_batch(size_t n, const h6ar_params *params,
             const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
             const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
             real_t det_i[1];
-            h6ar_determinant_kernel(&local, q_i, sines_i, cosines_i, det_i);
+            h6ar_determinant_kernel(0, &local, q_i, sines_i, cosines_i, det_i);
             det[start + i] = det_i[0];
         }
     }
 }
 
-CF_INLINE void h6ar_singularities_kernel(const h6ar_params *params, const real_t q[6],
-    const real_t *sines, const real_t *cosines,
-    real_t factors[6])
+CF_INLINE void h6ar_singularities_kernel(const int single, const h6ar_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t factors[6])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -1038,28 +1020,24 @@ CF_INLINE void h6ar_singularities_kernel(const h6ar_params *params, const real_t
     const real_t t32 = a3 + lp * s * (d / rise) + t27 / base * (t25 / rise) * t31;
     const real_t s23A = side23A * t21;
     const real_t t33 = L2 + d / base * t31;
-    const int t34 = cf_is_finite(L1) & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t35 = t34 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(a3);
-    const int t36 = t35 & (CLOSEDFORM_C(0.0) <= a3) & cf_is_finite(d);
-    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= d) & cf_is_finite(gs);
-    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= gs) & cf_is_finite(al);
-    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= al) & cf_is_finite(loff);
-    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= loff) & cf_is_finite(lp);
-    const int t41 = t40 & (CLOSEDFORM_C(0.0) <= lp) & cf_is_finite(theta1);
-    const int t42 = t41 & cf_is_finite(theta2R) & cf_is_finite(theta3R);
-    const int t43 = t42 & cf_is_finite(theta2L) & cf_is_finite(theta3L);
-    const real_t t44 = -(CLOSEDFORM_FEASIBILITY * t29);
-    const int failed = (!(t43 & cf_is_finite(theta))) | (!((t44 <= t30) & (t44 <= t28)));
-    const real_t t45 = cf_poison(failed);
+    const int t34 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t35 = t34 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t36 = t35 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d);
+    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= gs) & (CLOSEDFORM_C(0.0) <= al);
+    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= loff) & (CLOSEDFORM_C(0.0) <= lp);
+    const int t39 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
+    const real_t t40 = -(CLOSEDFORM_FEASIBILITY * t29);
+    const int failed = (!(t38 & t39)) | (!((t40 <= t30) & (t40 <= t28)));
+    const real_t t41 = cf_poison(single, failed);
     const real_t s2A = side2A * t26;
-    const real_t t46 = c2A * c23A + s2A * s23A;
-    const real_t t47 = s2A * c23A - c2A * s23A;
-    factors[0] = L1 * c2A + c23A * t32 + s23A * t33 + t45;
-    factors[1] = t46 * t33 + t47 * t32 + t45;
-    factors[2] = L2 * t46 + a3 * t47 + t45;
-    factors[3] = t3 * side2A + t45;
-    factors[4] = t13 * side23A + t45;
-    factors[5] = wrist + t45;
+    const real_t t42 = c2A * c23A + s2A * s23A;
+    const real_t t43 = s2A * c23A - c2A * s23A;
+    factors[0] = L1 * c2A + c23A * t32 + s23A * t33 + t41;
+    factors[1] = t42 * t33 + t43 * t32 + t41;
+    factors[2] = L2 * t42 + a3 * t43 + t41;
+    factors[3] = t3 * side2A + t41;
+    factors[4] = t13 * side23A + t41;
+    factors[5] = wrist + t41;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1069,7 +1047,7 @@ void h6ar_singularities(const h6ar_params *params, const real_t q[6],
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
-    h6ar_singularities_kernel(params, q, sines, cosines, factors);
+    h6ar_singularities_kernel(1, params, q, sines, cosines, factors);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1104,7 +1082,7 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
             const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
             const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
             real_t factors_i[6];
-            h6ar_singularities_kernel(&local, q_i, sines_i, cosines_i, factors_i);
+            h6ar_singularities_kernel(0, &local, q_i, sines_i, cosines_i, factors_i);
             factors[start + i] = factors_i[0];
             factors[factors_stride + start + i] = factors_i[1];
             factors[2 * factors_stride + start + i] = factors_i[2];
@@ -1115,7 +1093,7 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
     }
 }
 
-CF_INLINE void h6ar_ik_kernel(const int vector, const h6ar_params *params,
+CF_INLINE void h6ar_ik_kernel(const int single, const h6ar_params *params,
     const real_t x[6], const real_t *sines,
     const real_t *cosines, real_t q[24],
     real_t status[4])
@@ -1157,328 +1135,323 @@ CF_INLINE void h6ar_ik_kernel(const int vector, const h6ar_params *params,
     const real_t t11 = h - t8;
     const real_t above = cf_max(t11, CLOSEDFORM_C(0.0));
     const real_t t12 = cf_sqrt(above);
-    const int t13 = cf_is_finite(L1) & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(a3);
-    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= a3) & cf_is_finite(d1);
-    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= d1) & cf_is_finite(d);
-    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= d) & cf_is_finite(gs);
-    const int t18 = t17 & (CLOSEDFORM_C(0.0) <= gs) & cf_is_finite(al);
-    const int t19 = t18 & (CLOSEDFORM_C(0.0) <= al) & cf_is_finite(loff);
-    const int t20 = t19 & (CLOSEDFORM_C(0.0) <= loff) & cf_is_finite(lp);
-    const int t21 = t20 & (CLOSEDFORM_C(0.0) <= lp) & cf_is_finite(x_2);
-    const int t22 = t21 & cf_is_finite(y) & cf_is_finite(z) & cf_is_finite(psi);
-    const int t23 = t22 & cf_is_finite(phi) & cf_is_finite(pitch);
-    const int invalid = !t23;
-    const real_t t24 = CLOSEDFORM_FEASIBILITY * (d / CLOSEDFORM_C(2.0));
-    const int t25 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t24 <= t4);
-    const real_t t26 = -(CLOSEDFORM_FEASIBILITY * t1);
-    const int t27 = t25 & (-t24 <= t3) & (t26 <= t9) & (t26 <= t11);
+    const int t13 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
+    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
+    const int t18 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) + cf_nought(psi) + cf_nought(phi) + cf_nought(pitch) == 0;
+    const int invalid = !(t17 & (CLOSEDFORM_C(0.0) <= lp) & t18);
+    const real_t t19 = CLOSEDFORM_FEASIBILITY * (d / CLOSEDFORM_C(2.0));
+    const int t20 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t19 <= t4);
+    const real_t t21 = -(CLOSEDFORM_FEASIBILITY * t1);
+    const int t22 = t20 & (-t19 <= t3) & (t21 <= t9) & (t21 <= t11);
     const real_t L_2W = L2 + c_psi * t6;
     const real_t a_3W = a3 + c_phi * t2 + s_phi * t7;
     const real_t fore = cf_sqrt(L_2W * L_2W + a_3W * a_3W);
-    const real_t t28 = L1 + fore;
-    const real_t t29 = -(CLOSEDFORM_FEASIBILITY * t28);
-    const real_t t30 = z - d1;
-    const real_t t31 = t30 * t30;
+    const real_t t23 = L1 + fore;
+    const real_t t24 = -(CLOSEDFORM_FEASIBILITY * t23);
+    const real_t t25 = z - d1;
+    const real_t t26 = t25 * t25;
     const real_t total = below + above;
-    const real_t t32 = (below - above) / total;
-    const real_t t33 = y * t32;
+    const real_t t27 = (below - above) / total;
+    const real_t t28 = y * t27;
     const real_t s_turn = CLOSEDFORM_C(2.0) * t10 * t12 / total;
-    const real_t t34 = x_2 * s_turn;
-    const real_t c1 = cf_select(nowhere, CLOSEDFORM_C(1.0), -((t33 - t34) / h));
-    const real_t t35 = x_2 * t32;
-    const real_t t36 = y * s_turn;
-    const real_t s1 = cf_select(nowhere, CLOSEDFORM_C(0.0), (t35 + t36) / h);
+    const real_t t29 = x_2 * s_turn;
+    const real_t c1 = cf_rarely(single, nowhere, CLOSEDFORM_C(1.0), -((t28 - t29) / h));
+    const real_t t30 = x_2 * t27;
+    const real_t t31 = y * s_turn;
+    const real_t s1 = cf_rarely(single, nowhere, CLOSEDFORM_C(0.0), (t30 + t31) / h);
     const real_t outward = x_2 * c1 + y * s1;
-    const real_t reach = cf_sqrt(t31 + outward * outward);
-    const real_t t37 = t28 - reach;
-    const real_t t38 = L1 - fore;
-    const real_t t39 = reach + t38;
-    const real_t t40 = reach - t38;
-    const int t41 = t27 & (t29 <= t37) & (t29 <= t39) & (t29 <= t40);
-    const real_t t42 = CLOSEDFORM_VANISHING * t28;
-    const int folded = reach <= t42;
-    const real_t s_sight = cf_select(folded, CLOSEDFORM_C(0.0), t30 / reach);
-    const int short_2 = L1 * fore <= CLOSEDFORM_VANISHING * (t28 * t28);
-    const int t43 = folded | short_2;
-    const real_t A = cf_max(t37, CLOSEDFORM_C(0.0));
-    const real_t C = cf_max(t40, CLOSEDFORM_C(0.0));
-    const real_t t44 = A * C;
-    const real_t S = t28 + reach;
-    const real_t B = cf_max(t39, CLOSEDFORM_C(0.0));
-    const real_t t45 = S * B;
-    const real_t at_base = t44 + t45;
-    const real_t c_base = cf_select(t43, CLOSEDFORM_C(1.0), -((t44 - t45) / at_base));
-    const real_t t46 = s_sight * c_base;
-    const real_t c_sight = cf_select(folded, CLOSEDFORM_C(1.0), outward / reach);
+    const real_t reach = cf_sqrt(t26 + outward * outward);
+    const real_t t32 = t23 - reach;
+    const real_t t33 = L1 - fore;
+    const real_t t34 = reach + t33;
+    const real_t t35 = reach - t33;
+    const int t36 = t22 & (t24 <= t32) & (t24 <= t34) & (t24 <= t35);
+    const real_t t37 = CLOSEDFORM_VANISHING * t23;
+    const int folded = reach <= t37;
+    const real_t s_sight = cf_rarely(single, folded, CLOSEDFORM_C(0.0), t25 / reach);
+    const int short_2 = L1 * fore <= CLOSEDFORM_VANISHING * (t23 * t23);
+    const int t38 = folded | short_2;
+    const real_t A = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t C = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t t39 = A * C;
+    const real_t S = t23 + reach;
+    const real_t B = cf_max(t34, CLOSEDFORM_C(0.0));
+    const real_t t40 = S * B;
+    const real_t at_base = t39 + t40;
+    const real_t c_base = cf_rarely(single, t38, CLOSEDFORM_C(1.0), -((t39 - t40) / at_base));
+    const real_t t41 = s_sight * c_base;
+    const real_t c_sight = cf_rarely(single, folded, CLOSEDFORM_C(1.0), outward / reach);
     const real_t rB = cf_sqrt(B);
     const real_t rC = cf_sqrt(C);
-    const real_t t47 = rB * rC;
+    const real_t t42 = rB * rC;
     const real_t rS = cf_sqrt(S);
     const real_t rA = cf_sqrt(A);
-    const real_t t48 = rS * rA;
-    const real_t area_front_elbow_down = CLOSEDFORM_C(2.0) * t47 * t48;
-    const real_t s_base_front_elbow_down = cf_select(t43, CLOSEDFORM_C(0.0), area_front_elbow_down / at_base);
-    const real_t t49 = c_sight * s_base_front_elbow_down;
-    const real_t stheta2A = t46 + t49;
-    const real_t t50 = L1 * stheta2A;
-    const real_t t51 = c_sight * c_base;
-    const real_t t52 = s_sight * s_base_front_elbow_down;
-    const real_t ctheta2A = t51 - t52;
+    const real_t t43 = rS * rA;
+    const real_t area_front_elbow_down = CLOSEDFORM_C(2.0) * t42 * t43;
+    const real_t s_base_front_elbow_down = cf_rarely(single, t38, CLOSEDFORM_C(0.0), area_front_elbow_down / at_base);
+    const real_t t44 = c_sight * s_base_front_elbow_down;
+    const real_t stheta2A = t41 + t44;
+    const real_t t45 = L1 * stheta2A;
+    const real_t t46 = c_sight * c_base;
+    const real_t t47 = s_sight * s_base_front_elbow_down;
+    const real_t ctheta2A = t46 - t47;
     const real_t u2 = L1 * ctheta2A;
-    const real_t size_u = cf_sqrt(t50 * t50 + u2 * u2);
-    const real_t t53 = -(CLOSEDFORM_FEASIBILITY * (d * size_u));
-    const int bare = fore <= t42;
-    const real_t c_lag = cf_select(bare, CLOSEDFORM_C(1.0), a_3W / fore);
-    const real_t t54 = A * S;
-    const real_t t55 = C * B;
-    const real_t at_elbow = t54 + t55;
-    const real_t c_bend = cf_select(short_2, CLOSEDFORM_C(1.0), -((t54 - t55) / at_elbow));
-    const real_t t56 = c_lag * c_bend;
-    const real_t s_lag = cf_select(bare, CLOSEDFORM_C(0.0), L_2W / fore);
-    const real_t s_bend_front_elbow_down = cf_select(short_2, CLOSEDFORM_C(0.0), area_front_elbow_down / at_elbow);
-    const real_t t57 = s_lag * s_bend_front_elbow_down;
-    const real_t c_relative = t56 + t57;
-    const real_t t58 = s_lag * c_bend;
-    const real_t t59 = c_lag * s_bend_front_elbow_down;
-    const real_t s_relative = t58 - t59;
+    const real_t size_u = cf_sqrt(t45 * t45 + u2 * u2);
+    const real_t t48 = -(CLOSEDFORM_FEASIBILITY * (d * size_u));
+    const int bare = fore <= t37;
+    const real_t c_lag = cf_rarely(single, bare, CLOSEDFORM_C(1.0), a_3W / fore);
+    const real_t t49 = A * S;
+    const real_t t50 = C * B;
+    const real_t at_elbow = t49 + t50;
+    const real_t c_bend = cf_rarely(single, short_2, CLOSEDFORM_C(1.0), -((t49 - t50) / at_elbow));
+    const real_t t51 = c_lag * c_bend;
+    const real_t s_lag = cf_rarely(single, bare, CLOSEDFORM_C(0.0), L_2W / fore);
+    const real_t s_bend_front_elbow_down = cf_rarely(single, short_2, CLOSEDFORM_C(0.0), area_front_elbow_down / at_elbow);
+    const real_t t52 = s_lag * s_bend_front_elbow_down;
+    const real_t c_relative = t51 + t52;
+    const real_t t53 = s_lag * c_bend;
+    const real_t t54 = c_lag * s_bend_front_elbow_down;
+    const real_t s_relative = t53 - t54;
     const real_t stheta23A = stheta2A * c_relative + ctheta2A * s_relative;
     const real_t ctheta23A = ctheta2A * c_relative - stheta2A * s_relative;
     const real_t v2 = L2 * stheta23A + a3 * ctheta23A;
     const real_t v1 = L2 * ctheta23A - a3 * stheta23A;
-    const real_t t60 = t50 * v2 + u2 * v1;
-    const real_t sigma_uv = cf_select(CLOSEDFORM_C(0.0) <= -t60, CLOSEDFORM_C(1.0), -CLOSEDFORM_C(1.0));
+    const real_t t55 = t45 * v2 + u2 * v1;
+    const real_t sigma_uv = cf_rarely(single, CLOSEDFORM_C(0.0) <= -t55, CLOSEDFORM_C(1.0), -CLOSEDFORM_C(1.0));
     const real_t ahead = d * s_psi / c_psi;
     const real_t higher = d * s_phi / c_phi;
-    const real_t t61 = sigma_uv * (ahead * u2 + higher * t50);
-    const real_t t62 = t60 * sigma_uv;
-    const real_t t63 = t61 - t62;
-    const real_t t64 = -(t62 + t61);
-    const real_t t65 = -(d * CLOSEDFORM_FEASIBILITY);
-    const real_t t66 = CLOSEDFORM_C(64.0) * size_u * cf_sqrt(v1 * v1 + v2 * v2);
-    const int parallel = -t62 <= CLOSEDFORM_VANISHING * t66;
-    const real_t t67 = d * CLOSEDFORM_C(16.0);
-    const real_t t68 = CLOSEDFORM_VANISHING * (CLOSEDFORM_VANISHING * (t67 * size_u));
-    const real_t below_beta = cf_max(t63, t68);
-    const real_t above_beta = cf_max(t64, t68);
+    const real_t t56 = sigma_uv * (ahead * u2 + higher * t45);
+    const real_t t57 = t55 * sigma_uv;
+    const real_t t58 = t56 - t57;
+    const real_t t59 = -(t57 + t56);
+    const real_t t60 = -(d * CLOSEDFORM_FEASIBILITY);
+    const real_t t61 = CLOSEDFORM_C(64.0) * size_u * cf_sqrt(v1 * v1 + v2 * v2);
+    const int parallel = -t57 <= CLOSEDFORM_VANISHING * t61;
+    const real_t t62 = d * CLOSEDFORM_C(16.0);
+    const real_t t63 = CLOSEDFORM_VANISHING * (CLOSEDFORM_VANISHING * (t62 * size_u));
+    const real_t below_beta = cf_max(t58, t63);
+    const real_t above_beta = cf_max(t59, t63);
     const real_t total_beta = below_beta + above_beta;
-    const real_t t69 = cf_select(parallel, CLOSEDFORM_C(0.0), (below_beta - above_beta) / total_beta);
-    const real_t t70 = t50 * (ahead + v1 * t69) - u2 * (higher + v2 * t69);
-    const real_t t71 = t70 / size_u;
-    const real_t t72 = size_u + t71;
-    const int t73 = t41 & (t53 <= t63) & (t53 <= t64) & (t65 <= t72);
-    const real_t t74 = size_u - t71;
-    const int unreachable = !(t73 & (t65 <= t74));
-    const real_t t75 = cf_poison(invalid | unreachable);
-    const real_t t76 = CLOSEDFORM_VANISHING * (CLOSEDFORM_VANISHING * t67);
-    const real_t below_alpha = cf_max(t72, t76);
-    const real_t above_alpha = cf_max(t74, t76);
+    const real_t t64 = cf_rarely(single, parallel, CLOSEDFORM_C(0.0), (below_beta - above_beta) / total_beta);
+    const real_t t65 = t45 * (ahead + v1 * t64) - u2 * (higher + v2 * t64);
+    const real_t t66 = t65 / size_u;
+    const real_t t67 = size_u + t66;
+    const int t68 = t36 & (t48 <= t58) & (t48 <= t59) & (t60 <= t67);
+    const real_t t69 = size_u - t66;
+    const int unreachable = !(t68 & (t60 <= t69));
+    const real_t t70 = cf_poison(single, invalid | unreachable);
+    const real_t t71 = CLOSEDFORM_VANISHING * (CLOSEDFORM_VANISHING * t62);
+    const real_t below_alpha = cf_max(t67, t71);
+    const real_t above_alpha = cf_max(t69, t71);
     const real_t total_alpha = below_alpha + above_alpha;
-    const real_t t77 = CLOSEDFORM_C(2.0) * cf_sqrt(above_alpha) * cf_sqrt(below_alpha);
-    const real_t t78 = CLOSEDFORM_C(2.0) * cf_sqrt(above_beta) * cf_sqrt(below_beta);
-    const real_t c_beta = cf_select(parallel, CLOSEDFORM_C(1.0), t78 / total_beta);
-    const real_t stheta2A_front_elbow_down = t46 - t49;
-    const real_t t79 = L1 * stheta2A_front_elbow_down;
-    const real_t ctheta2A_front_elbow_down = t51 + t52;
+    const real_t t72 = CLOSEDFORM_C(2.0) * cf_sqrt(above_alpha) * cf_sqrt(below_alpha);
+    const real_t t73 = CLOSEDFORM_C(2.0) * cf_sqrt(above_beta) * cf_sqrt(below_beta);
+    const real_t c_beta = cf_rarely(single, parallel, CLOSEDFORM_C(1.0), t73 / total_beta);
+    const real_t stheta2A_front_elbow_down = t41 - t44;
+    const real_t t74 = L1 * stheta2A_front_elbow_down;
+    const real_t ctheta2A_front_elbow_down = t46 + t47;
     const real_t u2_front_elbow_down = L1 * ctheta2A_front_elbow_down;
-    const real_t t80 = t79 * t79 + u2_front_elbow_down * u2_front_elbow_down;
-    const real_t size_u_front_elbow_down = cf_sqrt(t80);
-    const real_t t81 = CLOSEDFORM_FEASIBILITY * (d * size_u_front_elbow_down);
-    const real_t c_relative_front_elbow_down = t56 - t57;
-    const real_t t82 = stheta2A_front_elbow_down * c_relative_front_elbow_down;
-    const real_t s_relative_front_elbow_down = t58 + t59;
-    const real_t t83 = ctheta2A_front_elbow_down * s_relative_front_elbow_down;
-    const real_t stheta23A_front_elbow_down = t82 + t83;
-    const real_t t84 = ctheta2A_front_elbow_down * c_relative_front_elbow_down;
-    const real_t t85 = stheta2A_front_elbow_down * s_relative_front_elbow_down;
-    const real_t ctheta23A_front_elbow_down = t84 - t85;
+    const real_t t75 = t74 * t74 + u2_front_elbow_down * u2_front_elbow_down;
+    const real_t size_u_front_elbow_down = cf_sqrt(t75);
+    const real_t t76 = CLOSEDFORM_FEASIBILITY * (d * size_u_front_elbow_down);
+    const real_t c_relative_front_elbow_down = t51 - t52;
+    const real_t t77 = stheta2A_front_elbow_down * c_relative_front_elbow_down;
+    const real_t s_relative_front_elbow_down = t53 + t54;
+    const real_t t78 = ctheta2A_front_elbow_down * s_relative_front_elbow_down;
+    const real_t stheta23A_front_elbow_down = t77 + t78;
+    const real_t t79 = ctheta2A_front_elbow_down * c_relative_front_elbow_down;
+    const real_t t80 = stheta2A_front_elbow_down * s_relative_front_elbow_down;
+    const real_t ctheta23A_front_elbow_down = t79 - t80;
     const real_t v2_front_elbow_down = L2 * stheta23A_front_elbow_down + a3 * ctheta23A_front_elbow_down;
     const real_t v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down;
-    const real_t t86 = t79 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down;
-    const real_t sigma_uv_front_elbow_down = cf_select(CLOSEDFORM_C(0.0) <= -t86, CLOSEDFORM_C(1.0), -CLOSEDFORM_C(1.0));
-    const real_t t87 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t79);
-    const real_t t88 = t86 * sigma_uv_front_elbow_down;
-    const real_t t89 = t87 - t88;
-    const real_t t90 = -(t88 + t87);
-    const real_t t91 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down;
-    const real_t t92 = CLOSEDFORM_C(64.0) * size_u_front_elbow_down * cf_sqrt(t91);
-    const int parallel_front_elbow_down = -t88 <= CLOSEDFORM_VANISHING * t92;
-    const real_t t93 = CLOSEDFORM_VANISHING * (t67 * size_u_front_elbow_down);
-    const real_t t94 = CLOSEDFORM_VANISHING * t93;
-    const real_t below_beta_front_elbow_down = cf_max(t89, t94);
-    const real_t above_beta_front_elbow_down = cf_max(t90, t94);
-    const real_t t95 = below_beta_front_elbow_down - above_beta_front_elbow_down;
+    const real_t t81 = t74 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down;
+    const real_t sigma_uv_front_elbow_down = cf_rarely(single, CLOSEDFORM_C(0.0) <= -t81, CLOSEDFORM_C(1.0), -CLOSEDFORM_C(1.0));
+    const real_t t82 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t74);
+    const real_t t83 = t81 * sigma_uv_front_elbow_down;
+    const real_t t84 = t82 - t83;
+    const real_t t85 = -(t83 + t82);
+    const real_t t86 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down;
+    const real_t t87 = CLOSEDFORM_C(64.0) * size_u_front_elbow_down * cf_sqrt(t86);
+    const int parallel_front_elbow_down = -t83 <= CLOSEDFORM_VANISHING * t87;
+    const real_t t88 = CLOSEDFORM_VANISHING * (t62 * size_u_front_elbow_down);
+    const real_t t89 = CLOSEDFORM_VANISHING * t88;
+    const real_t below_beta_front_elbow_down = cf_max(t84, t89);
+    const real_t above_beta_front_elbow_down = cf_max(t85, t89);
+    const real_t t90 = below_beta_front_elbow_down - above_beta_front_elbow_down;
     const real_t total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down;
-    const real_t t96 = cf_select(parallel_front_elbow_down, CLOSEDFORM_C(0.0), t95 / total_beta_front_elbow_down);
-    const real_t t97 = u2_front_elbow_down * (higher + v2_front_elbow_down * t96);
-    const real_t t98 = t79 * (ahead + v1_front_elbow_down * t96) - t97;
-    const real_t t99 = t98 / size_u_front_elbow_down;
-    const real_t t100 = size_u_front_elbow_down + t99;
-    const int t101 = t41 & (-t81 <= t89) & (-t81 <= t90) & (t65 <= t100);
-    const real_t t102 = size_u_front_elbow_down - t99;
-    const int unreachable_2 = !(t101 & (t65 <= t102));
-    const real_t t103 = cf_poison(invalid | unreachable_2);
-    const real_t below_alpha_front_elbow_down = cf_max(t100, t76);
-    const real_t above_alpha_front_elbow_down = cf_max(t102, t76);
-    const real_t t104 = below_alpha_front_elbow_down - above_alpha_front_elbow_down;
+    const real_t t91 = cf_rarely(single, parallel_front_elbow_down, CLOSEDFORM_C(0.0), t90 / total_beta_front_elbow_down);
+    const real_t t92 = u2_front_elbow_down * (higher + v2_front_elbow_down * t91);
+    const real_t t93 = t74 * (ahead + v1_front_elbow_down * t91) - t92;
+    const real_t t94 = t93 / size_u_front_elbow_down;
+    const real_t t95 = size_u_front_elbow_down + t94;
+    const int t96 = t36 & (-t76 <= t84) & (-t76 <= t85) & (t60 <= t95);
+    const real_t t97 = size_u_front_elbow_down - t94;
+    const int unreachable_2 = !(t96 & (t60 <= t97));
+    const real_t t98 = cf_poison(single, invalid | unreachable_2);
+    const real_t below_alpha_front_elbow_down = cf_max(t95, t71);
+    const real_t above_alpha_front_elbow_down = cf_max(t97, t71);
+    const real_t t99 = below_alpha_front_elbow_down - above_alpha_front_elbow_down;
     const real_t total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down;
-    const real_t t105 = CLOSEDFORM_C(2.0) * cf_sqrt(above_alpha_front_elbow_down);
-    const real_t c_alpha_front_elbow_down = t105 * cf_sqrt(below_alpha_front_elbow_down) / total_alpha_front_elbow_down;
-    const real_t t106 = CLOSEDFORM_C(2.0) * cf_sqrt(above_beta_front_elbow_down);
-    const real_t t107 = t106 * cf_sqrt(below_beta_front_elbow_down) / total_beta_front_elbow_down;
-    const real_t c_beta_front_elbow_down = cf_select(parallel_front_elbow_down, CLOSEDFORM_C(1.0), t107);
-    const real_t c1_rear_elbow_up = cf_select(nowhere, CLOSEDFORM_C(1.0), -((t33 + t34) / h));
-    const real_t s1_rear_elbow_up = cf_select(nowhere, CLOSEDFORM_C(0.0), (t35 - t36) / h);
+    const real_t t100 = CLOSEDFORM_C(2.0) * cf_sqrt(above_alpha_front_elbow_down);
+    const real_t c_alpha_front_elbow_down = t100 * cf_sqrt(below_alpha_front_elbow_down) / total_alpha_front_elbow_down;
+    const real_t t101 = CLOSEDFORM_C(2.0) * cf_sqrt(above_beta_front_elbow_down);
+    const real_t t102 = t101 * cf_sqrt(below_beta_front_elbow_down) / total_beta_front_elbow_down;
+    const real_t c_beta_front_elbow_down = cf_rarely(single, parallel_front_elbow_down, CLOSEDFORM_C(1.0), t102);
+    const real_t c1_rear_elbow_up = cf_rarely(single, nowhere, CLOSEDFORM_C(1.0), -((t28 + t29) / h));
+    const real_t s1_rear_elbow_up = cf_rarely(single, nowhere, CLOSEDFORM_C(0.0), (t30 - t31) / h);
     const real_t outward_rear_elbow_up = x_2 * c1_rear_elbow_up + y * s1_rear_elbow_up;
-    const real_t t108 = outward_rear_elbow_up * outward_rear_elbow_up;
-    const real_t reach_rear_elbow_up = cf_sqrt(t31 + t108);
-    const real_t t109 = t28 - reach_rear_elbow_up;
-    const real_t t110 = reach_rear_elbow_up + t38;
-    const real_t t111 = reach_rear_elbow_up - t38;
-    const int t112 = t27 & (t29 <= t109) & (t29 <= t110) & (t29 <= t111);
-    const int folded_rear_elbow_up = reach_rear_elbow_up <= t42;
-    const real_t s_sight_rear_elbow_up = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(0.0), t30 / reach_rear_elbow_up);
-    const int t113 = folded_rear_elbow_up | short_2;
-    const real_t A_rear_elbow_up = cf_max(t109, CLOSEDFORM_C(0.0));
-    const real_t C_rear_elbow_up = cf_max(t111, CLOSEDFORM_C(0.0));
-    const real_t t114 = A_rear_elbow_up * C_rear_elbow_up;
-    const real_t S_rear_elbow_up = t28 + reach_rear_elbow_up;
-    const real_t B_rear_elbow_up = cf_max(t110, CLOSEDFORM_C(0.0));
-    const real_t t115 = S_rear_elbow_up * B_rear_elbow_up;
-    const real_t at_base_rear_elbow_up = t114 + t115;
-    const real_t c_base_rear_elbow_up = cf_select(t113, CLOSEDFORM_C(1.0), -((t114 - t115) / at_base_rear_elbow_up));
-    const real_t t116 = s_sight_rear_elbow_up * c_base_rear_elbow_up;
-    const real_t c_sight_rear_elbow_up = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(1.0), outward_rear_elbow_up / reach_rear_elbow_up);
+    const real_t t103 = outward_rear_elbow_up * outward_rear_elbow_up;
+    const real_t reach_rear_elbow_up = cf_sqrt(t26 + t103);
+    const real_t t104 = t23 - reach_rear_elbow_up;
+    const real_t t105 = reach_rear_elbow_up + t33;
+    const real_t t106 = reach_rear_elbow_up - t33;
+    const int t107 = t22 & (t24 <= t104) & (t24 <= t105) & (t24 <= t106);
+    const int folded_rear_elbow_up = reach_rear_elbow_up <= t37;
+    const real_t s_sight_rear_elbow_up = cf_rarely(single, folded_rear_elbow_up, CLOSEDFORM_C(0.0), t25 / reach_rear_elbow_up);
+    const int t108 = folded_rear_elbow_up | short_2;
+    const real_t A_rear_elbow_up = cf_max(t104, CLOSEDFORM_C(0.0));
+    const real_t C_rear_elbow_up = cf_max(t106, CLOSEDFORM_C(0.0));
+    const real_t t109 = A_rear_elbow_up * C_rear_elbow_up;
+    const real_t S_rear_elbow_up = t23 + reach_rear_elbow_up;
+    const real_t B_rear_elbow_up = cf_max(t105, CLOSEDFORM_C(0.0));
+    const real_t t110 = S_rear_elbow_up * B_rear_elbow_up;
+    const real_t at_base_rear_elbow_up = t109 + t110;
+    const real_t c_base_rear_elbow_up = cf_rarely(single, t108, CLOSEDFORM_C(1.0), -((t109 - t110) / at_base_rear_elbow_up));
+    const real_t t111 = s_sight_rear_elbow_up * c_base_rear_elbow_up;
+    const real_t c_sight_rear_elbow_up = cf_rarely(single, folded_rear_elbow_up, CLOSEDFORM_C(1.0), outward_rear_elbow_up / reach_rear_elbow_up);
     const real_t rB_rear_elbow_up = cf_sqrt(B_rear_elbow_up);
     const real_t rC_rear_elbow_up = cf_sqrt(C_rear_elbow_up);
-    const real_t t117 = rB_rear_elbow_up * rC_rear_elbow_up;
+    const real_t t112 = rB_rear_elbow_up * rC_rear_elbow_up;
     const real_t rS_rear_elbow_up = cf_sqrt(S_rear_elbow_up);
     const real_t rA_rear_elbow_up = cf_sqrt(A_rear_elbow_up);
-    const real_t t118 = rS_rear_elbow_up * rA_rear_elbow_up;
-    const real_t area_rear_elbow_up = CLOSEDFORM_C(2.0) * t117 * t118;
-    const real_t s_base_rear_elbow_up = cf_select(t113, CLOSEDFORM_C(0.0), area_rear_elbow_up / at_base_rear_elbow_up);
-    const real_t t119 = c_sight_rear_elbow_up * s_base_rear_elbow_up;
-    const real_t stheta2A_rear_elbow_up = t116 - t119;
-    const real_t t120 = L1 * stheta2A_rear_elbow_up;
-    const real_t t121 = c_sight_rear_elbow_up * c_base_rear_elbow_up;
-    const real_t t122 = s_sight_rear_elbow_up * s_base_rear_elbow_up;
-    const real_t ctheta2A_rear_elbow_up = t121 + t122;
+    const real_t t113 = rS_rear_elbow_up * rA_rear_elbow_up;
+    const real_t area_rear_elbow_up = CLOSEDFORM_C(2.0) * t112 * t113;
+    const real_t s_base_rear_elbow_up = cf_rarely(single, t108, CLOSEDFORM_C(0.0), area_rear_elbow_up / at_base_rear_elbow_up);
+    const real_t t114 = c_sight_rear_elbow_up * s_base_rear_elbow_up;
+    const real_t stheta2A_rear_elbow_up = t111 - t114;
+    const real_t t115 = L1 * stheta2A_rear_elbow_up;
+    const real_t t116 = c_sight_rear_elbow_up * c_base_rear_elbow_up;
+    const real_t t117 = s_sight_rear_elbow_up * s_base_rear_elbow_up;
+    const real_t ctheta2A_rear_elbow_up = t116 + t117;
     const real_t u2_rear_elbow_up = L1 * ctheta2A_rear_elbow_up;
-    const real_t t123 = t120 * t120 + u2_rear_elbow_up * u2_rear_elbow_up;
-    const real_t size_u_rear_elbow_up = cf_sqrt(t123);
-    const real_t t124 = CLOSEDFORM_FEASIBILITY * (d * size_u_rear_elbow_up);
-    const real_t t125 = A_rear_elbow_up * S_rear_elbow_up;
-    const real_t t126 = C_rear_elbow_up * B_rear_elbow_up;
-    const real_t at_elbow_rear_elbow_up = t125 + t126;
-    const real_t c_bend_rear_elbow_up = cf_select(short_2, CLOSEDFORM_C(1.0), -((t125 - t126) / at_elbow_rear_elbow_up));
-    const real_t t127 = c_lag * c_bend_rear_elbow_up;
-    const real_t s_bend_rear_elbow_up = cf_select(short_2, CLOSEDFORM_C(0.0), area_rear_elbow_up / at_elbow_rear_elbow_up);
-    const real_t t128 = s_lag * s_bend_rear_elbow_up;
-    const real_t c_relative_rear_elbow_up = t127 - t128;
-    const real_t t129 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up;
-    const real_t t130 = s_lag * c_bend_rear_elbow_up;
-    const real_t t131 = c_lag * s_bend_rear_elbow_up;
-    const real_t s_relative_rear_elbow_up = t130 + t131;
-    const real_t t132 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up;
-    const real_t stheta23A_rear_elbow_up = t129 + t132;
-    const real_t t133 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up;
-    const real_t t134 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up;
-    const real_t ctheta23A_rear_elbow_up = t133 - t134;
+    const real_t t118 = t115 * t115 + u2_rear_elbow_up * u2_rear_elbow_up;
+    const real_t size_u_rear_elbow_up = cf_sqrt(t118);
+    const real_t t119 = CLOSEDFORM_FEASIBILITY * (d * size_u_rear_elbow_up);
+    const real_t t120 = A_rear_elbow_up * S_rear_elbow_up;
+    const real_t t121 = C_rear_elbow_up * B_rear_elbow_up;
+    const real_t at_elbow_rear_elbow_up = t120 + t121;
+    const real_t c_bend_rear_elbow_up = cf_rarely(single, short_2, CLOSEDFORM_C(1.0), -((t120 - t121) / at_elbow_rear_elbow_up));
+    const real_t t122 = c_lag * c_bend_rear_elbow_up;
+    const real_t s_bend_rear_elbow_up = cf_rarely(single, short_2, CLOSEDFORM_C(0.0), area_rear_elbow_up / at_elbow_rear_elbow_up);
+    const real_t t123 = s_lag * s_bend_rear_elbow_up;
+    const real_t c_relative_rear_elbow_up = t122 - t123;
+    const real_t t124 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up;
+    const real_t t125 = s_lag * c_bend_rear_elbow_up;
+    const real_t t126 = c_lag * s_bend_rear_elbow_up;
+    const real_t s_relative_rear_elbow_up = t125 + t126;
+    const real_t t127 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up;
+    const real_t stheta23A_rear_elbow_up = t124 + t127;
+    const real_t t128 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up;
+    const real_t t129 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up;
+    const real_t ctheta23A_rear_elbow_up = t128 - t129;
     const real_t v2_rear_elbow_up = L2 * stheta23A_rear_elbow_up + a3 * ctheta23A_rear_elbow_up;
     const real_t v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up;
-    const real_t t135 = t120 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up;
-    const real_t sigma_uv_rear_elbow_up = cf_select(CLOSEDFORM_C(0.0) <= -t135, CLOSEDFORM_C(1.0), -CLOSEDFORM_C(1.0));
-    const real_t t136 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t120);
-    const real_t t137 = t135 * sigma_uv_rear_elbow_up;
-    const real_t t138 = t136 - t137;
-    const real_t t139 = -(t137 + t136);
-    const real_t t140 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up;
-    const real_t t141 = CLOSEDFORM_C(64.0) * size_u_rear_elbow_up * cf_sqrt(t140);
-    const int parallel_rear_elbow_up = -t137 <= CLOSEDFORM_VANISHING * t141;
-    const real_t t142 = CLOSEDFORM_VANISHING * (t67 * size_u_rear_elbow_up);
-    const real_t t143 = CLOSEDFORM_VANISHING * t142;
-    const real_t below_beta_rear_elbow_up = cf_max(t138, t143);
-    const real_t above_beta_rear_elbow_up = cf_max(t139, t143);
-    const real_t t144 = below_beta_rear_elbow_up - above_beta_rear_elbow_up;
+    const real_t t130 = t115 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up;
+    const real_t sigma_uv_rear_elbow_up = cf_rarely(single, CLOSEDFORM_C(0.0) <= -t130, CLOSEDFORM_C(1.0), -CLOSEDFORM_C(1.0));
+    const real_t t131 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t115);
+    const real_t t132 = t130 * sigma_uv_rear_elbow_up;
+    const real_t t133 = t131 - t132;
+    const real_t t134 = -(t132 + t131);
+    const real_t t135 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up;
+    const real_t t136 = CLOSEDFORM_C(64.0) * size_u_rear_elbow_up * cf_sqrt(t135);
+    const int parallel_rear_elbow_up = -t132 <= CLOSEDFORM_VANISHING * t136;
+    const real_t t137 = CLOSEDFORM_VANISHING * (t62 * size_u_rear_elbow_up);
+    const real_t t138 = CLOSEDFORM_VANISHING * t137;
+    const real_t below_beta_rear_elbow_up = cf_max(t133, t138);
+    const real_t above_beta_rear_elbow_up = cf_max(t134, t138);
+    const real_t t139 = below_beta_rear_elbow_up - above_beta_rear_elbow_up;
     const real_t total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up;
-    const real_t t145 = cf_select(parallel_rear_elbow_up, CLOSEDFORM_C(0.0), t144 / total_beta_rear_elbow_up);
-    const real_t t146 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t145);
-    const real_t t147 = t120 * (ahead + v1_rear_elbow_up * t145) - t146;
-    const real_t t148 = t147 / size_u_rear_elbow_up;
-    const real_t t149 = size_u_rear_elbow_up + t148;
-    const int t150 = t112 & (-t124 <= t138) & (-t124 <= t139) & (t65 <= t149);
-    const real_t t151 = size_u_rear_elbow_up - t148;
-    const int unreachable_3 = !(t150 & (t65 <= t151));
-    const real_t t152 = cf_poison(invalid | unreachable_3);
-    const real_t below_alpha_rear_elbow_up = cf_max(t149, t76);
-    const real_t above_alpha_rear_elbow_up = cf_max(t151, t76);
-    const real_t t153 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up;
+    const real_t t140 = cf_rarely(single, parallel_rear_elbow_up, CLOSEDFORM_C(0.0), t139 / total_beta_rear_elbow_up);
+    const real_t t141 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t140);
+    const real_t t142 = t115 * (ahead + v1_rear_elbow_up * t140) - t141;
+    const real_t t143 = t142 / size_u_rear_elbow_up;
+    const real_t t144 = size_u_rear_elbow_up + t143;
+    const int t145 = t107 & (-t119 <= t133) & (-t119 <= t134) & (t60 <= t144);
+    const real_t t146 = size_u_rear_elbow_up - t143;
+    const int unreachable_3 = !(t145 & (t60 <= t146));
+    const real_t t147 = cf_poison(single, invalid | unreachable_3);
+    const real_t below_alpha_rear_elbow_up = cf_max(t144, t71);
+    const real_t above_alpha_rear_elbow_up = cf_max(t146, t71);
+    const real_t t148 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up;
     const real_t total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up;
-    const real_t t154 = CLOSEDFORM_C(2.0) * cf_sqrt(above_alpha_rear_elbow_up);
-    const real_t c_alpha_rear_elbow_up = t154 * cf_sqrt(below_alpha_rear_elbow_up) / total_alpha_rear_elbow_up;
-    const real_t t155 = CLOSEDFORM_C(2.0) * cf_sqrt(above_beta_rear_elbow_up);
-    const real_t t156 = t155 * cf_sqrt(below_beta_rear_elbow_up) / total_beta_rear_elbow_up;
-    const real_t c_beta_rear_elbow_up = cf_select(parallel_rear_elbow_up, CLOSEDFORM_C(1.0), t156);
-    const real_t stheta2A_rear_elbow_down = t116 + t119;
-    const real_t t157 = L1 * stheta2A_rear_elbow_down;
-    const real_t ctheta2A_rear_elbow_down = t121 - t122;
+    const real_t t149 = CLOSEDFORM_C(2.0) * cf_sqrt(above_alpha_rear_elbow_up);
+    const real_t c_alpha_rear_elbow_up = t149 * cf_sqrt(below_alpha_rear_elbow_up) / total_alpha_rear_elbow_up;
+    const real_t t150 = CLOSEDFORM_C(2.0) * cf_sqrt(above_beta_rear_elbow_up);
+    const real_t t151 = t150 * cf_sqrt(below_beta_rear_elbow_up) / total_beta_rear_elbow_up;
+    const real_t c_beta_rear_elbow_up = cf_rarely(single, parallel_rear_elbow_up, CLOSEDFORM_C(1.0), t151);
+    const real_t stheta2A_rear_elbow_down = t111 + t114;
+    const real_t t152 = L1 * stheta2A_rear_elbow_down;
+    const real_t ctheta2A_rear_elbow_down = t116 - t117;
     const real_t u2_rear_elbow_down = L1 * ctheta2A_rear_elbow_down;
-    const real_t t158 = t157 * t157 + u2_rear_elbow_down * u2_rear_elbow_down;
-    const real_t size_u_rear_elbow_down = cf_sqrt(t158);
-    const real_t t159 = CLOSEDFORM_FEASIBILITY * (d * size_u_rear_elbow_down);
-    const real_t c_relative_rear_elbow_down = t127 + t128;
-    const real_t t160 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down;
-    const real_t s_relative_rear_elbow_down = t130 - t131;
-    const real_t t161 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down;
-    const real_t stheta23A_rear_elbow_down = t160 + t161;
-    const real_t t162 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down;
-    const real_t t163 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down;
-    const real_t ctheta23A_rear_elbow_down = t162 - t163;
+    const real_t t153 = t152 * t152 + u2_rear_elbow_down * u2_rear_elbow_down;
+    const real_t size_u_rear_elbow_down = cf_sqrt(t153);
+    const real_t t154 = CLOSEDFORM_FEASIBILITY * (d * size_u_rear_elbow_down);
+    const real_t c_relative_rear_elbow_down = t122 + t123;
+    const real_t t155 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down;
+    const real_t s_relative_rear_elbow_down = t125 - t126;
+    const real_t t156 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down;
+    const real_t stheta23A_rear_elbow_down = t155 + t156;
+    const real_t t157 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down;
+    const real_t t158 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down;
+    const real_t ctheta23A_rear_elbow_down = t157 - t158;
     const real_t v2_rear_elbow_down = L2 * stheta23A_rear_elbow_down + a3 * ctheta23A_rear_elbow_down;
     const real_t v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down;
-    const real_t t164 = t157 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down;
-    const real_t sigma_uv_rear_elbow_down = cf_select(CLOSEDFORM_C(0.0) <= -t164, CLOSEDFORM_C(1.0), -CLOSEDFORM_C(1.0));
-    const real_t t165 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t157);
-    const real_t t166 = t164 * sigma_uv_rear_elbow_down;
-    const real_t t167 = t165 - t166;
-    const real_t t168 = -(t166 + t165);
-    const real_t t169 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down;
-    const real_t t170 = CLOSEDFORM_C(64.0) * size_u_rear_elbow_down * cf_sqrt(t169);
-    const int parallel_rear_elbow_down = -t166 <= CLOSEDFORM_VANISHING * t170;
-    const real_t t171 = CLOSEDFORM_VANISHING * (t67 * size_u_rear_elbow_down);
-    const real_t t172 = CLOSEDFORM_VANISHING * t171;
-    const real_t below_beta_rear_elbow_down = cf_max(t167, t172);
-    const real_t above_beta_rear_elbow_down = cf_max(t168, t172);
-    const real_t t173 = below_beta_rear_elbow_down - above_beta_rear_elbow_down;
+    const real_t t159 = t152 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down;
+    const real_t sigma_uv_rear_elbow_down = cf_rarely(single, CLOSEDFORM_C(0.0) <= -t159, CLOSEDFORM_C(1.0), -CLOSEDFORM_C(1.0));
+    const real_t t160 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t152);
+    const real_t t161 = t159 * sigma_uv_rear_elbow_down;
+    const real_t t162 = t160 - t161;
+    const real_t t163 = -(t161 + t160);
+    const real_t t164 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down;
+    const real_t t165 = CLOSEDFORM_C(64.0) * size_u_rear_elbow_down * cf_sqrt(t164);
+    const int parallel_rear_elbow_down = -t161 <= CLOSEDFORM_VANISHING * t165;
+    const real_t t166 = CLOSEDFORM_VANISHING * (t62 * size_u_rear_elbow_down);
+    const real_t t167 = CLOSEDFORM_VANISHING * t166;
+    const real_t below_beta_rear_elbow_down = cf_max(t162, t167);
+    const real_t above_beta_rear_elbow_down = cf_max(t163, t167);
+    const real_t t168 = below_beta_rear_elbow_down - above_beta_rear_elbow_down;
     const real_t total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down;
-    const real_t t174 = cf_select(parallel_rear_elbow_down, CLOSEDFORM_C(0.0), t173 / total_beta_rear_elbow_down);
-    const real_t t175 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t174);
-    const real_t t176 = t157 * (ahead + v1_rear_elbow_down * t174) - t175;
-    const real_t t177 = t176 / size_u_rear_elbow_down;
-    const real_t t178 = size_u_rear_elbow_down + t177;
-    const int t179 = t112 & (-t159 <= t167) & (-t159 <= t168) & (t65 <= t178);
-    const real_t t180 = size_u_rear_elbow_down - t177;
-    const int unreachable_4 = !(t179 & (t65 <= t180));
-    const real_t t181 = cf_poison(invalid | unreachable_4);
-    const real_t below_alpha_rear_elbow_down = cf_max(t178, t76);
-    const real_t above_alpha_rear_elbow_down = cf_max(t180, t76);
-    const real_t t182 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down;
+    const real_t t169 = cf_rarely(single, parallel_rear_elbow_down, CLOSEDFORM_C(0.0), t168 / total_beta_rear_elbow_down);
+    const real_t t170 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t169);
+    const real_t t171 = t152 * (ahead + v1_rear_elbow_down * t169) - t170;
+    const real_t t172 = t171 / size_u_rear_elbow_down;
+    const real_t t173 = size_u_rear_elbow_down + t172;
+    const int t174 = t107 & (-t154 <= t162) & (-t154 <= t163) & (t60 <= t173);
+    const real_t t175 = size_u_rear_elbow_down - t172;
+    const int unreachable_4 = !(t174 & (t60 <= t175));
+    const real_t t176 = cf_poison(single, invalid | unreachable_4);
+    const real_t below_alpha_rear_elbow_down = cf_max(t173, t71);
+    const real_t above_alpha_rear_elbow_down = cf_max(t175, t71);
+    const real_t t177 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down;
     const real_t total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down;
-    const real_t t183 = CLOSEDFORM_C(2.0) * cf_sqrt(above_alpha_rear_elbow_down);
-    const real_t c_alpha_rear_elbow_down = t183 * cf_sqrt(below_alpha_rear_elbow_down) / total_alpha_rear_elbow_down;
-    const real_t t184 = CLOSEDFORM_C(2.0) * cf_sqrt(above_beta_rear_elbow_down);
-    const real_t t185 = t184 * cf_sqrt(below_beta_rear_elbow_down) / total_beta_rear_elbow_down;
-    const real_t c_beta_rear_elbow_down = cf_select(parallel_rear_elbow_down, CLOSEDFORM_C(1.0), t185);
-    const int t186 = nowhere | folded | short_2;
-    const real_t t187 = cf_status(invalid, unreachable, t186 | parallel);
-    const real_t t188 = cf_status(invalid, unreachable_2, t186 | parallel_front_elbow_down);
-    const int t189 = nowhere | folded_rear_elbow_up | short_2;
-    const real_t t190 = cf_status(invalid, unreachable_3, t189 | parallel_rear_elbow_up);
-    const real_t t191 = cf_status(invalid, unreachable_4, t189 | parallel_rear_elbow_down);
-    const real_t opposite[24] = { x_2, t10, t30, rC * rA, (below_alpha - above_alpha) / total_alpha, s_lag, t48, t69, s_pitch, t104 / total_alpha_front_elbow_down, t96, t30, rC_rear_elbow_up * rA_rear_elbow_up, t153 / total_alpha_rear_elbow_up, t145, t118, t182 / total_alpha_rear_elbow_down, t174 };
-    const real_t adjacent[24] = { y, t12, outward, rB * rS, t77 / total_alpha, c_lag, t47, c_beta, c_pitch, c_alpha_front_elbow_down, c_beta_front_elbow_down, outward_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up, c_alpha_rear_elbow_up, c_beta_rear_elbow_up, t117, c_alpha_rear_elbow_down, c_beta_rear_elbow_down };
+    const real_t t178 = CLOSEDFORM_C(2.0) * cf_sqrt(above_alpha_rear_elbow_down);
+    const real_t c_alpha_rear_elbow_down = t178 * cf_sqrt(below_alpha_rear_elbow_down) / total_alpha_rear_elbow_down;
+    const real_t t179 = CLOSEDFORM_C(2.0) * cf_sqrt(above_beta_rear_elbow_down);
+    const real_t t180 = t179 * cf_sqrt(below_beta_rear_elbow_down) / total_beta_rear_elbow_down;
+    const real_t c_beta_rear_elbow_down = cf_rarely(single, parallel_rear_elbow_down, CLOSEDFORM_C(1.0), t180);
+    const int t181 = nowhere | folded | short_2;
+    const real_t t182 = cf_status(single, invalid, unreachable, t181 | parallel);
+    const real_t t183 = cf_status(single, invalid, unreachable_2, t181 | parallel_front_elbow_down);
+    const int t184 = nowhere | folded_rear_elbow_up | short_2;
+    const real_t t185 = cf_status(single, invalid, unreachable_3, t184 | parallel_rear_elbow_up);
+    const real_t t186 = cf_status(single, invalid, unreachable_4, t184 | parallel_rear_elbow_down);
+    const real_t opposite[24] = { x_2, t10, t25, rC * rA, (below_alpha - above_alpha) / total_alpha, s_lag, t43, t64, s_pitch, t99 / total_alpha_front_elbow_down, t91, t25, rC_rear_elbow_up * rA_rear_elbow_up, t148 / total_alpha_rear_elbow_up, t140, t113, t177 / total_alpha_rear_elbow_down, t169 };
+    const real_t adjacent[24] = { y, t12, outward, rB * rS, t72 / total_alpha, c_lag, t42, c_beta, c_pitch, c_alpha_front_elbow_down, c_beta_front_elbow_down, outward_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up, c_alpha_rear_elbow_up, c_beta_rear_elbow_up, t112, c_alpha_rear_elbow_down, c_beta_rear_elbow_down };
     real_t angles[24];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
@@ -1500,64 +1473,62 @@ CF_INLINE void h6ar_ik_kernel(const int vector, const h6ar_params *params,
         angles[16] = cf_atan2(opposite[16], adjacent[16]);
         angles[17] = cf_atan2(opposite[17], adjacent[17]);
     }
-    const real_t t192 = CLOSEDFORM_C(2.0) * angles[1];
-    const real_t t193 = cf_select(nowhere, CLOSEDFORM_C(0.0), angles[0] - t192);
-    const real_t t194 = cf_wrap(-t193);
-    const real_t t195 = cf_select(folded, CLOSEDFORM_C(0.0), angles[2]);
-    const real_t t196 = cf_select(t43, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[3]);
-    const real_t t197 = t195 + t196;
-    const real_t t198 = cf_select(short_2, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
-    const real_t t199 = angles[5] - t198;
-    const real_t t200 = angles[4] - angles[7];
-    const real_t t201 = cf_wrap_cut(angles[8]);
-    const real_t t202 = t195 - t196;
-    const real_t t203 = cf_wrap_cut(cf_wrap(t202 - angles[9])) + t103;
-    const real_t t204 = angles[9] - angles[10];
-    const real_t t205 = angles[5] + t198;
-    const real_t t206 = cf_wrap_cut(cf_wrap(t202 + angles[9])) + t103;
-    const real_t t207 = cf_select(nowhere, CLOSEDFORM_C(0.0), angles[0] + t192);
-    const real_t t208 = cf_wrap_up(-t207);
-    const real_t t209 = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(0.0), angles[11]);
-    const real_t t210 = cf_select(t113, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[12]);
-    const real_t t211 = t209 - t210;
-    const real_t t212 = cf_wrap_cut(cf_wrap(t211 - angles[13])) + t152;
-    const real_t t213 = angles[13] - angles[14];
-    const real_t t214 = cf_select(short_2, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[15]);
-    const real_t t215 = angles[5] + t214;
-    const real_t t216 = cf_wrap_cut(cf_wrap(t211 + angles[13])) + t152;
-    const real_t t217 = t209 + t210;
-    const real_t t218 = cf_wrap_cut(cf_wrap(t217 - angles[16])) + t181;
-    const real_t t219 = angles[16] - angles[17];
-    const real_t t220 = angles[5] - t214;
-    const real_t t221 = cf_wrap_cut(cf_wrap(t217 + angles[16])) + t181;
-    q[0] = t194 + t75;
-    q[1] = cf_wrap_cut(cf_wrap(t197 - angles[4])) + t75;
-    q[2] = cf_wrap_up(cf_wrap(t199 + t200)) + t75;
-    q[3] = cf_wrap_cut(cf_wrap(t197 + angles[4])) + t75;
-    q[4] = cf_wrap_up(cf_wrap(t199 - t200)) + t75;
-    q[5] = t201 + t75;
-    q[6] = t194 + t103;
-    q[7] = t203;
-    q[8] = cf_wrap(cf_wrap(t204 + t205)) + t103;
-    q[9] = t206;
-    q[10] = cf_wrap(cf_wrap(t205 - t204)) + t103;
-    q[11] = t201 + t103;
-    q[12] = t208 + t152;
-    q[13] = t212;
-    q[14] = cf_wrap(cf_wrap(t213 + t215)) + t152;
-    q[15] = t216;
-    q[16] = cf_wrap(cf_wrap(t215 - t213)) + t152;
-    q[17] = t201 + t152;
-    q[18] = t208 + t181;
-    q[19] = t218;
-    q[20] = cf_wrap_up(cf_wrap(t219 + t220)) + t181;
-    q[21] = t221;
-    q[22] = cf_wrap_up(cf_wrap(t220 - t219)) + t181;
-    q[23] = t201 + t181;
-    status[0] = t187;
-    status[1] = t188;
-    status[2] = t190;
-    status[3] = t191;
+    const real_t t187 = CLOSEDFORM_C(2.0) * angles[1];
+    const real_t t188 = cf_rarely(single, nowhere, CLOSEDFORM_C(0.0), angles[0] - t187);
+    const real_t t189 = cf_wrap(-t188);
+    const real_t t190 = cf_rarely(single, folded, CLOSEDFORM_C(0.0), angles[2]);
+    const real_t t191 = cf_rarely(single, t38, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[3]);
+    const real_t t192 = t190 + t191;
+    const real_t t193 = cf_rarely(single, short_2, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
+    const real_t t194 = angles[5] - t193;
+    const real_t t195 = angles[4] - angles[7];
+    const real_t t196 = cf_wrap_cut(angles[8]);
+    const real_t t197 = t190 - t191;
+    const real_t t198 = angles[9] - angles[10];
+    const real_t t199 = angles[5] + t193;
+    const real_t t200 = cf_rarely(single, nowhere, CLOSEDFORM_C(0.0), angles[0] + t187);
+    const real_t t201 = cf_wrap_up(-t200);
+    const real_t t202 = cf_rarely(single, folded_rear_elbow_up, CLOSEDFORM_C(0.0), angles[11]);
+    const real_t t203 = cf_rarely(single, t108, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[12]);
+    const real_t t204 = t202 - t203;
+    const real_t t205 = cf_wrap_cut(cf_wrap(t204 - angles[13])) + t147;
+    const real_t t206 = angles[13] - angles[14];
+    const real_t t207 = cf_rarely(single, short_2, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[15]);
+    const real_t t208 = angles[5] + t207;
+    const real_t t209 = cf_wrap_cut(cf_wrap(t204 + angles[13])) + t147;
+    const real_t t210 = t202 + t203;
+    const real_t t211 = cf_wrap_cut(cf_wrap(t210 - angles[16])) + t176;
+    const real_t t212 = angles[16] - angles[17];
+    const real_t t213 = angles[5] - t207;
+    const real_t t214 = cf_wrap_cut(cf_wrap(t210 + angles[16])) + t176;
+    q[0] = t189 + t70;
+    q[1] = cf_wrap_cut(cf_wrap(t192 - angles[4])) + t70;
+    q[2] = cf_wrap_up(cf_wrap(t194 + t195)) + t70;
+    q[3] = cf_wrap_cut(cf_wrap(t192 + angles[4])) + t70;
+    q[4] = cf_wrap_up(cf_wrap(t194 - t195)) + t70;
+    q[5] = t196 + t70;
+    q[6] = t189 + t98;
+    q[7] = cf_wrap_cut(cf_wrap(t197 - angles[9])) + t98;
+    q[8] = cf_wrap(cf_wrap(t198 + t199)) + t98;
+    q[9] = cf_wrap_cut(cf_wrap(t197 + angles[9])) + t98;
+    q[10] = cf_wrap(cf_wrap(t199 - t198)) + t98;
+    q[11] = t196 + t98;
+    q[12] = t201 + t147;
+    q[13] = t205;
+    q[14] = cf_wrap(cf_wrap(t206 + t208)) + t147;
+    q[15] = t209;
+    q[16] = cf_wrap(cf_wrap(t208 - t206)) + t147;
+    q[17] = t196 + t147;
+    q[18] = t201 + t176;
+    q[19] = t211;
+    q[20] = cf_wrap_up(cf_wrap(t212 + t213)) + t176;
+    q[21] = t214;
+    q[22] = cf_wrap_up(cf_wrap(t213 - t212)) + t176;
+    q[23] = t196 + t176;
+    status[0] = t182;
+    status[1] = t183;
+    status[2] = t185;
+    status[3] = t186;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1639,9 +1610,9 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params,
     }
 }
 
-CF_INLINE void h6ar_wrist_length_kernel(const h6ar_params *params, const real_t psi[1],
-    const real_t phi[1], const real_t *cosines,
-    real_t l_W[1])
+CF_INLINE void h6ar_wrist_length_kernel(const int single, const h6ar_params *params,
+    const real_t psi[1], const real_t phi[1],
+    const real_t *cosines, real_t l_W[1])
 {
     const real_t d = params->d;
     const real_t gs = params->gs;
@@ -1653,13 +1624,13 @@ CF_INLINE void h6ar_wrist_length_kernel(const h6ar_params *params, const real_t 
     const real_t t1 = d - c_psi * (gs - al);
     const real_t t2 = (gs + al) * c_psi - d;
     const real_t t3 = cf_sqrt(cf_max(t1, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t2, CLOSEDFORM_C(0.0)));
-    const int t4 = cf_is_finite(d) & (CLOSEDFORM_C(0.0) <= d) & cf_is_finite(gs);
-    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= gs) & cf_is_finite(al);
-    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= al) & cf_is_finite(psi_2);
+    const int t4 = cf_nought(d) + cf_nought(gs) + cf_nought(al) == 0;
+    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t6 = cf_nought(psi_2) + cf_nought(phi_2) == 0;
     const real_t t7 = CLOSEDFORM_FEASIBILITY * (d / CLOSEDFORM_C(2.0));
     const int t8 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t7 <= t2);
-    const int failed = (!(t6 & cf_is_finite(phi_2))) | (!(t8 & (-t7 <= t1)));
-    l_W[0] = t3 / c_psi + cf_poison(failed);
+    const int failed = (!(t5 & (CLOSEDFORM_C(0.0) <= al) & t6)) | (!(t8 & (-t7 <= t1)));
+    l_W[0] = t3 / c_psi + cf_poison(single, failed);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1669,7 +1640,7 @@ void h6ar_wrist_length(const h6ar_params *params, const real_t psi[1],
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { psi[0], phi[0] };
     cf_sincos_lanes(2, lanes, sines, cosines);
-    h6ar_wrist_length_kernel(params, psi, phi, cosines, l_W);
+    h6ar_wrist_length_kernel(1, params, psi, phi, cosines, l_W);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1693,7 +1664,7 @@ void h6ar_wrist_length_batch(size_t n, const h6ar_params *params,
             const real_t phi_i[1] = { phi[start + i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t l_W_i[1];
-            h6ar_wrist_length_kernel(&local, psi_i, phi_i, cosines_i, l_W_i);
+            h6ar_wrist_length_kernel(0, &local, psi_i, phi_i, cosines_i, l_W_i);
             l_W[start + i] = l_W_i[0];
         }
     }
@@ -1749,9 +1720,9 @@ void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params,
     }
 }
 
-CF_INLINE void h6ar_largest_yaw_kernel(const h6ar_params *params, const real_t phi[1],
-    const real_t beta_min[1], const real_t *cosines,
-    real_t psi[1])
+CF_INLINE void h6ar_largest_yaw_kernel(const int single, const h6ar_params *params,
+    const real_t phi[1], const real_t beta_min[1],
+    const real_t *cosines, real_t psi[1])
 {
     const real_t d = params->d;
     const real_t gs = params->gs;
@@ -1762,12 +1733,12 @@ CF_INLINE void h6ar_largest_yaw_kernel(const h6ar_params *params, const real_t p
     const real_t span = gs + al * c_beta_min;
     const real_t t1 = span - d;
     const real_t t2 = cf_atan2(cf_sqrt(cf_max(t1, CLOSEDFORM_C(0.0))), cf_sqrt(d + span));
-    const int t3 = cf_is_finite(d) & (CLOSEDFORM_C(0.0) <= d) & cf_is_finite(gs);
-    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= gs) & cf_is_finite(al);
-    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= al) & cf_is_finite(phi_2);
+    const int t3 = cf_nought(d) + cf_nought(gs) + cf_nought(al) == 0;
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t5 = cf_nought(phi_2) + cf_nought(beta_min_2) == 0;
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
-    const int failed = (!(t5 & cf_is_finite(beta_min_2))) | unreachable;
-    const real_t t6 = cf_wrap_down(CLOSEDFORM_C(2.0) * t2) + cf_poison(failed);
+    const int failed = (!(t4 & (CLOSEDFORM_C(0.0) <= al) & t5)) | unreachable;
+    const real_t t6 = cf_wrap_down(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
     psi[0] = t6;
 }
 
@@ -1778,7 +1749,7 @@ void h6ar_largest_yaw(const h6ar_params *params, const real_t phi[1],
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { beta_min[0] };
     cf_sincos_lanes(1, lanes, sines, cosines);
-    h6ar_largest_yaw_kernel(params, phi, beta_min, cosines, psi);
+    h6ar_largest_yaw_kernel(1, params, phi, beta_min, cosines, psi);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1801,14 +1772,15 @@ void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params,
             const real_t beta_min_i[1] = { beta_min[start + i] };
             const real_t cosines_i[1] = { cosines[0][i] };
             real_t psi_i[1];
-            h6ar_largest_yaw_kernel(&local, phi_i, beta_min_i, cosines_i, psi_i);
+            h6ar_largest_yaw_kernel(0, &local, phi_i, beta_min_i, cosines_i, psi_i);
             psi[start + i] = psi_i[0];
         }
     }
 }
 
-CF_INLINE void h6ar_largest_angle_kernel(const h6ar_params *params, const real_t beta_min[1],
-    const real_t *cosines, real_t angle[1])
+CF_INLINE void h6ar_largest_angle_kernel(const int single, const h6ar_params *params,
+    const real_t beta_min[1], const real_t *cosines,
+    real_t angle[1])
 {
     const real_t d = params->d;
     const real_t gs = params->gs;
@@ -1818,11 +1790,12 @@ CF_INLINE void h6ar_largest_angle_kernel(const h6ar_params *params, const real_t
     const real_t span = gs + al * c_beta_min;
     const real_t t1 = span - d;
     const real_t t2 = cf_atan2(cf_sqrt(cf_max(t1, CLOSEDFORM_C(0.0))), cf_sqrt(d + span));
-    const int t3 = cf_is_finite(d) & (CLOSEDFORM_C(0.0) <= d) & cf_is_finite(gs);
-    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= gs) & cf_is_finite(al);
-    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= al) & cf_is_finite(beta_min_2);
+    const int t3 = cf_nought(d) + cf_nought(gs) + cf_nought(al) == 0;
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t5 = cf_nought(beta_min_2) == 0;
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
-    const real_t t6 = cf_wrap_down(CLOSEDFORM_C(2.0) * t2) + cf_poison((!t5) | unreachable);
+    const int failed = (!(t4 & (CLOSEDFORM_C(0.0) <= al) & t5)) | unreachable;
+    const real_t t6 = cf_wrap_down(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
     angle[0] = t6;
 }
 
@@ -1833,7 +1806,7 @@ void h6ar_largest_angle(const h6ar_params *params, const real_t beta_min[1],
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { beta_min[0] };
     cf_sincos_lanes(1, lanes, sines, cosines);
-    h6ar_largest_angle_kernel(params, beta_min, cosines, angle);
+    h6ar_largest_angle_kernel(1, params, beta_min, cosines, angle);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1853,7 +1826,7 @@ void h6ar_largest_angle_batch(size_t n, const h6ar_params *params,
             const real_t beta_min_i[1] = { beta_min[start + i] };
             const real_t cosines_i[1] = { cosines[0][i] };
             real_t angle_i[1];
-            h6ar_largest_angle_kernel(&local, beta_min_i, cosines_i, angle_i);
+            h6ar_largest_angle_kernel(0, &local, beta_min_i, cosines_i, angle_i);
             angle[start + i] = angle_i[0];
         }
     }

@@ -4,18 +4,18 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 81 add, 85 compare and select, 3 atan2, 21 divide, 123 multiply, 6 sincos, 9 sqrt
- *   pose: 108 add, 82 compare and select, 21 divide, 164 multiply, 6 sincos, 9 sqrt
+ *   fk: 81 add, 59 compare and select, 3 atan2, 21 divide, 123 multiply, 6 sincos, 9 sqrt
+ *   pose: 108 add, 56 compare and select, 21 divide, 164 multiply, 6 sincos, 9 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
- *   jacobian: 208 add, 78 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
- *   determinant: 86 add, 78 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
- *   singularities: 91 add, 78 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
- *   ik: 341 compare and select, 366 add, 28 atan2, 78 divide, 436 multiply, 3 sincos, 41 sqrt
- *   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
+ *   jacobian: 208 add, 54 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
+ *   determinant: 86 add, 54 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
+ *   singularities: 91 add, 54 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
+ *   ik: 315 compare and select, 366 add, 28 atan2, 78 divide, 436 multiply, 3 sincos, 41 sqrt
+ *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
- *   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
- *   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
+ *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
+ *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not

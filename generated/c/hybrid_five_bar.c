@@ -4,22 +4,23 @@
  * Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 22 add, 30 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
- *   passive_angles: 16 add, 33 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
+ *   fk: 22 add, 22 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
+ *   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
  *     sqrt
- *   jacobian_parallel: 27 add, 29 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
- *   jacobian_serial: 24 add, 29 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
- *   jacobian: 35 add, 29 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
- *   determinant: 20 add, 29 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
- *   singularities: 26 add, 29 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
- *   condition_number: 9 add, 30 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
- *   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
- *   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
- *   workspace_volume: 15 add, 31 compare and select, 4 divide, 29 multiply
+ *   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
+ *   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
+ *   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
+ *   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
+ *   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
+ *   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
+ *   ik: 56 compare and select, 34 add, 6 atan2, 33 multiply, 5 sqrt
+ *   workspace_contains: 21 compare and select, 11 add, 13 multiply
+ *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
  */
 #include "hybrid_five_bar.h"
 
-CF_INLINE void hybrid_five_bar_fk_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_fk_kernel(const int single,
+    const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t p[6], real_t status[2])
 {
@@ -43,36 +44,35 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const hybrid_five_bar_params *params,
     const real_t t3 = L0 + L1 + L2;
     const real_t t4 = t3 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t4;
-    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t distance = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t5 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t1 / apart);
     const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
     const real_t t7 = L2 * CLOSEDFORM_C(2.0);
     const real_t t8 = t7 - apart;
     const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
     const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t9);
+    const real_t height = cf_rarely(single, slack <= t4, CLOSEDFORM_C(0.0), t9);
     const real_t t10 = n_1 * height;
     const real_t P_r = C_r - (t6 - t10);
-    const int t11 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
-    const int t14 = t13 & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int invalid = !t14;
+    const int t11 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t13 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t12 & (CLOSEDFORM_C(0.0) <= L2) & t13);
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
-    const real_t t15 = cf_poison(invalid | unreachable);
-    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t17 = t5 * height;
+    const real_t t14 = cf_poison(single, invalid | unreachable);
+    const real_t t15 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t16 = t5 * height;
     const real_t P_r_right_of_CD = C_r - (t6 + t10);
-    const real_t t18 = cf_status(invalid, unreachable, coincide);
-    p[0] = -(P_r * c1) + t15;
-    p[1] = C_y + (t16 + t17) + t15;
-    p[2] = P_r * s1 + t15;
-    p[3] = -(c1 * P_r_right_of_CD) + t15;
-    p[4] = C_y + (t16 - t17) + t15;
-    p[5] = s1 * P_r_right_of_CD + t15;
-    status[0] = t18;
-    status[1] = t18;
+    const real_t t17 = cf_status(single, invalid, unreachable, coincide);
+    p[0] = -(P_r * c1) + t14;
+    p[1] = C_y + (t15 + t16) + t14;
+    p[2] = P_r * s1 + t14;
+    p[3] = -(c1 * P_r_right_of_CD) + t14;
+    p[4] = C_y + (t15 - t16) + t14;
+    p[5] = s1 * P_r_right_of_CD + t14;
+    status[0] = t17;
+    status[1] = t17;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -83,7 +83,7 @@ void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
     const real_t lanes[4] = { q[1], q[2], q[0] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     real_t status_real[2];
-    hybrid_five_bar_fk_kernel(params, q, sines, cosines, p, status_real);
+    hybrid_five_bar_fk_kernel(1, params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -109,7 +109,7 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t p_i[6];
             real_t status_i[2];
-            hybrid_five_bar_fk_kernel(&local, q_i, sines_i, cosines_i, p_i, status_i);
+            hybrid_five_bar_fk_kernel(0, &local, q_i, sines_i, cosines_i, p_i, status_i);
             p[start + i] = p_i[0];
             p[p_stride + start + i] = p_i[1];
             p[2 * p_stride + start + i] = p_i[2];
@@ -128,7 +128,7 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
     }
 }
 
-CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int vector,
+CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int single,
     const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t theta[4])
@@ -149,32 +149,31 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int vector,
     const real_t t3 = L0 + L1 + L2;
     const real_t t4 = t3 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t4;
-    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t distance = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t5 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t1 / apart);
     const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
     const real_t t7 = L2 * CLOSEDFORM_C(2.0);
     const real_t t8 = t7 - apart;
     const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
     const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t9);
+    const real_t height = cf_rarely(single, slack <= t4, CLOSEDFORM_C(0.0), t9);
     const real_t t10 = n_1 * height;
     const real_t DP_r_right_of_CD = t6 - t10;
     const real_t t11 = distance * n_1 / CLOSEDFORM_C(2.0);
     const real_t t12 = t5 * height;
     const real_t CP_y = t11 + t12;
-    const int t13 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
-    const int t16 = t15 & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int failed = (!t16) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t8));
-    const real_t t17 = cf_poison(failed);
+    const int t13 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t15 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int failed = (!(t14 & (CLOSEDFORM_C(0.0) <= L2) & t15)) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t8));
+    const real_t t16 = cf_poison(single, failed);
     const real_t DP_r = t6 + t10;
     const real_t CP_y_right_of_CD = t11 - t12;
     const real_t opposite[4] = { DP_r_right_of_CD, DP_r, DP_r, DP_r_right_of_CD };
     const real_t adjacent[4] = { CP_y, -CP_y_right_of_CD, CP_y_right_of_CD, -CP_y };
     real_t angles[4];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(4, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
@@ -182,10 +181,10 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int vector,
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
     }
-    theta[0] = cf_wrap_cut(-angles[0]) + t17;
-    theta[1] = cf_wrap_cut(angles[1]) + t17;
-    theta[2] = cf_wrap_cut(-angles[2]) + t17;
-    theta[3] = cf_wrap_cut(angles[3]) + t17;
+    theta[0] = cf_wrap_cut(-angles[0]) + t16;
+    theta[1] = cf_wrap_cut(angles[1]) + t16;
+    theta[2] = cf_wrap_cut(-angles[2]) + t16;
+    theta[3] = cf_wrap_cut(angles[3]) + t16;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -224,7 +223,8 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
     }
 }
 
-CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const int single,
+    const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t A[18])
 {
@@ -240,59 +240,58 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const hybrid_five_bar_pa
     const real_t c2 = cosines[1];
     const real_t s3 = sines[2];
     const real_t c3 = cosines[2];
-    const int t1 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
-    const int t4 = t3 & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const real_t t5 = L0 + L1 + L2;
-    const real_t t6 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t7 = L1 * s2 - L1 * s3;
-    const real_t t8 = L1 * c2 - (L0 + L1 * c3);
-    const real_t apart = cf_sqrt(t7 * t7 + t8 * t8);
-    const real_t t9 = t6 - apart;
-    const int failed = (!t4) | (!(-(CLOSEDFORM_FEASIBILITY * t5) <= t9));
-    const real_t t10 = cf_poison(failed);
-    const real_t t11 = L2 * s1 + t10;
-    const real_t t12 = CLOSEDFORM_C(0.0) + t10;
-    const real_t t13 = L2 * c1 + t10;
-    const real_t t14 = t5 * CLOSEDFORM_VANISHING;
-    const int coincide = apart <= t14;
-    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t15 = cf_select(coincide, CLOSEDFORM_C(0.0), t7 / apart);
-    const real_t t16 = distance * t15 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t8 / apart));
-    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t17 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t14, CLOSEDFORM_C(0.0), t17);
-    const real_t t18 = n_1 * height;
-    const real_t DP_r_right_of_CD = t16 - t18;
-    const real_t t19 = DP_r_right_of_CD * c1;
-    const real_t t20 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t21 = t15 * height;
-    const real_t CP_y = t20 + t21;
-    const real_t t22 = DP_r_right_of_CD * s1;
-    const real_t DP_r = t16 + t18;
-    const real_t t23 = DP_r * c1;
-    const real_t CP_y_right_of_CD = t20 - t21;
-    const real_t t24 = DP_r * s1;
-    A[0] = t11;
-    A[1] = t12;
-    A[2] = t13;
-    A[3] = t19 + t10;
-    A[4] = CP_y + t10;
-    A[5] = -t22 + t10;
-    A[6] = -t23 + t10;
-    A[7] = -CP_y_right_of_CD + t10;
-    A[8] = t24 + t10;
-    A[9] = t11;
-    A[10] = t12;
-    A[11] = t13;
-    A[12] = t23 + t10;
-    A[13] = CP_y_right_of_CD + t10;
-    A[14] = -t24 + t10;
-    A[15] = -t19 + t10;
-    A[16] = -CP_y + t10;
-    A[17] = t22 + t10;
+    const int t1 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t3 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t4 = L0 + L1 + L2;
+    const real_t t5 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t6 = L1 * s2 - L1 * s3;
+    const real_t t7 = L1 * c2 - (L0 + L1 * c3);
+    const real_t apart = cf_sqrt(t6 * t6 + t7 * t7);
+    const real_t t8 = t5 - apart;
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= L2) & t3)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t8));
+    const real_t t9 = cf_poison(single, failed);
+    const real_t t10 = L2 * s1 + t9;
+    const real_t t11 = CLOSEDFORM_C(0.0) + t9;
+    const real_t t12 = L2 * c1 + t9;
+    const real_t t13 = t4 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t13;
+    const real_t distance = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t14 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t6 / apart);
+    const real_t t15 = distance * t14 / CLOSEDFORM_C(2.0);
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), -(t7 / apart));
+    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t16 = cf_sqrt(slack) * cf_sqrt(apart + t5) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_rarely(single, slack <= t13, CLOSEDFORM_C(0.0), t16);
+    const real_t t17 = n_1 * height;
+    const real_t DP_r_right_of_CD = t15 - t17;
+    const real_t t18 = DP_r_right_of_CD * c1;
+    const real_t t19 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t20 = t14 * height;
+    const real_t CP_y = t19 + t20;
+    const real_t t21 = DP_r_right_of_CD * s1;
+    const real_t DP_r = t15 + t17;
+    const real_t t22 = DP_r * c1;
+    const real_t CP_y_right_of_CD = t19 - t20;
+    const real_t t23 = DP_r * s1;
+    A[0] = t10;
+    A[1] = t11;
+    A[2] = t12;
+    A[3] = t18 + t9;
+    A[4] = CP_y + t9;
+    A[5] = -t21 + t9;
+    A[6] = -t22 + t9;
+    A[7] = -CP_y_right_of_CD + t9;
+    A[8] = t23 + t9;
+    A[9] = t10;
+    A[10] = t11;
+    A[11] = t12;
+    A[12] = t22 + t9;
+    A[13] = CP_y_right_of_CD + t9;
+    A[14] = -t23 + t9;
+    A[15] = -t18 + t9;
+    A[16] = -CP_y + t9;
+    A[17] = t21 + t9;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -302,7 +301,7 @@ void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params,
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
-    hybrid_five_bar_jacobian_parallel_kernel(params, q, sines, cosines, A);
+    hybrid_five_bar_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -323,7 +322,7 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t A_i[18];
-            hybrid_five_bar_jacobian_parallel_kernel(&local, q_i, sines_i, cosines_i, A_i);
+            hybrid_five_bar_jacobian_parallel_kernel(0, &local, q_i, sines_i, cosines_i, A_i);
             A[start + i] = A_i[0];
             A[A_stride + start + i] = A_i[1];
             A[2 * A_stride + start + i] = A_i[2];
@@ -346,7 +345,8 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
     }
 }
 
-CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const int single,
+    const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t B[6])
 {
@@ -370,34 +370,33 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const hybrid_five_bar_para
     const real_t t4 = L0 + L1 + L2;
     const real_t t5 = t4 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t5;
-    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t distance = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t6 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t1 / apart);
     const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
     const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
+    const real_t height = cf_rarely(single, slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
-    const int t12 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
-    const int t15 = t14 & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int failed = (!t15) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
-    const real_t t16 = cf_poison(failed);
-    const real_t t17 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t18 = t6 * height;
-    const real_t CP_y = t17 + t18;
+    const int t12 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int failed = (!(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
+    const real_t t15 = cf_poison(single, failed);
+    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t17 = t6 * height;
+    const real_t CP_y = t16 + t17;
     const real_t DP_r = t7 + t11;
-    const real_t CP_y_right_of_CD = t17 - t18;
-    B[0] = L2 * (C_r - DP_r_right_of_CD) + t16;
-    B[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t16;
-    B[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t16;
-    B[3] = L2 * (C_r - DP_r) + t16;
-    B[4] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t16;
-    B[5] = t2 * DP_r_right_of_CD + D_r * CP_y + t16;
+    const real_t CP_y_right_of_CD = t16 - t17;
+    B[0] = L2 * (C_r - DP_r_right_of_CD) + t15;
+    B[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t15;
+    B[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t15;
+    B[3] = L2 * (C_r - DP_r) + t15;
+    B[4] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t15;
+    B[5] = t2 * DP_r_right_of_CD + D_r * CP_y + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -407,7 +406,7 @@ void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params,
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
-    hybrid_five_bar_jacobian_serial_kernel(params, q, sines, cosines, B);
+    hybrid_five_bar_jacobian_serial_kernel(1, params, q, sines, cosines, B);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -427,7 +426,7 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t B_i[6];
-            hybrid_five_bar_jacobian_serial_kernel(&local, q_i, sines_i, cosines_i, B_i);
+            hybrid_five_bar_jacobian_serial_kernel(0, &local, q_i, sines_i, cosines_i, B_i);
             B[start + i] = B_i[0];
             B[B_stride + start + i] = B_i[1];
             B[2 * B_stride + start + i] = B_i[2];
@@ -438,7 +437,8 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
     }
 }
 
-CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_jacobian_kernel(const int single,
+    const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t J[18])
 {
@@ -464,58 +464,57 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const hybrid_five_bar_params *par
     const real_t t4 = L0 + L1 + L2;
     const real_t t5 = t4 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t5;
-    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t distance = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t6 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t1 / apart);
     const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
     const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
+    const real_t height = cf_rarely(single, slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
     const real_t P_r = C_r - DP_r_right_of_CD;
-    const int t12 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
-    const int t15 = t14 & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int failed = (!t15) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
-    const real_t t16 = cf_poison(failed);
-    const real_t t17 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t18 = t6 * height;
-    const real_t CP_y_right_of_CD = t17 - t18;
-    const real_t CP_y = t17 + t18;
-    const real_t t19 = C_y * DP_r_right_of_CD + C_r * CP_y;
-    const real_t t20 = CP_y_right_of_CD * t19;
+    const int t12 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int failed = (!(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
+    const real_t t15 = cf_poison(single, failed);
+    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t17 = t6 * height;
+    const real_t CP_y_right_of_CD = t16 - t17;
+    const real_t CP_y = t16 + t17;
+    const real_t t18 = C_y * DP_r_right_of_CD + C_r * CP_y;
+    const real_t t19 = CP_y_right_of_CD * t18;
     const real_t side = distance * height;
     const real_t DP_r = t7 + t11;
     const real_t along_d = t2 * DP_r + D_r * CP_y_right_of_CD;
-    const real_t t21 = CP_y * along_d;
-    const real_t t22 = CLOSEDFORM_C(0.0) + t16;
+    const real_t t20 = CP_y * along_d;
+    const real_t t21 = CLOSEDFORM_C(0.0) + t15;
     const real_t P_r_right_of_CD = C_r - DP_r;
-    const real_t t23 = C_y * DP_r + C_r * CP_y_right_of_CD;
-    const real_t t24 = CP_y * t23;
+    const real_t t22 = C_y * DP_r + C_r * CP_y_right_of_CD;
+    const real_t t23 = CP_y * t22;
     const real_t along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y;
-    const real_t t25 = CP_y_right_of_CD * along_d_right_of_CD;
-    J[0] = P_r * s1 + t16;
-    J[1] = c1 * t20 / side + t16;
-    J[2] = -(c1 * t21 / side) + t16;
-    J[3] = t22;
-    J[4] = -(DP_r * t19 / side) + t16;
-    J[5] = DP_r_right_of_CD * along_d / side + t16;
-    J[6] = P_r * c1 + t16;
-    J[7] = -(s1 * t20 / side) + t16;
-    J[8] = s1 * t21 / side + t16;
-    J[9] = s1 * P_r_right_of_CD + t16;
-    J[10] = -(c1 * t24 / side) + t16;
-    J[11] = c1 * t25 / side + t16;
-    J[12] = t22;
-    J[13] = DP_r_right_of_CD * t23 / side + t16;
-    J[14] = -(DP_r * along_d_right_of_CD / side) + t16;
-    J[15] = c1 * P_r_right_of_CD + t16;
-    J[16] = s1 * t24 / side + t16;
-    J[17] = -(s1 * t25 / side) + t16;
+    const real_t t24 = CP_y_right_of_CD * along_d_right_of_CD;
+    J[0] = P_r * s1 + t15;
+    J[1] = c1 * t19 / side + t15;
+    J[2] = -(c1 * t20 / side) + t15;
+    J[3] = t21;
+    J[4] = -(DP_r * t18 / side) + t15;
+    J[5] = DP_r_right_of_CD * along_d / side + t15;
+    J[6] = P_r * c1 + t15;
+    J[7] = -(s1 * t19 / side) + t15;
+    J[8] = s1 * t20 / side + t15;
+    J[9] = s1 * P_r_right_of_CD + t15;
+    J[10] = -(c1 * t23 / side) + t15;
+    J[11] = c1 * t24 / side + t15;
+    J[12] = t21;
+    J[13] = DP_r_right_of_CD * t22 / side + t15;
+    J[14] = -(DP_r * along_d_right_of_CD / side) + t15;
+    J[15] = c1 * P_r_right_of_CD + t15;
+    J[16] = s1 * t23 / side + t15;
+    J[17] = -(s1 * t24 / side) + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -525,7 +524,7 @@ void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params,
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[1], q[2], q[0] };
     cf_sincos_lanes(4, lanes, sines, cosines);
-    hybrid_five_bar_jacobian_kernel(params, q, sines, cosines, J);
+    hybrid_five_bar_jacobian_kernel(1, params, q, sines, cosines, J);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -546,7 +545,7 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
             const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t J_i[18];
-            hybrid_five_bar_jacobian_kernel(&local, q_i, sines_i, cosines_i, J_i);
+            hybrid_five_bar_jacobian_kernel(0, &local, q_i, sines_i, cosines_i, J_i);
             J[start + i] = J_i[0];
             J[J_stride + start + i] = J_i[1];
             J[2 * J_stride + start + i] = J_i[2];
@@ -569,7 +568,8 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
     }
 }
 
-CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_determinant_kernel(const int single,
+    const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t det[2])
 {
@@ -593,15 +593,15 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *
     const real_t t4 = L0 + L1 + L2;
     const real_t t5 = t4 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t5;
-    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t distance = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t6 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t1 / apart);
     const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
     const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
+    const real_t height = cf_rarely(single, slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
     const real_t t12 = distance * n_1 / CLOSEDFORM_C(2.0);
@@ -612,16 +612,15 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const hybrid_five_bar_params *
     const real_t CP_y_right_of_CD = t12 - t13;
     const real_t side = distance * height;
     const real_t t15 = t14 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side;
-    const int t16 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t18 = t17 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
-    const int t19 = t18 & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int failed = (!t19) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
-    const real_t t20 = cf_poison(failed);
-    const real_t t21 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
-    const real_t t22 = t21 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
-    det[0] = -t15 + t20;
-    det[1] = t22 + t20;
+    const int t16 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t18 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int failed = (!(t17 & (CLOSEDFORM_C(0.0) <= L2) & t18)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
+    const real_t t19 = cf_poison(single, failed);
+    const real_t t20 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
+    const real_t t21 = t20 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
+    det[0] = -t15 + t19;
+    det[1] = t21 + t19;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -631,7 +630,7 @@ void hybrid_five_bar_determinant(const hybrid_five_bar_params *params,
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
-    hybrid_five_bar_determinant_kernel(params, q, sines, cosines, det);
+    hybrid_five_bar_determinant_kernel(1, params, q, sines, cosines, det);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -651,14 +650,15 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t det_i[2];
-            hybrid_five_bar_determinant_kernel(&local, q_i, sines_i, cosines_i, det_i);
+            hybrid_five_bar_determinant_kernel(0, &local, q_i, sines_i, cosines_i, det_i);
             det[start + i] = det_i[0];
             det[det_stride + start + i] = det_i[1];
         }
     }
 }
 
-CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_singularities_kernel(const int single,
+    const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t factors[8])
 {
@@ -682,37 +682,36 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const hybrid_five_bar_params
     const real_t t4 = L0 + L1 + L2;
     const real_t t5 = t4 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t5;
-    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t distance = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t6 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t1 / apart);
     const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
     const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
+    const real_t height = cf_rarely(single, slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
-    const int t12 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
-    const int t15 = t14 & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int failed = (!t15) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
-    const real_t t16 = cf_poison(failed);
-    const real_t t17 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t18 = t6 * height;
-    const real_t CP_y = t17 + t18;
+    const int t12 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int failed = (!(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
+    const real_t t15 = cf_poison(single, failed);
+    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t17 = t6 * height;
+    const real_t CP_y = t16 + t17;
     const real_t DP_r = t7 + t11;
-    const real_t CP_y_right_of_CD = t17 - t18;
+    const real_t CP_y_right_of_CD = t16 - t17;
     const real_t side = distance * height;
-    factors[0] = C_r - DP_r_right_of_CD + t16;
-    factors[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t16;
-    factors[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t16;
-    factors[3] = side + t16;
-    factors[4] = C_r - DP_r + t16;
-    factors[5] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t16;
-    factors[6] = t2 * DP_r_right_of_CD + D_r * CP_y + t16;
-    factors[7] = -side + t16;
+    factors[0] = C_r - DP_r_right_of_CD + t15;
+    factors[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t15;
+    factors[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t15;
+    factors[3] = side + t15;
+    factors[4] = C_r - DP_r + t15;
+    factors[5] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t15;
+    factors[6] = t2 * DP_r_right_of_CD + D_r * CP_y + t15;
+    factors[7] = -side + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -722,7 +721,7 @@ void hybrid_five_bar_singularities(const hybrid_five_bar_params *params,
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
-    hybrid_five_bar_singularities_kernel(params, q, sines, cosines, factors);
+    hybrid_five_bar_singularities_kernel(1, params, q, sines, cosines, factors);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -742,7 +741,7 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t factors_i[8];
-            hybrid_five_bar_singularities_kernel(&local, q_i, sines_i, cosines_i, factors_i);
+            hybrid_five_bar_singularities_kernel(0, &local, q_i, sines_i, cosines_i, factors_i);
             factors[start + i] = factors_i[0];
             factors[factors_stride + start + i] = factors_i[1];
             factors[2 * factors_stride + start + i] = factors_i[2];
@@ -755,7 +754,8 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
     }
 }
 
-CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_condition_number_kernel(const int single,
+    const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t kappa[2])
 {
@@ -775,22 +775,21 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const hybrid_five_bar_par
     const real_t t3 = L0 + L1 + L2;
     const real_t t4 = t3 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t4;
-    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t distance = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), apart);
     const real_t t5 = distance / CLOSEDFORM_C(2.0);
     const real_t t6 = L2 * CLOSEDFORM_C(2.0);
     const real_t t7 = t6 - apart;
     const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
     const real_t t8 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t8);
-    const real_t t9 = cf_select(coincide, CLOSEDFORM_C(1.0), cf_max(t5, height));
-    const int t10 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t11 = t10 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(theta1);
-    const int t13 = t12 & cf_is_finite(theta2) & cf_is_finite(theta3);
-    const int failed = (!t13) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t7));
-    const real_t t14 = t9 / cf_min(t5, height) + cf_poison(failed);
-    kappa[0] = t14;
-    kappa[1] = t14;
+    const real_t height = cf_rarely(single, slack <= t4, CLOSEDFORM_C(0.0), t8);
+    const real_t t9 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), cf_max(t5, height));
+    const int t10 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t11 = t10 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t12 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= L2) & t12)) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t7));
+    const real_t t13 = t9 / cf_min(t5, height) + cf_poison(single, failed);
+    kappa[0] = t13;
+    kappa[1] = t13;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -800,7 +799,7 @@ void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params,
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
-    hybrid_five_bar_condition_number_kernel(params, q, sines, cosines, kappa);
+    hybrid_five_bar_condition_number_kernel(1, params, q, sines, cosines, kappa);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -820,14 +819,14 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
             const real_t sines_i[2] = { sines[0][i], sines[1][i] };
             const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
             real_t kappa_i[2];
-            hybrid_five_bar_condition_number_kernel(&local, q_i, sines_i, cosines_i, kappa_i);
+            hybrid_five_bar_condition_number_kernel(0, &local, q_i, sines_i, cosines_i, kappa_i);
             kappa[start + i] = kappa_i[0];
             kappa[kappa_stride + start + i] = kappa_i[1];
         }
     }
 }
 
-CF_INLINE void hybrid_five_bar_ik_kernel(const int vector,
+CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const hybrid_five_bar_params *params,
     const real_t x[3], real_t q[24], real_t status[8])
 {
@@ -837,41 +836,56 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int vector,
     const real_t x_2 = x[0];
     const real_t y = x[1];
     const real_t z = x[2];
-    const real_t r = cf_sqrt(x_2 * x_2 + z * z);
+    const real_t r2 = x_2 * x_2 + z * z;
+    const real_t r = cf_sqrt(r2);
     const real_t t1 = L1 + L2;
     const real_t t2 = CLOSEDFORM_VANISHING * (L0 + t1);
     const int on_axis = r <= t2;
-    const int t3 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(x_2);
-    const int invalid = !(t5 & cf_is_finite(y) & cf_is_finite(z));
-    const real_t t6 = -(CLOSEDFORM_FEASIBILITY * t1);
-    const real_t t7 = r * r;
-    const real_t reach_c = cf_sqrt(t7 + y * y);
-    const real_t t8 = t1 - reach_c;
-    const real_t t9 = L1 - L2;
-    const real_t t10 = reach_c + t9;
-    const real_t t11 = reach_c - t9;
-    const real_t t12 = y - L0;
-    const real_t reach_d = cf_sqrt(t7 + t12 * t12);
-    const real_t t13 = t1 - reach_d;
-    const int t14 = (t6 <= t8) & (t6 <= t10) & (t6 <= t11) & (t6 <= t13);
-    const real_t t15 = reach_d + t9;
-    const real_t t16 = reach_d - t9;
-    const int unreachable = !(t14 & (t6 <= t15) & (t6 <= t16));
-    const real_t t17 = cf_poison(invalid | unreachable);
-    const int at_A = reach_c <= t2;
-    const real_t t18 = cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0)));
-    const real_t t19 = cf_sqrt(reach_c + t1) * cf_sqrt(cf_max(t10, CLOSEDFORM_C(0.0)));
-    const int at_B = reach_d <= t2;
-    const real_t t20 = cf_sqrt(cf_max(t13, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t16, CLOSEDFORM_C(0.0)));
-    const real_t t21 = cf_sqrt(reach_d + t1) * cf_sqrt(cf_max(t15, CLOSEDFORM_C(0.0)));
-    const int t22 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
-    const real_t t23 = cf_status(invalid, unreachable, t22);
-    const real_t opposite[8] = { z, r, t18, r, t20, z };
-    const real_t adjacent[8] = { -x_2, y, t19, t12, t21, x_2 };
+    const int t3 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t5 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) == 0;
+    const int invalid = !(t4 & (CLOSEDFORM_C(0.0) <= L2) & t5);
+    const real_t t6 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t7 = CLOSEDFORM_FEASIBILITY * (t1 * (L1 * CLOSEDFORM_C(2.0) + t6));
+    const real_t t8 = t1 * t1;
+    const real_t square_c = r2 + y * y;
+    const real_t t9 = t8 - square_c;
+    const real_t t10 = L1 - L2;
+    const real_t t11 = CLOSEDFORM_FEASIBILITY * (t1 * CLOSEDFORM_C(2.0) * cf_abs(t10));
+    const real_t t12 = t10 * t10;
+    const real_t t13 = square_c - t12;
+    const real_t t14 = y - L0;
+    const real_t square_d = r2 + t14 * t14;
+    const real_t t15 = t8 - square_d;
+    const real_t t16 = square_d - t12;
+    const int t17 = (-t7 <= t9) & (-t11 <= t13) & (-t7 <= t15) & (-t11 <= t16);
+    const int unreachable = !t17;
+    const real_t t18 = cf_poison(single, invalid | unreachable);
+    const int at_A = r + cf_abs(y) <= t2;
+    const int no_link_c = L1 * L2 <= t8 * CLOSEDFORM_VANISHING;
+    const real_t M_c = cf_max(t13, CLOSEDFORM_C(0.0));
+    const real_t N_c = cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t ahead_c = cf_rarely(single, no_link_c, CLOSEDFORM_C(1.0), t1 * M_c + N_c * t10);
+    const real_t t19 = ahead_c * r;
+    const real_t beyond_c = cf_rarely(single, no_link_c, CLOSEDFORM_C(0.0), t6 * cf_sqrt(M_c) * cf_sqrt(N_c));
+    const real_t t20 = y * beyond_c;
+    const real_t t21 = y * ahead_c;
+    const real_t t22 = r * beyond_c;
+    const int at_B = r + cf_abs(t14) <= t2;
+    const real_t M_d = cf_max(t16, CLOSEDFORM_C(0.0));
+    const real_t N_d = cf_max(t15, CLOSEDFORM_C(0.0));
+    const real_t ahead_d = cf_rarely(single, no_link_c, CLOSEDFORM_C(1.0), t1 * M_d + t10 * N_d);
+    const real_t t23 = ahead_d * r;
+    const real_t beyond_d = cf_rarely(single, no_link_c, CLOSEDFORM_C(0.0), t6 * cf_sqrt(M_d) * cf_sqrt(N_d));
+    const real_t t24 = t14 * beyond_d;
+    const real_t t25 = t14 * ahead_d;
+    const real_t t26 = r * beyond_d;
+    const int t27 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
+    const real_t t28 = cf_status(single, invalid, unreachable, t27);
+    const real_t opposite[8] = { z, t19 - t20, t23 - t24, t23 + t24, t19 + t20, z };
+    const real_t adjacent[8] = { -x_2, t21 + t22, t25 + t26, t25 - t26, t21 - t22, x_2 };
     real_t angles[8];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
@@ -881,56 +895,54 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int vector,
         angles[4] = cf_atan2(opposite[4], adjacent[4]);
         angles[5] = cf_atan2(opposite[5], adjacent[5]);
     }
-    const real_t t24 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[0]);
-    const real_t t25 = cf_wrap_cut(t24) + t17;
-    const real_t t26 = CLOSEDFORM_C(2.0) * angles[2];
-    const real_t t27 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[1] - t26);
-    const real_t t28 = cf_wrap_cut(t27) + t17;
-    const real_t t29 = CLOSEDFORM_C(2.0) * angles[4];
-    const real_t t30 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[3] - t29);
-    const real_t t31 = cf_wrap_cut(t30) + t17;
-    const real_t t32 = cf_select(at_B, CLOSEDFORM_C(0.0), angles[3] + t29);
-    const real_t t33 = cf_wrap_down(t32) + t17;
-    const real_t t34 = cf_select(at_A, CLOSEDFORM_C(0.0), angles[1] + t26);
-    const real_t t35 = cf_wrap_down(t34) + t17;
-    const real_t t36 = cf_select(on_axis, CLOSEDFORM_C(0.0), angles[5]);
-    const real_t t37 = cf_wrap_cut(-t36) + t17;
-    const real_t t38 = cf_wrap_up(-t34) + t17;
-    const real_t t39 = cf_wrap_up(-t32) + t17;
-    const real_t t40 = cf_wrap_cut(-t30) + t17;
-    const real_t t41 = cf_wrap_cut(-t27) + t17;
-    q[0] = t25;
-    q[1] = t28;
-    q[2] = t31;
-    q[3] = t25;
-    q[4] = t28;
-    q[5] = t33;
-    q[6] = t25;
-    q[7] = t35;
-    q[8] = t31;
-    q[9] = t25;
-    q[10] = t35;
-    q[11] = t33;
-    q[12] = t37;
-    q[13] = t38;
-    q[14] = t39;
-    q[15] = t37;
-    q[16] = t38;
-    q[17] = t40;
-    q[18] = t37;
-    q[19] = t41;
-    q[20] = t39;
-    q[21] = t37;
-    q[22] = t41;
-    q[23] = t40;
-    status[0] = t23;
-    status[1] = t23;
-    status[2] = t23;
-    status[3] = t23;
-    status[4] = t23;
-    status[5] = t23;
-    status[6] = t23;
-    status[7] = t23;
+    const real_t t29 = cf_rarely(single, on_axis, CLOSEDFORM_C(0.0), angles[0]);
+    const real_t t30 = cf_wrap_cut(t29) + t18;
+    const real_t t31 = cf_rarely(single, at_A, CLOSEDFORM_C(0.0), angles[1]);
+    const real_t t32 = cf_wrap_cut(t31) + t18;
+    const real_t t33 = cf_rarely(single, at_B, CLOSEDFORM_C(0.0), angles[2]);
+    const real_t t34 = cf_wrap_cut(t33) + t18;
+    const real_t t35 = cf_rarely(single, at_B, CLOSEDFORM_C(0.0), angles[3]);
+    const real_t t36 = cf_wrap_cut(t35) + t18;
+    const real_t t37 = cf_rarely(single, at_A, CLOSEDFORM_C(0.0), angles[4]);
+    const real_t t38 = cf_wrap_cut(t37) + t18;
+    const real_t t39 = cf_rarely(single, on_axis, CLOSEDFORM_C(0.0), angles[5]);
+    const real_t t40 = cf_wrap_cut(-t39) + t18;
+    const real_t t41 = cf_wrap_cut(-t37) + t18;
+    const real_t t42 = cf_wrap_cut(-t35) + t18;
+    const real_t t43 = cf_wrap_cut(-t33) + t18;
+    const real_t t44 = cf_wrap_cut(-t31) + t18;
+    q[0] = t30;
+    q[1] = t32;
+    q[2] = t34;
+    q[3] = t30;
+    q[4] = t32;
+    q[5] = t36;
+    q[6] = t30;
+    q[7] = t38;
+    q[8] = t34;
+    q[9] = t30;
+    q[10] = t38;
+    q[11] = t36;
+    q[12] = t40;
+    q[13] = t41;
+    q[14] = t42;
+    q[15] = t40;
+    q[16] = t41;
+    q[17] = t43;
+    q[18] = t40;
+    q[19] = t44;
+    q[20] = t42;
+    q[21] = t40;
+    q[22] = t44;
+    q[23] = t43;
+    status[0] = t28;
+    status[1] = t28;
+    status[2] = t28;
+    status[3] = t28;
+    status[4] = t28;
+    status[5] = t28;
+    status[6] = t28;
+    status[7] = t28;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1028,20 +1040,23 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     const real_t x = p[0];
     const real_t y = p[1];
     const real_t z = p[2];
-    const int t1 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L2) & cf_is_finite(x);
+    const int t1 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t3 = cf_nought(x) + cf_nought(y) + cf_nought(z) == 0;
     const real_t t4 = L1 + L2;
-    const real_t t5 = -(CLOSEDFORM_FEASIBILITY * t4);
-    const real_t r = cf_sqrt(x * x + z * z);
-    const real_t t6 = r * r;
-    const real_t reach_c = cf_sqrt(t6 + y * y);
-    const real_t t7 = L1 - L2;
-    const int t8 = (t5 <= t4 - reach_c) & (t5 <= reach_c + t7) & (t5 <= reach_c - t7);
-    const real_t t9 = y - L0;
-    const real_t reach_d = cf_sqrt(t6 + t9 * t9);
-    const int t10 = t8 & (t5 <= t4 - reach_d) & (t5 <= reach_d + t7);
-    const int failed = (!(t3 & cf_is_finite(y) & cf_is_finite(z))) | (!(t10 & (t5 <= reach_d - t7)));
+    const real_t t5 = L1 * CLOSEDFORM_C(2.0) + L2 * CLOSEDFORM_C(2.0);
+    const real_t t6 = -(CLOSEDFORM_FEASIBILITY * (t4 * t5));
+    const real_t t7 = t4 * t4;
+    const real_t r2 = x * x + z * z;
+    const real_t square_c = r2 + y * y;
+    const real_t t8 = L1 - L2;
+    const real_t t9 = CLOSEDFORM_FEASIBILITY * (t4 * CLOSEDFORM_C(2.0) * cf_abs(t8));
+    const real_t t10 = t8 * t8;
+    const int t11 = (t6 <= t7 - square_c) & (-t9 <= square_c - t10);
+    const real_t t12 = y - L0;
+    const real_t square_d = r2 + t12 * t12;
+    const int t13 = t11 & (t6 <= t7 - square_d) & (-t9 <= square_d - t10);
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= L2) & t3)) | (!t13);
     inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -1078,7 +1093,8 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
     }
 }
 
-CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const int single,
+    const hybrid_five_bar_params *params,
     real_t volume[1])
 {
     const real_t L0 = params->L0;
@@ -1110,10 +1126,10 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const hybrid_five_bar_par
     const real_t t21 = t10 - r * r * r * CLOSEDFORM_C(8.377580409572783);
     const real_t t22 = cf_select(t17, t18 + t20 * (t7 - t8) / CLOSEDFORM_C(12.0), cf_select(L0 <= t4, t21, t18));
     const real_t t23 = cf_select(t3 <= L0, t10, cf_select(t11, t16 / CLOSEDFORM_C(6.0), t22));
-    const int t24 = cf_is_finite(L0) & (CLOSEDFORM_C(0.0) <= L0) & cf_is_finite(L1);
-    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= L1) & cf_is_finite(L2);
+    const int t24 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int failed = (!(t25 & (CLOSEDFORM_C(0.0) <= L2))) | (!(-(t1 * CLOSEDFORM_FEASIBILITY) <= t1));
-    const real_t t26 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t23) + cf_poison(failed);
+    const real_t t26 = cf_select(t2 <= L0, CLOSEDFORM_C(0.0), t23) + cf_poison(single, failed);
     volume[0] = t26;
 }
 
@@ -1121,7 +1137,7 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params,
     real_t volume[1])
 {
-    hybrid_five_bar_workspace_volume_kernel(params, volume);
+    hybrid_five_bar_workspace_volume_kernel(1, params, volume);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1135,7 +1151,7 @@ void hybrid_five_bar_workspace_volume_batch(size_t n, const hybrid_five_bar_para
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             real_t volume_i[1];
-            hybrid_five_bar_workspace_volume_kernel(&local, volume_i);
+            hybrid_five_bar_workspace_volume_kernel(0, &local, volume_i);
             volume[start + i] = volume_i[0];
         }
     }

@@ -16,10 +16,10 @@
  *   determinant: 4 add, 7 multiply, 2 sincos
  *   singularities: 4 add, 4 multiply, 2 sincos
  *   point_velocity: 11 add, 20 multiply, 3 sincos
- *   ik: 45 add, 87 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
+ *   ik: 45 add, 71 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
  *   workspace_section: 1 compare and select, 4 add
  *   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
- *   workspace_contains: 38 compare and select, 17 add, 6 multiply, 3 sqrt
+ *   workspace_contains: 24 compare and select, 17 add, 6 multiply, 3 sqrt
  */
 #include "irb260.h"
 
@@ -829,7 +829,7 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params,
     }
 }
 
-CF_INLINE void irb260_ik_kernel(const int vector, const irb260_params *params,
+CF_INLINE void irb260_ik_kernel(const int single, const irb260_params *params,
     const real_t x[4], const real_t *sines,
     const real_t *cosines, real_t q[16],
     real_t status[4])
@@ -852,54 +852,52 @@ CF_INLINE void irb260_ik_kernel(const int vector, const irb260_params *params,
     const real_t t3 = l2 + l5 + t1 + t2;
     const real_t t4 = CLOSEDFORM_VANISHING * t3;
     const int on_axis = r <= t4;
-    const real_t s_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(0.0), px);
-    const real_t c_turret = cf_select(on_axis, CLOSEDFORM_C(1.0), py);
-    const int t5 = cf_is_finite(l1) & (CLOSEDFORM_C(0.0) <= l1) & cf_is_finite(l2);
-    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= l2) & cf_is_finite(l3);
-    const int t7 = t6 & (CLOSEDFORM_C(0.0) <= l3) & cf_is_finite(l4);
-    const int t8 = t7 & (CLOSEDFORM_C(0.0) <= l4) & cf_is_finite(l5);
-    const int t9 = t8 & (CLOSEDFORM_C(0.0) <= l5) & cf_is_finite(l6);
-    const int t10 = t9 & (CLOSEDFORM_C(0.0) <= l6) & cf_is_finite(px);
-    const int t11 = t10 & cf_is_finite(py) & cf_is_finite(pz) & cf_is_finite(psi);
-    const int invalid = !t11;
-    const real_t t12 = -(CLOSEDFORM_FEASIBILITY * t3);
+    const real_t s_turret_back_elbow_up = cf_rarely(single, on_axis, CLOSEDFORM_C(0.0), px);
+    const real_t c_turret = cf_rarely(single, on_axis, CLOSEDFORM_C(1.0), py);
+    const int t5 = cf_nought(l1) + cf_nought(l2) + cf_nought(l3) + cf_nought(l4) + cf_nought(l5) + cf_nought(l6) == 0;
+    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t7 = t6 & (CLOSEDFORM_C(0.0) <= l3) & (CLOSEDFORM_C(0.0) <= l4);
+    const int t8 = t7 & (CLOSEDFORM_C(0.0) <= l5) & (CLOSEDFORM_C(0.0) <= l6);
+    const int t9 = cf_nought(px) + cf_nought(py) + cf_nought(pz) + cf_nought(psi) == 0;
+    const int invalid = !(t8 & t9);
+    const real_t t10 = -(CLOSEDFORM_FEASIBILITY * t3);
     const real_t h = pz - l2 + l5;
-    const real_t t13 = h * h;
-    const real_t t14 = r - t2;
-    const real_t reach = cf_sqrt(t13 + t14 * t14);
-    const real_t t15 = t1 - reach;
-    const real_t t16 = l3 - l4;
-    const real_t t17 = t16 + reach;
-    const real_t t18 = reach - t16;
-    const int unreachable = !((t12 <= t15) & (t12 <= t17) & (t12 <= t18));
-    const real_t t19 = cf_poison(invalid | unreachable);
+    const real_t t11 = h * h;
+    const real_t t12 = r - t2;
+    const real_t reach = cf_sqrt(t11 + t12 * t12);
+    const real_t t13 = t1 - reach;
+    const real_t t14 = l3 - l4;
+    const real_t t15 = t14 + reach;
+    const real_t t16 = reach - t14;
+    const int unreachable = !((t10 <= t13) & (t10 <= t15) & (t10 <= t16));
+    const real_t t17 = cf_poison(single, invalid | unreachable);
     const int folded = reach <= t4;
     const int no_link = l3 * l4 <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const real_t rA = cf_sqrt(cf_max(t15, CLOSEDFORM_C(0.0)));
-    const real_t rC = cf_sqrt(cf_max(t18, CLOSEDFORM_C(0.0)));
+    const real_t rA = cf_sqrt(cf_max(t13, CLOSEDFORM_C(0.0)));
+    const real_t rC = cf_sqrt(cf_max(t16, CLOSEDFORM_C(0.0)));
     const real_t rS = cf_sqrt(t1 + reach);
-    const real_t rB = cf_sqrt(cf_max(t17, CLOSEDFORM_C(0.0)));
-    const real_t t20 = c_psi * s_turret_back_elbow_up;
-    const real_t t21 = s_psi * s_turret_back_elbow_up;
-    const real_t c_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(1.0), -py);
-    const real_t t22 = r + t2;
-    const real_t reach_back_elbow_up = cf_sqrt(t13 + t22 * t22);
-    const real_t t23 = t1 - reach_back_elbow_up;
-    const real_t t24 = t16 + reach_back_elbow_up;
-    const real_t t25 = reach_back_elbow_up - t16;
-    const int unreachable_2 = !((t12 <= t23) & (t12 <= t24) & (t12 <= t25));
-    const real_t t26 = cf_poison(invalid | unreachable_2);
+    const real_t rB = cf_sqrt(cf_max(t15, CLOSEDFORM_C(0.0)));
+    const real_t t18 = c_psi * s_turret_back_elbow_up;
+    const real_t t19 = s_psi * s_turret_back_elbow_up;
+    const real_t c_turret_back_elbow_up = cf_rarely(single, on_axis, CLOSEDFORM_C(1.0), -py);
+    const real_t t20 = r + t2;
+    const real_t reach_back_elbow_up = cf_sqrt(t11 + t20 * t20);
+    const real_t t21 = t1 - reach_back_elbow_up;
+    const real_t t22 = t14 + reach_back_elbow_up;
+    const real_t t23 = reach_back_elbow_up - t14;
+    const int unreachable_2 = !((t10 <= t21) & (t10 <= t22) & (t10 <= t23));
+    const real_t t24 = cf_poison(single, invalid | unreachable_2);
     const int folded_back_elbow_up = reach_back_elbow_up <= t4;
-    const real_t rA_back_elbow_up = cf_sqrt(cf_max(t23, CLOSEDFORM_C(0.0)));
-    const real_t rC_back_elbow_up = cf_sqrt(cf_max(t25, CLOSEDFORM_C(0.0)));
+    const real_t rA_back_elbow_up = cf_sqrt(cf_max(t21, CLOSEDFORM_C(0.0)));
+    const real_t rC_back_elbow_up = cf_sqrt(cf_max(t23, CLOSEDFORM_C(0.0)));
     const real_t rS_back_elbow_up = cf_sqrt(t1 + reach_back_elbow_up);
-    const real_t rB_back_elbow_up = cf_sqrt(cf_max(t24, CLOSEDFORM_C(0.0)));
-    const real_t t27 = cf_status(invalid, unreachable, on_axis | folded | no_link);
-    const real_t t28 = cf_status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
-    const real_t opposite[16] = { s_turret_back_elbow_up, rA * rC, -t14, rA * rS, s_psi * c_turret + t20, s_turret_back_elbow_up, rA_back_elbow_up * rC_back_elbow_up, t22, rA_back_elbow_up * rS_back_elbow_up, t20 - s_psi * c_turret_back_elbow_up };
-    const real_t adjacent[16] = { c_turret, rS * rB, h, rC * rB, c_psi * c_turret - t21, c_turret_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up, h, rC_back_elbow_up * rB_back_elbow_up, t21 + c_psi * c_turret_back_elbow_up };
+    const real_t rB_back_elbow_up = cf_sqrt(cf_max(t22, CLOSEDFORM_C(0.0)));
+    const real_t t25 = cf_status(single, invalid, unreachable, on_axis | folded | no_link);
+    const real_t t26 = cf_status(single, invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
+    const real_t opposite[16] = { s_turret_back_elbow_up, rA * rC, -t12, rA * rS, s_psi * c_turret + t18, s_turret_back_elbow_up, rA_back_elbow_up * rC_back_elbow_up, t20, rA_back_elbow_up * rS_back_elbow_up, t18 - s_psi * c_turret_back_elbow_up };
+    const real_t adjacent[16] = { c_turret, rS * rB, h, rC * rB, c_psi * c_turret - t19, c_turret_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up, h, rC_back_elbow_up * rB_back_elbow_up, t19 + c_psi * c_turret_back_elbow_up };
     real_t angles[16];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
@@ -913,42 +911,42 @@ CF_INLINE void irb260_ik_kernel(const int vector, const irb260_params *params,
         angles[8] = cf_atan2(opposite[8], adjacent[8]);
         angles[9] = cf_atan2(opposite[9], adjacent[9]);
     }
-    const real_t t29 = cf_wrap_cut(-angles[0]) + t19;
-    const real_t t30 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
-    const real_t t31 = cf_select(folded, CLOSEDFORM_C(0.0), t30 + angles[2]);
-    const real_t t32 = CLOSEDFORM_C(2.0) * angles[3];
-    const real_t t33 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t32);
-    const real_t t34 = cf_wrap_cut(angles[4]) + t19;
-    const real_t t35 = cf_select(folded, CLOSEDFORM_C(0.0), t30 - angles[2]);
-    const real_t t36 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t32);
-    const real_t t37 = cf_wrap_cut(angles[5]) + t26;
-    const real_t t38 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
-    const real_t t39 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t38 + angles[7]);
-    const real_t t40 = CLOSEDFORM_C(2.0) * angles[8];
-    const real_t t41 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t40);
-    const real_t t42 = cf_wrap_cut(-angles[9]) + t26;
-    const real_t t43 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t38 - angles[7]);
-    const real_t t44 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t40);
-    q[0] = t29;
-    q[1] = cf_wrap_up(-t31) + t19;
-    q[2] = -t33 + t19;
-    q[3] = t34;
-    q[4] = t29;
-    q[5] = cf_wrap(t35) + t19;
-    q[6] = cf_wrap_up(-t36) + t19;
-    q[7] = t34;
-    q[8] = t37;
-    q[9] = cf_wrap_up(-t39) + t26;
-    q[10] = -t41 + t26;
-    q[11] = t42;
-    q[12] = t37;
-    q[13] = cf_wrap_cut(t43) + t26;
-    q[14] = cf_wrap_up(-t44) + t26;
-    q[15] = t42;
-    status[0] = t27;
-    status[1] = t27;
-    status[2] = t28;
-    status[3] = t28;
+    const real_t t27 = cf_wrap_cut(-angles[0]) + t17;
+    const real_t t28 = cf_rarely(single, no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
+    const real_t t29 = cf_rarely(single, folded, CLOSEDFORM_C(0.0), t28 + angles[2]);
+    const real_t t30 = CLOSEDFORM_C(2.0) * angles[3];
+    const real_t t31 = cf_rarely(single, no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t30);
+    const real_t t32 = cf_wrap_cut(angles[4]) + t17;
+    const real_t t33 = cf_rarely(single, folded, CLOSEDFORM_C(0.0), t28 - angles[2]);
+    const real_t t34 = cf_rarely(single, no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t30);
+    const real_t t35 = cf_wrap_cut(angles[5]) + t24;
+    const real_t t36 = cf_rarely(single, no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
+    const real_t t37 = cf_rarely(single, folded_back_elbow_up, CLOSEDFORM_C(0.0), t36 + angles[7]);
+    const real_t t38 = CLOSEDFORM_C(2.0) * angles[8];
+    const real_t t39 = cf_rarely(single, no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t38);
+    const real_t t40 = cf_wrap_cut(-angles[9]) + t24;
+    const real_t t41 = cf_rarely(single, folded_back_elbow_up, CLOSEDFORM_C(0.0), t36 - angles[7]);
+    const real_t t42 = cf_rarely(single, no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t38);
+    q[0] = t27;
+    q[1] = cf_wrap_up(-t29) + t17;
+    q[2] = -t31 + t17;
+    q[3] = t32;
+    q[4] = t27;
+    q[5] = cf_wrap(t33) + t17;
+    q[6] = cf_wrap_up(-t34) + t17;
+    q[7] = t32;
+    q[8] = t35;
+    q[9] = cf_wrap_up(-t37) + t24;
+    q[10] = -t39 + t24;
+    q[11] = t40;
+    q[12] = t35;
+    q[13] = cf_wrap_cut(t41) + t24;
+    q[14] = cf_wrap_up(-t42) + t24;
+    q[15] = t40;
+    status[0] = t25;
+    status[1] = t25;
+    status[2] = t26;
+    status[3] = t26;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1123,26 +1121,24 @@ CF_INLINE void irb260_workspace_contains_kernel(const irb260_params *params, con
     const real_t px = p[0];
     const real_t py = p[1];
     const real_t pz = p[2];
-    const int t1 = cf_is_finite(l1) & (CLOSEDFORM_C(0.0) <= l1) & cf_is_finite(l2);
-    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= l2) & cf_is_finite(l3);
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= l3) & cf_is_finite(l4);
-    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= l4) & cf_is_finite(l5);
-    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= l5) & cf_is_finite(l6);
-    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= l6) & cf_is_finite(px);
-    const real_t t7 = l1 + l6;
-    const real_t t8 = l3 + l4;
-    const real_t t9 = -(CLOSEDFORM_FEASIBILITY * (l2 + l5 + t7 + t8));
+    const int t1 = cf_nought(l1) + cf_nought(l2) + cf_nought(l3) + cf_nought(l4) + cf_nought(l5) + cf_nought(l6) == 0;
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= l3) & (CLOSEDFORM_C(0.0) <= l4);
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= l5) & (CLOSEDFORM_C(0.0) <= l6);
+    const int t5 = cf_nought(px) + cf_nought(py) + cf_nought(pz) == 0;
+    const real_t t6 = l1 + l6;
+    const real_t t7 = l3 + l4;
+    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * (l2 + l5 + t6 + t7));
     const real_t h = pz - l2 + l5;
-    const real_t t10 = h * h;
+    const real_t t9 = h * h;
     const real_t r = cf_sqrt(px * px + py * py);
-    const real_t t11 = r + t7;
-    const real_t reach_back = cf_sqrt(t10 + t11 * t11);
-    const real_t t12 = cf_abs(l3 - l4);
-    const real_t t13 = r - t7;
-    const real_t reach_front = cf_sqrt(t10 + t13 * t13);
-    const real_t t14 = cf_max(cf_min(reach_back - t12, t8 - reach_back), cf_min(reach_front - t12, t8 - reach_front));
-    const int failed = (!(t6 & cf_is_finite(py) & cf_is_finite(pz))) | (!(t9 <= t14));
-    inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t10 = r + t6;
+    const real_t reach_back = cf_sqrt(t9 + t10 * t10);
+    const real_t t11 = cf_abs(l3 - l4);
+    const real_t t12 = r - t6;
+    const real_t reach_front = cf_sqrt(t9 + t12 * t12);
+    const real_t t13 = cf_max(cf_min(reach_back - t11, t7 - reach_back), cf_min(reach_front - t11, t7 - reach_front));
+    inside[0] = (!((!(t4 & t5)) | (!(t8 <= t13)))) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CLOSEDFORM_DISPATCHED

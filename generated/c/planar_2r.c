@@ -11,8 +11,8 @@
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
  *   singularities: 1 sincos
- *   ik: 13 add, 32 compare and select, 3 atan2, 13 multiply, 5 sqrt
- *   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+ *   ik: 31 compare and select, 16 add, 3 atan2, 23 multiply, 2 sqrt
+ *   ik_pose: 61 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
  *   workspace_radii: 1 compare and select, 2 add
  */
 #include "planar_2r.h"
@@ -358,52 +358,60 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
     }
 }
 
-CF_INLINE void planar_2r_ik_kernel(const int vector, const planar_2r_params *params,
+CF_INLINE void planar_2r_ik_kernel(const int single, const planar_2r_params *params,
     const real_t x[2], real_t q[4], real_t status[2])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
     const real_t px = x[0];
     const real_t py = x[1];
-    const real_t r = cf_sqrt(px * px + py * py);
     const real_t t1 = l1 + l2;
-    const int at_base = r <= t1 * CLOSEDFORM_VANISHING;
-    const real_t t2 = t1 - r;
-    const real_t rA = cf_sqrt(cf_max(t2, CLOSEDFORM_C(0.0)));
+    const int at_base = cf_abs(px) + cf_abs(py) <= t1 * CLOSEDFORM_VANISHING;
+    const real_t t2 = t1 * t1;
+    const int no_link = l1 * l2 <= t2 * CLOSEDFORM_VANISHING;
+    const real_t r2 = px * px + py * py;
     const real_t t3 = l1 - l2;
-    const real_t t4 = r - t3;
-    const real_t rC = cf_sqrt(cf_max(t4, CLOSEDFORM_C(0.0)));
-    const real_t rS = cf_sqrt(r + t1);
-    const real_t t5 = r + t3;
-    const real_t rB = cf_sqrt(cf_max(t5, CLOSEDFORM_C(0.0)));
-    const int t6 = cf_is_finite(l1) & (CLOSEDFORM_C(0.0) <= l1) & cf_is_finite(l2);
-    const int t7 = t6 & (CLOSEDFORM_C(0.0) <= l2) & cf_is_finite(px);
-    const int invalid = !(t7 & cf_is_finite(py));
-    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * t1);
-    const int unreachable = !((t8 <= t2) & (t8 <= t5) & (t8 <= t4));
-    const real_t t9 = cf_poison(invalid | unreachable);
-    const int t10 = at_base | (l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1));
-    const real_t t11 = cf_status(invalid, unreachable, t10);
-    const real_t opposite[4] = { py, rA * rC, rA * rS };
-    const real_t adjacent[4] = { px, rS * rB, rC * rB };
+    const real_t t4 = r2 - t3 * t3;
+    const real_t M = cf_max(t4, CLOSEDFORM_C(0.0));
+    const real_t t5 = t2 - r2;
+    const real_t N = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t ahead = cf_rarely(single, no_link, CLOSEDFORM_C(1.0), t1 * M + N * t3);
+    const real_t t6 = py * ahead;
+    const real_t t7 = l2 * CLOSEDFORM_C(2.0);
+    const real_t t8 = cf_sqrt(M);
+    const real_t t9 = cf_sqrt(N);
+    const real_t beyond = cf_rarely(single, no_link, CLOSEDFORM_C(0.0), t7 * t8 * t9);
+    const real_t t10 = px * beyond;
+    const real_t t11 = px * ahead;
+    const real_t t12 = py * beyond;
+    const int t13 = cf_nought(l1) + cf_nought(l2) == 0;
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t15 = cf_nought(px) + cf_nought(py) == 0;
+    const int invalid = !(t14 & t15);
+    const real_t t16 = CLOSEDFORM_FEASIBILITY * (t1 * (l1 * CLOSEDFORM_C(2.0) + t7));
+    const real_t t17 = CLOSEDFORM_FEASIBILITY * (t1 * CLOSEDFORM_C(2.0) * cf_abs(t3));
+    const int unreachable = !((-t16 <= t5) & (-t17 <= t4));
+    const real_t t18 = cf_poison(single, invalid | unreachable);
+    const real_t t19 = cf_status(single, invalid, unreachable, no_link | at_base);
+    const real_t opposite[4] = { t6 - t10, t9, t6 + t10 };
+    const real_t adjacent[4] = { t11 + t12, t8, t11 - t12 };
     real_t angles[4];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(4, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
     }
-    const real_t t12 = CLOSEDFORM_C(2.0) * angles[1];
-    const real_t t13 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[0] - t12);
-    const real_t t14 = CLOSEDFORM_C(2.0) * angles[2];
-    const real_t t15 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[0] + t12);
-    q[0] = cf_wrap_up(t13) + t9;
-    q[1] = t14 + t9;
-    q[2] = cf_wrap(t15) + t9;
-    q[3] = cf_wrap_cut(-t14) + t9;
-    status[0] = t11;
-    status[1] = t11;
+    const real_t t20 = cf_rarely(single, at_base, CLOSEDFORM_C(0.0), angles[0]);
+    const real_t t21 = cf_rarely(single, no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
+    const real_t t22 = cf_rarely(single, at_base, CLOSEDFORM_C(0.0), angles[2]);
+    q[0] = cf_wrap_cut(t20) + t18;
+    q[1] = t21 + t18;
+    q[2] = cf_wrap_cut(t22) + t18;
+    q[3] = cf_wrap_cut(-t21) + t18;
+    status[0] = t19;
+    status[1] = t19;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -448,7 +456,7 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
     }
 }
 
-CF_INLINE void planar_2r_ik_pose_kernel(const int vector, const planar_2r_params *params,
+CF_INLINE void planar_2r_ik_pose_kernel(const int single, const planar_2r_params *params,
     const real_t T[16], real_t q[2], real_t status[1])
 {
     const real_t l1 = params->l1;
@@ -472,13 +480,13 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int vector, const planar_2r_params
     const real_t t1 = l1 + l2;
     const int no_first_link = l1 <= t1 * CLOSEDFORM_VANISHING;
     const real_t elbow_y = T24 - T21 * l2;
-    const real_t s1 = cf_select(no_first_link, CLOSEDFORM_C(0.0), elbow_y / l1);
+    const real_t s1 = cf_rarely(single, no_first_link, CLOSEDFORM_C(0.0), elbow_y / l1);
     const real_t elbow_x = T14 - T11 * l2;
-    const real_t c1 = cf_select(no_first_link, CLOSEDFORM_C(1.0), elbow_x / l1);
-    const int t2 = cf_is_finite(l1) & (CLOSEDFORM_C(0.0) <= l1) & cf_is_finite(l2);
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= l2) & cf_is_finite(T14);
-    const int t4 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
-    const int t5 = t3 & cf_is_finite(T24) & cf_is_finite(T34) & t4;
+    const real_t c1 = cf_rarely(single, no_first_link, CLOSEDFORM_C(1.0), elbow_x / l1);
+    const int t2 = cf_nought(l1) + cf_nought(l2) == 0;
+    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t4 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
+    const int t5 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
     const int t6 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
     const int t7 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
     const real_t t8 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
@@ -487,11 +495,11 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int vector, const planar_2r_params
     const int t11 = cf_abs(t10) <= CLOSEDFORM_ROTATION;
     const int t12 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
     const int t13 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
-    const int t14 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
-    const int t15 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
-    const int t16 = t5 & t6 & t7 & t9 & t11 & t12 & t13 & t14 & t15;
+    const int t14 = t3 & t4 & t5 & t6 & t7 & t9 & t11 & t12 & t13;
+    const int t15 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t16 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
     const int t17 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t16 & t17);
+    const int invalid = !(t14 & t15 & t16 & t17);
     const real_t t18 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
     const real_t t19 = CLOSEDFORM_FEASIBILITY * t1;
     const int t20 = cf_abs(l1 - t18) <= t19;
@@ -500,12 +508,12 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int vector, const planar_2r_params
     const int t23 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
     const int t24 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
     const int unreachable = !(t20 & t21 & t22 & t23 & t24);
-    const real_t t25 = cf_poison(invalid | unreachable);
-    const real_t t26 = cf_status(invalid, unreachable, no_first_link);
+    const real_t t25 = cf_poison(single, invalid | unreachable);
+    const real_t t26 = cf_status(single, invalid, unreachable, no_first_link);
     const real_t opposite[2] = { s1, T11 * s1 - T21 * c1 };
     const real_t adjacent[2] = { c1, T11 * c1 + T21 * s1 };
     real_t angles[2];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(2, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);

@@ -11,8 +11,8 @@
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
  *   singularities: 1 sincos
- *   ik: 13 add, 32 compare and select, 3 atan2, 13 multiply, 5 sqrt
- *   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+ *   ik: 31 compare and select, 16 add, 3 atan2, 23 multiply, 2 sqrt
+ *   ik_pose: 61 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
  *   workspace_radii: 1 compare and select, 2 add
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
@@ -122,7 +122,7 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
 
 /*
  * Both elbow configurations that reach a position.
- * Source: eqs. (3) and (4), in half-angle form.
+ * Source: eqs. (3) and (4), by arctangents.
  * x: shape (..., 2): px, py.
  * Returns q: shape (..., 2, 2).
  * Branches: elbow_down, elbow_up.

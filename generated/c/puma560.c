@@ -11,7 +11,7 @@
  *   jacobian_body: 26 add, 61 multiply, 5 sincos
  *   determinant: 9 add, 22 multiply, 3 sincos
  *   singularities: 5 add, 9 multiply, 3 sincos
- *   ik: 143 compare and select, 141 add, 20 atan2, 20 divide, 152 multiply, 10 sqrt
+ *   ik: 133 compare and select, 141 add, 20 atan2, 20 divide, 152 multiply, 10 sqrt
  */
 #include "puma560.h"
 
@@ -762,7 +762,7 @@ void puma560_singularities_batch(size_t n, const puma560_params *params,
     }
 }
 
-CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
+CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t T[16], real_t q[48], real_t status[8])
 {
     const real_t a2 = params->a2;
@@ -801,13 +801,13 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const real_t root = cf_sqrt(above) * cf_sqrt(below);
     const real_t t8 = root * CLOSEDFORM_C(2.0);
     const real_t t9 = T24 * t8 / t6;
-    const real_t t10 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t7 - t9);
+    const real_t t10 = cf_rarely(single, free_theta1, CLOSEDFORM_C(0.0), t7 - t9);
     const real_t t11 = T24 * t5 / t6;
     const real_t t12 = T14 * t8 / t6;
-    const real_t c1 = cf_select(free_theta1, CLOSEDFORM_C(1.0), t11 + t12);
-    const int t13 = cf_is_finite(a2) & (CLOSEDFORM_C(0.0) <= a2) & cf_is_finite(a3);
-    const int t14 = t13 & cf_is_finite(d3) & cf_is_finite(d4) & (CLOSEDFORM_C(0.0) <= d4);
-    const int t15 = t14 & cf_is_finite(T14) & cf_is_finite(T24) & cf_is_finite(T34);
+    const real_t c1 = cf_rarely(single, free_theta1, CLOSEDFORM_C(1.0), t11 + t12);
+    const int t13 = cf_nought(a2) + cf_nought(a3) + cf_nought(d3) + cf_nought(d4) == 0;
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= a2) & (CLOSEDFORM_C(0.0) <= d4);
+    const int t15 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
     const int t16 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
     const int t17 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
     const int t18 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
@@ -816,12 +816,12 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const real_t t21 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
     const int t22 = cf_abs(t21) <= CLOSEDFORM_ROTATION;
     const int t23 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
-    const int t24 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
-    const int t25 = t15 & t16 & t17 & t18 & t20 & t22 & t23 & t24;
+    const int t24 = t14 & t15 & t16 & t17 & t18 & t20 & t22 & t23;
+    const int t25 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
     const int t26 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
     const int t27 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
     const int t28 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t25 & t26 & t27 & t28);
+    const int invalid = !(t24 & t25 & t26 & t27 & t28);
     const real_t t29 = -(CLOSEDFORM_FEASIBILITY * size);
     const real_t reach = cf_sqrt(T34 * T34 + root * root);
     const real_t t30 = t1 - reach;
@@ -830,9 +830,9 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const int t33 = (t29 <= t3) & (t29 <= t4) & (t29 <= t30) & (t29 <= t32);
     const real_t t34 = reach - t31;
     const int unreachable = !(t33 & (t29 <= t34));
-    const real_t t35 = cf_poison(invalid | unreachable);
+    const real_t t35 = cf_poison(single, invalid | unreachable);
     const int folded = reach <= t2;
-    const real_t t36 = cf_select(folded, CLOSEDFORM_C(0.0), T34 / reach);
+    const real_t t36 = cf_rarely(single, folded, CLOSEDFORM_C(0.0), T34 / reach);
     const int no_link = a2 * f <= CLOSEDFORM_VANISHING * (t1 * t1);
     const int t37 = folded | no_link;
     const real_t S = reach + t1;
@@ -842,26 +842,26 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const real_t C = cf_max(t34, CLOSEDFORM_C(0.0));
     const real_t AC = A * C;
     const real_t sides = SB + AC;
-    const real_t t38 = cf_select(t37, CLOSEDFORM_C(1.0), (SB - AC) / sides);
+    const real_t t38 = cf_rarely(single, t37, CLOSEDFORM_C(1.0), (SB - AC) / sides);
     const real_t t39 = t36 * t38;
     const real_t SA = S * A;
     const real_t BC = B * C;
     const real_t area = CLOSEDFORM_C(2.0) * cf_sqrt(SA * BC);
-    const real_t t40 = cf_select(t37, CLOSEDFORM_C(0.0), area / sides);
+    const real_t t40 = cf_rarely(single, t37, CLOSEDFORM_C(0.0), area / sides);
     const real_t t41 = root / reach;
-    const real_t t42 = cf_select(folded, CLOSEDFORM_C(1.0), t41);
+    const real_t t42 = cf_rarely(single, folded, CLOSEDFORM_C(1.0), t41);
     const real_t t43 = t40 * t42;
     const real_t s2 = t39 + t43;
     const real_t t44 = t36 * t40;
     const real_t t45 = t38 * t42;
     const real_t t46 = t44 - t45;
     const int no_forearm = f <= t2;
-    const real_t t47 = cf_select(no_forearm, CLOSEDFORM_C(0.0), d4 / f);
+    const real_t t47 = cf_rarely(single, no_forearm, CLOSEDFORM_C(0.0), d4 / f);
     const real_t links = SA + BC;
-    const real_t t48 = cf_select(no_link, CLOSEDFORM_C(1.0), -((SA - BC) / links));
+    const real_t t48 = cf_rarely(single, no_link, CLOSEDFORM_C(1.0), -((SA - BC) / links));
     const real_t t49 = t47 * t48;
-    const real_t t50 = cf_select(no_link, CLOSEDFORM_C(0.0), area / links);
-    const real_t t51 = cf_select(no_forearm, CLOSEDFORM_C(1.0), a3 / f);
+    const real_t t50 = cf_rarely(single, no_link, CLOSEDFORM_C(0.0), area / links);
+    const real_t t51 = cf_rarely(single, no_forearm, CLOSEDFORM_C(1.0), a3 / f);
     const real_t t52 = t50 * t51;
     const real_t t53 = t49 + t52;
     const real_t t54 = t47 * t50;
@@ -876,13 +876,13 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const real_t h = cf_sqrt(t58 + R2_13 * R2_13);
     const real_t t59 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
     const int aligned = h <= t59;
-    const real_t t60 = cf_select(aligned, CLOSEDFORM_C(0.0), t57 / h);
-    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(R2_13 / h));
+    const real_t t60 = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), t57 / h);
+    const real_t c4 = cf_rarely(single, aligned, CLOSEDFORM_C(1.0), -(R2_13 / h));
     const real_t t61 = T11 * t10 + T21 * c1;
     const real_t R1_11 = T11 * c1 - T21 * t10;
     const real_t t62 = T12 * t10 + T22 * c1;
     const real_t R1_12 = T12 * c1 - T22 * t10;
-    const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t flip = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
     const real_t s2_right_down_noflip = t39 - t43;
     const real_t c2_right_down_noflip = t44 + t45;
     const real_t t63 = t49 - t52;
@@ -892,14 +892,14 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const real_t t65 = T33 * t64 - R1_13 * c23_right_down_noflip;
     const real_t h_right_down_noflip = cf_sqrt(t58 + t65 * t65);
     const int aligned_right_down_noflip = h_right_down_noflip <= t59;
-    const real_t t66 = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(0.0), t57 / h_right_down_noflip);
-    const real_t c4_right_down_noflip = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(1.0), t65 / h_right_down_noflip);
+    const real_t t66 = cf_rarely(single, aligned_right_down_noflip, CLOSEDFORM_C(0.0), t57 / h_right_down_noflip);
+    const real_t c4_right_down_noflip = cf_rarely(single, aligned_right_down_noflip, CLOSEDFORM_C(1.0), t65 / h_right_down_noflip);
     const real_t t67 = t66 * (T31 * t64 - R1_11 * c23_right_down_noflip);
     const real_t t68 = t66 * (T32 * t64 - R1_12 * c23_right_down_noflip);
-    const real_t flip_right_down_flip = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t t69 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t7 + t9);
-    const real_t c1_left_up_noflip = cf_select(free_theta1, CLOSEDFORM_C(1.0), t11 - t12);
-    const real_t t70 = cf_select(folded, CLOSEDFORM_C(1.0), -t41);
+    const real_t flip_right_down_flip = cf_rarely(single, aligned_right_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t t69 = cf_rarely(single, free_theta1, CLOSEDFORM_C(0.0), t7 + t9);
+    const real_t c1_left_up_noflip = cf_rarely(single, free_theta1, CLOSEDFORM_C(1.0), t11 - t12);
+    const real_t t70 = cf_rarely(single, folded, CLOSEDFORM_C(1.0), -t41);
     const real_t t71 = t40 * t70;
     const real_t s2_left_up_noflip = t39 - t71;
     const real_t t72 = t38 * t70;
@@ -912,8 +912,8 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const real_t t76 = T33 * t75 - c23_left_up_noflip * R1_13_left_up_noflip;
     const real_t h_left_up_noflip = cf_sqrt(t74 + t76 * t76);
     const int aligned_left_up_noflip = h_left_up_noflip <= t59;
-    const real_t t77 = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(0.0), t73 / h_left_up_noflip);
-    const real_t c4_left_up_noflip = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(1.0), t76 / h_left_up_noflip);
+    const real_t t77 = cf_rarely(single, aligned_left_up_noflip, CLOSEDFORM_C(0.0), t73 / h_left_up_noflip);
+    const real_t c4_left_up_noflip = cf_rarely(single, aligned_left_up_noflip, CLOSEDFORM_C(1.0), t76 / h_left_up_noflip);
     const real_t R2_33_left_up_noflip = T33 * c23_left_up_noflip + t75 * R1_13_left_up_noflip;
     const real_t t78 = T11 * t69 + T21 * c1_left_up_noflip;
     const real_t R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t69;
@@ -921,7 +921,7 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const real_t t80 = T12 * t69 + T22 * c1_left_up_noflip;
     const real_t R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t69;
     const real_t t81 = T32 * t75 - c23_left_up_noflip * R1_12_left_up_noflip;
-    const real_t flip_left_up_flip = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t flip_left_up_flip = cf_rarely(single, aligned_left_up_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
     const real_t s2_left_down_noflip = t39 + t71;
     const real_t t82 = t44 - t72;
     const real_t s23_left_down_noflip = t53 * t82 - t56 * s2_left_down_noflip;
@@ -930,25 +930,25 @@ CF_INLINE void puma560_ik_kernel(const int vector, const puma560_params *params,
     const real_t t83 = R2_13_left_down_noflip * R2_13_left_down_noflip;
     const real_t h_left_down_noflip = cf_sqrt(t74 + t83);
     const int aligned_left_down_noflip = h_left_down_noflip <= t59;
-    const real_t t84 = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(0.0), t73 / h_left_down_noflip);
+    const real_t t84 = cf_rarely(single, aligned_left_down_noflip, CLOSEDFORM_C(0.0), t73 / h_left_down_noflip);
     const real_t t85 = -(R2_13_left_down_noflip / h_left_down_noflip);
-    const real_t c4_left_down_noflip = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(1.0), t85);
+    const real_t c4_left_down_noflip = cf_rarely(single, aligned_left_down_noflip, CLOSEDFORM_C(1.0), t85);
     const real_t t86 = t73 * t84 - R2_13_left_down_noflip * c4_left_down_noflip;
     const real_t R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip * s23_left_down_noflip;
     const real_t R2_11_left_down_noflip = T31 * s23_left_down_noflip + R1_11_left_up_noflip * c23_left_down_noflip;
     const real_t t87 = t78 * c4_left_down_noflip + t84 * R2_11_left_down_noflip;
     const real_t R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip * c23_left_down_noflip;
     const real_t t88 = t80 * c4_left_down_noflip + t84 * R2_12_left_down_noflip;
-    const real_t flip_left_down_flip = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t flip_left_down_flip = cf_rarely(single, aligned_left_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
     const int t89 = free_theta1 | no_link | folded | no_forearm;
-    const real_t t90 = cf_status(invalid, unreachable, t89 | aligned);
-    const real_t t91 = cf_status(invalid, unreachable, t89 | aligned_right_down_noflip);
-    const real_t t92 = cf_status(invalid, unreachable, t89 | aligned_left_up_noflip);
-    const real_t t93 = cf_status(invalid, unreachable, t89 | aligned_left_down_noflip);
+    const real_t t90 = cf_status(single, invalid, unreachable, t89 | aligned);
+    const real_t t91 = cf_status(single, invalid, unreachable, t89 | aligned_right_down_noflip);
+    const real_t t92 = cf_status(single, invalid, unreachable, t89 | aligned_left_up_noflip);
+    const real_t t93 = cf_status(single, invalid, unreachable, t89 | aligned_left_down_noflip);
     const real_t opposite[24] = { t10, s2, t53, t60, t57 * t60 - R2_13 * c4, c4 * t61 + t60 * (T31 * s23 + c23 * R1_11), s2_right_down_noflip, t63, t66, t57 * t66 + t65 * c4_right_down_noflip, t61 * c4_right_down_noflip - t67, t69, s2_left_up_noflip, t77, t73 * t77 + t76 * c4_left_up_noflip, c4_left_up_noflip * t78 - t77 * t79, s2_left_down_noflip, t84, t86, t87 };
     const real_t adjacent[24] = { c1, -t46, -t56, c4, T33 * c23 - s23 * R1_13, c4 * t62 + t60 * (T32 * s23 + c23 * R1_12), c2_right_down_noflip, c3_right_down_noflip, c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t64, t62 * c4_right_down_noflip - t68, c1_left_up_noflip, c2_left_up_noflip, c4_left_up_noflip, R2_33_left_up_noflip, c4_left_up_noflip * t80 - t77 * t81, -t82, c4_left_down_noflip, R2_33_left_down_noflip, t88 };
     real_t angles[24];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);

@@ -3,17 +3,17 @@
  * derivations/rpr_planar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 10 add, 26 compare and select, 4 divide, 9 multiply, 4 sqrt
- *   passive_angles: 12 add, 29 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
- *   jacobian: 14 add, 25 compare and select, 8 divide, 13 multiply, 4 sqrt
- *   determinant: 8 add, 24 compare and select, 3 divide, 9 multiply, 4 sqrt
- *   singularities: 10 add, 24 compare and select, 2 divide, 7 multiply, 4 sqrt
- *   ik: 5 add, 10 compare and select, 3 multiply, 2 sqrt
+ *   fk: 10 add, 24 compare and select, 4 divide, 9 multiply, 4 sqrt
+ *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
+ *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 4 sqrt
+ *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 4 sqrt
+ *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 4 sqrt
+ *   ik: 5 add, 8 compare and select, 3 multiply, 2 sqrt
  */
 #include "rpr_planar.h"
 
-CF_INLINE void rpr_planar_fk_kernel(const rpr_planar_params *params, const real_t q[2],
-    real_t p[4], real_t status[2])
+CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *params,
+    const real_t q[2], real_t p[4], real_t status[2])
 {
     const real_t b = params->b;
     const real_t rho1 = q[0];
@@ -22,31 +22,32 @@ CF_INLINE void rpr_planar_fk_kernel(const rpr_planar_params *params, const real_
     const real_t t2 = b + t1;
     const real_t t3 = CLOSEDFORM_VANISHING * t2;
     const int coincide = b <= t3;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t4 = rho1 - rho2;
     const real_t t5 = b * CLOSEDFORM_C(2.0);
-    const real_t t6 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t4 * t1 / t5);
-    const int t7 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
-    const int invalid = !(t7 & cf_is_finite(rho2));
-    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const real_t t9 = t1 - b;
-    const real_t t10 = b + t4;
-    const real_t t11 = b - t4;
-    const int unreachable = !((t8 <= t9) & (t8 <= t10) & (t8 <= t11));
-    const real_t t12 = cf_poison(invalid | unreachable);
-    const real_t t13 = n_1 * t6 + t12;
-    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t14 = cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t10, CLOSEDFORM_C(0.0)));
-    const real_t t15 = cf_select(coincide, CLOSEDFORM_C(0.0), t14 * cf_sqrt(slack) * cf_sqrt(t2) / t5);
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t15);
+    const real_t t6 = cf_rarely(single, coincide, rho1, b / CLOSEDFORM_C(2.0) + t4 * t1 / t5);
+    const int t7 = cf_nought(b) == 0;
+    const int t8 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const int invalid = !(t7 & (CLOSEDFORM_C(0.0) <= b) & t8);
+    const real_t t9 = -(CLOSEDFORM_FEASIBILITY * t2);
+    const real_t t10 = t1 - b;
+    const real_t t11 = b + t4;
+    const real_t t12 = b - t4;
+    const int unreachable = !((t9 <= t10) & (t9 <= t11) & (t9 <= t12));
+    const real_t t13 = cf_poison(single, invalid | unreachable);
+    const real_t t14 = n_1 * t6 + t13;
+    const real_t slack = cf_max(t10, CLOSEDFORM_C(0.0));
+    const real_t t15 = cf_sqrt(cf_max(t12, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0)));
+    const real_t t16 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t15 * cf_sqrt(slack) * cf_sqrt(t2) / t5);
+    const real_t height = cf_rarely(single, slack <= t3, CLOSEDFORM_C(0.0), t16);
     const real_t P_y = n_1 * height;
-    const real_t t16 = cf_status(invalid, unreachable, coincide);
-    p[0] = t13;
-    p[1] = P_y + t12;
-    p[2] = t13;
-    p[3] = -P_y + t12;
-    status[0] = t16;
-    status[1] = t16;
+    const real_t t17 = cf_status(single, invalid, unreachable, coincide);
+    p[0] = t14;
+    p[1] = P_y + t13;
+    p[2] = t14;
+    p[3] = -P_y + t13;
+    status[0] = t17;
+    status[1] = t17;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -54,7 +55,7 @@ void rpr_planar_fk(const rpr_planar_params *params, const real_t q[2],
     real_t p[4], uint8_t status[2])
 {
     real_t status_real[2];
-    rpr_planar_fk_kernel(params, q, p, status_real);
+    rpr_planar_fk_kernel(1, params, q, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -74,7 +75,7 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
             real_t p_i[4];
             real_t status_i[2];
-            rpr_planar_fk_kernel(&local, q_i, p_i, status_i);
+            rpr_planar_fk_kernel(0, &local, q_i, p_i, status_i);
             p[start + i] = p_i[0];
             p[p_stride + start + i] = p_i[1];
             p[2 * p_stride + start + i] = p_i[2];
@@ -91,7 +92,7 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
     }
 }
 
-CF_INLINE void rpr_planar_passive_angles_kernel(const int vector, const rpr_planar_params *params,
+CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_planar_params *params,
     const real_t q[2], real_t theta[4])
 {
     const real_t b = params->b;
@@ -101,7 +102,7 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int vector, const rpr_plan
     const real_t t2 = b + t1;
     const real_t t3 = CLOSEDFORM_VANISHING * t2;
     const int coincide = b <= t3;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t4 = t1 - b;
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
@@ -109,28 +110,29 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int vector, const rpr_plan
     const real_t t7 = b + t5;
     const real_t t8 = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
     const real_t t9 = b * CLOSEDFORM_C(2.0);
-    const real_t t10 = cf_select(coincide, CLOSEDFORM_C(0.0), t8 * cf_sqrt(slack) * cf_sqrt(t2) / t9);
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t10);
+    const real_t t10 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t8 * cf_sqrt(slack) * cf_sqrt(t2) / t9);
+    const real_t height = cf_rarely(single, slack <= t3, CLOSEDFORM_C(0.0), t10);
     const real_t P_y = n_1 * height;
-    const real_t t11 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t5 * t1 / t9);
+    const real_t t11 = cf_rarely(single, coincide, rho1, b / CLOSEDFORM_C(2.0) + t5 * t1 / t9);
     const real_t P_x = n_1 * t11;
-    const int t12 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
-    const real_t t13 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = (!(t12 & cf_is_finite(rho2))) | (!((t13 <= t4) & (t13 <= t7) & (t13 <= t6)));
-    const real_t t14 = cf_poison(failed);
+    const int t12 = cf_nought(b) == 0;
+    const int t13 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t14 = -(CLOSEDFORM_FEASIBILITY * t2);
+    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= b) & t13)) | (!((t14 <= t4) & (t14 <= t7) & (t14 <= t6)));
+    const real_t t15 = cf_poison(single, failed);
     const real_t opposite[2] = { P_y, P_y };
     const real_t adjacent[2] = { P_x, P_x - b };
     real_t angles[2];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(2, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
     }
-    theta[0] = cf_wrap_cut(angles[0]) + t14;
-    theta[1] = cf_wrap_cut(angles[1]) + t14;
-    theta[2] = cf_wrap_cut(-angles[0]) + t14;
-    theta[3] = cf_wrap_cut(-angles[1]) + t14;
+    theta[0] = cf_wrap_cut(angles[0]) + t15;
+    theta[1] = cf_wrap_cut(angles[1]) + t15;
+    theta[2] = cf_wrap_cut(-angles[0]) + t15;
+    theta[3] = cf_wrap_cut(-angles[1]) + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -161,52 +163,53 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
     }
 }
 
-CF_INLINE void rpr_planar_jacobian_kernel(const rpr_planar_params *params, const real_t q[2],
-    real_t J[8])
+CF_INLINE void rpr_planar_jacobian_kernel(const int single, const rpr_planar_params *params,
+    const real_t q[2], real_t J[8])
 {
     const real_t b = params->b;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
-    const int t1 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
-    const real_t t2 = rho1 + rho2;
-    const real_t t3 = b + t2;
-    const real_t t4 = -(CLOSEDFORM_FEASIBILITY * t3);
-    const real_t t5 = t2 - b;
-    const real_t t6 = rho1 - rho2;
-    const real_t t7 = b + t6;
-    const real_t t8 = b - t6;
-    const int failed = (!(t1 & cf_is_finite(rho2))) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
-    const real_t t9 = cf_poison(failed);
-    const real_t t10 = rho1 / b + t9;
-    const real_t t11 = -(rho2 / b) + t9;
-    const real_t t12 = CLOSEDFORM_VANISHING * t3;
-    const int coincide = b <= t12;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
-    const real_t t13 = b * CLOSEDFORM_C(2.0);
-    const real_t t14 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t6 * t2 / t13);
-    const real_t P_x = n_1 * t14;
-    const real_t slack = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t t15 = cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
-    const real_t t16 = cf_select(coincide, CLOSEDFORM_C(0.0), t15 * cf_sqrt(slack) * cf_sqrt(t3) / t13);
-    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), t16);
-    const real_t t17 = b * (n_1 * height);
-    const real_t t18 = (rho1 * b - rho1 * P_x) / t17;
-    const real_t t19 = rho2 * P_x / t17;
-    J[0] = t10;
-    J[1] = t11;
-    J[2] = t18 + t9;
-    J[3] = t19 + t9;
-    J[4] = t10;
-    J[5] = t11;
-    J[6] = -t18 + t9;
-    J[7] = -t19 + t9;
+    const int t1 = cf_nought(b) == 0;
+    const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t3 = rho1 + rho2;
+    const real_t t4 = b + t3;
+    const real_t t5 = -(CLOSEDFORM_FEASIBILITY * t4);
+    const real_t t6 = t3 - b;
+    const real_t t7 = rho1 - rho2;
+    const real_t t8 = b + t7;
+    const real_t t9 = b - t7;
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((t5 <= t6) & (t5 <= t8) & (t5 <= t9)));
+    const real_t t10 = cf_poison(single, failed);
+    const real_t t11 = rho1 / b + t10;
+    const real_t t12 = -(rho2 / b) + t10;
+    const real_t t13 = CLOSEDFORM_VANISHING * t4;
+    const int coincide = b <= t13;
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t t14 = b * CLOSEDFORM_C(2.0);
+    const real_t t15 = cf_rarely(single, coincide, rho1, b / CLOSEDFORM_C(2.0) + t7 * t3 / t14);
+    const real_t P_x = n_1 * t15;
+    const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t16 = cf_sqrt(cf_max(t9, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0)));
+    const real_t t17 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t16 * cf_sqrt(slack) * cf_sqrt(t4) / t14);
+    const real_t height = cf_rarely(single, slack <= t13, CLOSEDFORM_C(0.0), t17);
+    const real_t t18 = b * (n_1 * height);
+    const real_t t19 = (rho1 * b - rho1 * P_x) / t18;
+    const real_t t20 = rho2 * P_x / t18;
+    J[0] = t11;
+    J[1] = t12;
+    J[2] = t19 + t10;
+    J[3] = t20 + t10;
+    J[4] = t11;
+    J[5] = t12;
+    J[6] = -t19 + t10;
+    J[7] = -t20 + t10;
 }
 
 CLOSEDFORM_DISPATCHED
 void rpr_planar_jacobian(const rpr_planar_params *params, const real_t q[2],
     real_t J[8])
 {
-    rpr_planar_jacobian_kernel(params, q, J);
+    rpr_planar_jacobian_kernel(1, params, q, J);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -221,7 +224,7 @@ void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params,
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
             real_t J_i[8];
-            rpr_planar_jacobian_kernel(&local, q_i, J_i);
+            rpr_planar_jacobian_kernel(0, &local, q_i, J_i);
             J[start + i] = J_i[0];
             J[J_stride + start + i] = J_i[1];
             J[2 * J_stride + start + i] = J_i[2];
@@ -234,8 +237,8 @@ void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params,
     }
 }
 
-CF_INLINE void rpr_planar_determinant_kernel(const rpr_planar_params *params, const real_t q[2],
-    real_t det[2])
+CF_INLINE void rpr_planar_determinant_kernel(const int single, const rpr_planar_params *params,
+    const real_t q[2], real_t det[2])
 {
     const real_t b = params->b;
     const real_t rho1 = q[0];
@@ -244,7 +247,7 @@ CF_INLINE void rpr_planar_determinant_kernel(const rpr_planar_params *params, co
     const real_t t2 = b + t1;
     const real_t t3 = CLOSEDFORM_VANISHING * t2;
     const int coincide = b <= t3;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t4 = t1 - b;
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
@@ -252,21 +255,23 @@ CF_INLINE void rpr_planar_determinant_kernel(const rpr_planar_params *params, co
     const real_t t7 = b + t5;
     const real_t t8 = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
     const real_t t9 = t8 * cf_sqrt(slack) * cf_sqrt(t2) / (b * CLOSEDFORM_C(2.0));
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
-    const real_t t10 = rho1 * rho2 / (b * (n_1 * height));
-    const int t11 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
-    const real_t t12 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = (!(t11 & cf_is_finite(rho2))) | (!((t12 <= t4) & (t12 <= t7) & (t12 <= t6)));
-    const real_t t13 = cf_poison(failed);
-    det[0] = t10 + t13;
-    det[1] = -t10 + t13;
+    const real_t t10 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t9);
+    const real_t height = cf_rarely(single, slack <= t3, CLOSEDFORM_C(0.0), t10);
+    const real_t t11 = rho1 * rho2 / (b * (n_1 * height));
+    const int t12 = cf_nought(b) == 0;
+    const int t13 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t14 = -(CLOSEDFORM_FEASIBILITY * t2);
+    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= b) & t13)) | (!((t14 <= t4) & (t14 <= t7) & (t14 <= t6)));
+    const real_t t15 = cf_poison(single, failed);
+    det[0] = t11 + t15;
+    det[1] = -t11 + t15;
 }
 
 CLOSEDFORM_DISPATCHED
 void rpr_planar_determinant(const rpr_planar_params *params, const real_t q[2],
     real_t det[2])
 {
-    rpr_planar_determinant_kernel(params, q, det);
+    rpr_planar_determinant_kernel(1, params, q, det);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -281,52 +286,54 @@ void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params,
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
             real_t det_i[2];
-            rpr_planar_determinant_kernel(&local, q_i, det_i);
+            rpr_planar_determinant_kernel(0, &local, q_i, det_i);
             det[start + i] = det_i[0];
             det[det_stride + start + i] = det_i[1];
         }
     }
 }
 
-CF_INLINE void rpr_planar_singularities_kernel(const rpr_planar_params *params, const real_t q[2],
-    real_t factors[6])
+CF_INLINE void rpr_planar_singularities_kernel(const int single, const rpr_planar_params *params,
+    const real_t q[2], real_t factors[6])
 {
     const real_t b = params->b;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
-    const int t1 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(rho1);
-    const real_t t2 = rho1 + rho2;
-    const real_t t3 = b + t2;
-    const real_t t4 = -(CLOSEDFORM_FEASIBILITY * t3);
-    const real_t t5 = t2 - b;
-    const real_t t6 = rho1 - rho2;
-    const real_t t7 = b + t6;
-    const real_t t8 = b - t6;
-    const int failed = (!(t1 & cf_is_finite(rho2))) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
-    const real_t t9 = cf_poison(failed);
-    const real_t t10 = rho1 + t9;
-    const real_t t11 = rho2 + t9;
-    const real_t t12 = CLOSEDFORM_VANISHING * t3;
-    const int coincide = b <= t12;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
-    const real_t slack = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t t13 = cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
-    const real_t t14 = t13 * cf_sqrt(slack) * cf_sqrt(t3) / (b * CLOSEDFORM_C(2.0));
-    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t14));
+    const int t1 = cf_nought(b) == 0;
+    const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t3 = rho1 + rho2;
+    const real_t t4 = b + t3;
+    const real_t t5 = -(CLOSEDFORM_FEASIBILITY * t4);
+    const real_t t6 = t3 - b;
+    const real_t t7 = rho1 - rho2;
+    const real_t t8 = b + t7;
+    const real_t t9 = b - t7;
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((t5 <= t6) & (t5 <= t8) & (t5 <= t9)));
+    const real_t t10 = cf_poison(single, failed);
+    const real_t t11 = rho1 + t10;
+    const real_t t12 = rho2 + t10;
+    const real_t t13 = CLOSEDFORM_VANISHING * t4;
+    const int coincide = b <= t13;
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t14 = cf_sqrt(cf_max(t9, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0)));
+    const real_t t15 = t14 * cf_sqrt(slack) * cf_sqrt(t4) / (b * CLOSEDFORM_C(2.0));
+    const real_t t16 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t15);
+    const real_t height = cf_rarely(single, slack <= t13, CLOSEDFORM_C(0.0), t16);
     const real_t P_y = n_1 * height;
-    factors[0] = t10;
-    factors[1] = t11;
-    factors[2] = P_y + t9;
-    factors[3] = t10;
-    factors[4] = t11;
-    factors[5] = -P_y + t9;
+    factors[0] = t11;
+    factors[1] = t12;
+    factors[2] = P_y + t10;
+    factors[3] = t11;
+    factors[4] = t12;
+    factors[5] = -P_y + t10;
 }
 
 CLOSEDFORM_DISPATCHED
 void rpr_planar_singularities(const rpr_planar_params *params, const real_t q[2],
     real_t factors[6])
 {
-    rpr_planar_singularities_kernel(params, q, factors);
+    rpr_planar_singularities_kernel(1, params, q, factors);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -341,7 +348,7 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
             real_t factors_i[6];
-            rpr_planar_singularities_kernel(&local, q_i, factors_i);
+            rpr_planar_singularities_kernel(0, &local, q_i, factors_i);
             factors[start + i] = factors_i[0];
             factors[factors_stride + start + i] = factors_i[1];
             factors[2 * factors_stride + start + i] = factors_i[2];
@@ -352,20 +359,21 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
     }
 }
 
-CF_INLINE void rpr_planar_ik_kernel(const rpr_planar_params *params, const real_t x[2],
-    real_t q[2], real_t status[1])
+CF_INLINE void rpr_planar_ik_kernel(const int single, const rpr_planar_params *params,
+    const real_t x[2], real_t q[2], real_t status[1])
 {
     const real_t b = params->b;
     const real_t x_2 = x[0];
     const real_t y = x[1];
     const real_t t1 = y * y;
-    const int t2 = cf_is_finite(b) & (CLOSEDFORM_C(0.0) <= b) & cf_is_finite(x_2);
-    const int invalid = !(t2 & cf_is_finite(y));
-    const real_t t3 = cf_poison(invalid);
-    const real_t t4 = x_2 - b;
-    q[0] = cf_sqrt(x_2 * x_2 + t1) + t3;
-    q[1] = cf_sqrt(t1 + t4 * t4) + t3;
-    status[0] = cf_status(invalid, 0, 0);
+    const int t2 = cf_nought(b) == 0;
+    const int t3 = cf_nought(x_2) + cf_nought(y) == 0;
+    const int invalid = !(t2 & (CLOSEDFORM_C(0.0) <= b) & t3);
+    const real_t t4 = cf_poison(single, invalid);
+    const real_t t5 = x_2 - b;
+    q[0] = cf_sqrt(x_2 * x_2 + t1) + t4;
+    q[1] = cf_sqrt(t1 + t5 * t5) + t4;
+    status[0] = cf_status(single, invalid, 0, 0);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -373,7 +381,7 @@ void rpr_planar_ik(const rpr_planar_params *params, const real_t x[2],
     real_t q[2], uint8_t status[1])
 {
     real_t status_real[1];
-    rpr_planar_ik_kernel(params, x, q, status_real);
+    rpr_planar_ik_kernel(1, params, x, q, status_real);
     for (size_t i = 0; i < 1; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -394,7 +402,7 @@ void rpr_planar_ik_batch(size_t n, const rpr_planar_params *params,
             const real_t x_i[2] = { x[start + i], x[x_stride + start + i] };
             real_t q_i[2];
             real_t status_i[1];
-            rpr_planar_ik_kernel(&local, x_i, q_i, status_i);
+            rpr_planar_ik_kernel(0, &local, x_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             status_real[0][i] = status_i[0];

@@ -356,7 +356,7 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
     }
 }
 
-CF_INLINE void spherical_wrist_ik_kernel(const int vector, const real_t R[9], real_t q[6],
+CF_INLINE void spherical_wrist_ik_kernel(const int single, const real_t R[9], real_t q[6],
     real_t status[2])
 {
     const real_t R11 = R[0];
@@ -370,8 +370,8 @@ CF_INLINE void spherical_wrist_ik_kernel(const int vector, const real_t R[9], re
     const real_t R33 = R[8];
     const real_t h = cf_sqrt(R13 * R13 + R23 * R23);
     const int aligned = h <= CLOSEDFORM_VANISHING;
-    const real_t s4 = cf_select(aligned, CLOSEDFORM_C(0.0), R23 / h);
-    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), R13 / h);
+    const real_t s4 = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), R23 / h);
+    const real_t c4 = cf_rarely(single, aligned, CLOSEDFORM_C(1.0), R13 / h);
     const int t1 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
     const int t2 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
     const int t3 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
@@ -381,13 +381,13 @@ CF_INLINE void spherical_wrist_ik_kernel(const int vector, const real_t R[9], re
     const int t7 = cf_abs(t6) <= CLOSEDFORM_ROTATION;
     const int t8 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
     const int invalid = !(t1 & t2 & t3 & t5 & t7 & t8);
-    const real_t t9 = cf_poison(invalid);
-    const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t t10 = cf_status(invalid, 0, aligned);
+    const real_t t9 = cf_poison(single, invalid);
+    const real_t flip = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t t10 = cf_status(single, invalid, 0, aligned);
     const real_t opposite[4] = { s4, R13 * c4 + R23 * s4, R11 * s4 - R21 * c4 };
     const real_t adjacent[4] = { c4, R33, R22 * c4 - R12 * s4 };
     real_t angles[4];
-    if (vector) {
+    if (single) {
         cf_atan2_lanes(4, opposite, adjacent, angles);
     } else {
         angles[0] = cf_atan2(opposite[0], adjacent[0]);

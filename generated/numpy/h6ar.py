@@ -3,18 +3,18 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 45 add, 63 compare and select, 3 atan2, 8 divide, 60 multiply, 6 sincos, 4 sqrt
-#   pose: 72 add, 60 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
+#   fk: 45 add, 37 compare and select, 3 atan2, 8 divide, 60 multiply, 6 sincos, 4 sqrt
+#   pose: 72 add, 34 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 4 compare and select, 34 multiply, 5 sincos
-#   jacobian: 133 add, 56 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
-#   determinant: 38 add, 56 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
-#   singularities: 43 add, 56 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 190 add, 239 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
-#   wrist_length: 5 add, 26 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
+#   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
+#   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
+#   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
+#   ik: 190 add, 213 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
+#   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
-#   largest_yaw: 5 add, 22 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
-#   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
+#   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
+#   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
 """H6AR, published model.
 
 A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist of
@@ -147,28 +147,24 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t35 = L2 + c_psi * t32
     t36 = L1 * (side2A * t3) + c23A * t34 + s23A * t35
     t37 = t17 * t25 - c_phi * t33
-    t38 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t39 = t38 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t40 = t39 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t41 = t40 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t42 = t41 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t43 = t42 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t44 = t43 & np.isfinite(theta1) & np.isfinite(theta2R)
-    t45 = t44 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t46 = t45 & np.isfinite(theta3L) & np.isfinite(theta)
-    t47 = -(_runtime.FEASIBILITY * t30)
-    failed = np.logical_not(t46) | np.logical_not((t47 <= t31) & (t47 <= t29))
-    t48 = _runtime.poison(failed)
-    t49 = d1 + L1 * (side2A * t26) - c23A * t35 + s23A * t34
-    t50 = _runtime.wrap_cut(np.arctan2(-t28, c_psi)) + t48
-    t51 = _runtime.wrap_cut(-np.arctan2(t25, c_phi)) + t48
+    t38 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t39 = t38 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t40 = t39 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    t41 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    invalid = np.logical_not(t40 & (0.0 <= loff) & (0.0 <= lp) & t41)
+    t42 = -(_runtime.FEASIBILITY * t30)
+    failed = invalid | np.logical_not((t42 <= t31) & (t42 <= t29))
+    t43 = _runtime.poison(failed)
+    t44 = d1 + L1 * (side2A * t26) - c23A * t35 + s23A * t34
+    t45 = _runtime.wrap_cut(np.arctan2(-t28, c_psi)) + t43
+    t46 = _runtime.wrap_cut(-np.arctan2(t25, c_phi)) + t43
     return (
-        c1 * t36 - s1 * t37 + t48,
-        c1 * t37 + s1 * t36 + t48,
-        t49 + t48,
-        t50,
-        t51,
-        _runtime.wrap_cut(np.arctan2(s, c)) + t48,
+        c1 * t36 - s1 * t37 + t43,
+        c1 * t37 + s1 * t36 + t43,
+        t44 + t43,
+        t45,
+        t46,
+        _runtime.wrap_cut(np.arctan2(s, c)) + t43,
     )
 
 
@@ -244,59 +240,55 @@ def _pose(
     t32 = s23A * c1
     c_psi = d / base
     t33 = s * c_psi
-    t34 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t35 = t34 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t36 = t35 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t37 = t36 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t38 = t37 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t39 = t38 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t40 = t39 & np.isfinite(theta1) & np.isfinite(theta2R)
-    t41 = t40 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t42 = t41 & np.isfinite(theta3L) & np.isfinite(theta)
-    t43 = gs + al
-    t44 = -(_runtime.FEASIBILITY * t43)
-    t45 = t43 - base
-    t46 = base - (gs - al)
-    failed = np.logical_not(t42) | np.logical_not((t44 <= t45) & (t44 <= t46))
-    t47 = _runtime.poison(failed)
+    t34 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t35 = t34 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t36 = t35 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    t37 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    invalid = np.logical_not(t36 & (0.0 <= loff) & (0.0 <= lp) & t37)
+    t38 = gs + al
+    t39 = -(_runtime.FEASIBILITY * t38)
+    t40 = t38 - base
+    t41 = base - (gs - al)
+    failed = invalid | np.logical_not((t39 <= t40) & (t39 <= t41))
+    t42 = _runtime.poison(failed)
     hand_12 = t28 * c_psi
     hand_22 = c_phi * c_psi
-    t48 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t47
+    t43 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t42
     hand_13 = s * c_phi + c * t29
-    t49 = c * t30 - s * t28
+    t44 = c * t30 - s * t28
     hand_33 = c * c_psi
-    t50 = t14 * hand_13 + s1 * t49 + t32 * hand_33 + t47
+    t45 = t14 * hand_13 + s1 * t44 + t32 * hand_33 + t42
     side2A = _runtime.select(0.0 <= t18 + t19, 1.0, -1.0)
-    t51 = lp * s
-    wrist = np.sqrt(np.maximum(t46, 0.0)) * np.sqrt(np.maximum(t45, 0.0))
-    t52 = loff + lp * c + wrist
-    t53 = a3 + t51 * c_phi + t29 * t52
-    t54 = L2 + c_psi * t52
-    t55 = L1 * (side2A * t20) + c23A * t53 + s23A * t54
-    t56 = t51 * t28 - t30 * t52
-    t57 = c23A * s1
-    t58 = s23A * s1
-    t59 = t57 * hand_12 - c1 * hand_22 - t58 * t27 + t47
-    t60 = t57 * hand_13 - c1 * t49 + t58 * hand_33 + t47
-    t61 = d1 + L1 * (side2A * t25) - c23A * t54 + s23A * t53
-    t62 = 0.0 + t47
+    t46 = lp * s
+    wrist = np.sqrt(np.maximum(t41, 0.0)) * np.sqrt(np.maximum(t40, 0.0))
+    t47 = loff + lp * c + wrist
+    t48 = a3 + t46 * c_phi + t29 * t47
+    t49 = L2 + c_psi * t47
+    t50 = L1 * (side2A * t20) + c23A * t48 + s23A * t49
+    t51 = t46 * t28 - t30 * t47
+    t52 = c23A * s1
+    t53 = s23A * s1
+    t54 = t52 * hand_12 - c1 * hand_22 - t53 * t27 + t42
+    t55 = t52 * hand_13 - c1 * t44 + t53 * hand_33 + t42
+    t56 = d1 + L1 * (side2A * t25) - c23A * t49 + s23A * t48
+    t57 = 0.0 + t42
     return (
-        t14 * hand_11 - s1 * t31 - t32 * t33 + t47,
-        t48,
-        t50,
-        c1 * t55 - s1 * t56 + t47,
-        t57 * hand_11 + c1 * t31 - t58 * t33 + t47,
-        t59,
-        t60,
-        c1 * t56 + s1 * t55 + t47,
-        c23A * t33 + s23A * hand_11 + t47,
-        c23A * t27 + s23A * hand_12 + t47,
-        s23A * hand_13 - c23A * hand_33 + t47,
-        t61 + t47,
-        t62,
-        t62,
-        t62,
-        1.0 + t47,
+        t14 * hand_11 - s1 * t31 - t32 * t33 + t42,
+        t43,
+        t45,
+        c1 * t50 - s1 * t51 + t42,
+        t52 * hand_11 + c1 * t31 - t53 * t33 + t42,
+        t54,
+        t55,
+        c1 * t51 + s1 * t50 + t42,
+        c23A * t33 + s23A * hand_11 + t42,
+        c23A * t27 + s23A * hand_12 + t42,
+        s23A * hand_13 - c23A * hand_33 + t42,
+        t56 + t42,
+        t57,
+        t57,
+        t57,
+        1.0 + t42,
     )
 
 
@@ -483,121 +475,115 @@ def _jacobian(
     t42 = L2 + t41
     outer_33 = c23A * t40 + s23A * t42
     t43 = outer_32 + outer_33
-    t44 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t45 = t44 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t46 = t45 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t47 = t46 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t48 = t47 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t49 = t48 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t50 = t49 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t51 = t50 & np.isfinite(theta3L) & np.isfinite(theta)
-    t52 = -(_runtime.FEASIBILITY * t34)
-    failed = np.logical_not(t51) | np.logical_not((t52 <= t35) & (t52 <= t33))
-    t53 = _runtime.poison(failed)
-    t54 = c23A * t37
-    outer_15 = c1 * t54 + s1 * t39
-    t55 = c2R_half * c2R_half - s2R_half * s2R_half
-    t56 = s2R_half * c2R_half
-    t57 = t56 + t56
-    t58 = c3R_half * c3R_half - s3R_half * s3R_half
-    t59 = s3R_half * c3R_half
-    t60 = t59 + t59
-    s2R3R = t57 * t58 + t55 * t60
-    c2R3R = t55 * t58 - t57 * t60
-    t61 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
-    t62 = d * (1.0 + t25 / t24)
-    inner_52 = (L1 * t55 / 2.0 + t61) / t62
-    t63 = L1 * (side2A * t27)
-    t64 = c23A * t42 - s23A * t40
-    t65 = c1 * t64 / 2.0
-    t66 = c1 * t63 / 2.0 - t65
-    t67 = c_phi * t41
-    t68 = t26 * t41
-    t69 = t30 * t36
-    t70 = c23A * t68 - s23A * t69
-    t71 = (gs - d / c_psi) * (d * t30)
-    t72 = s23A * c_psi
-    t73 = c23A * t38 + t72
-    t74 = c_psi * c_psi * wrist
-    t75 = s1 * t67 + c1 * t70 + t71 * (s1 * t31 + c1 * t73) / t74
-    t76 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
-    t77 = d * (1.0 + t29 / t24)
-    t78 = (L1 * t57 / 2.0 - t76) / t77
-    t79 = outer_15 * inner_52 - (t66 - t75 * t78) + t53
-    inner_43 = t76 / t77
-    inner_53 = t61 / t62
-    t80 = t65 - inner_43 * t75 + inner_53 * outer_15 + t53
-    t81 = s2L_half * c2L_half
+    t44 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t45 = t44 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t46 = t45 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t47 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t48 = -(_runtime.FEASIBILITY * t34)
+    failed = np.logical_not(t46 & (0.0 <= lp) & t47) | np.logical_not((t48 <= t35) & (t48 <= t33))
+    t49 = _runtime.poison(failed)
+    t50 = c23A * t37
+    outer_15 = c1 * t50 + s1 * t39
+    t51 = c2R_half * c2R_half - s2R_half * s2R_half
+    t52 = s2R_half * c2R_half
+    t53 = t52 + t52
+    t54 = c3R_half * c3R_half - s3R_half * s3R_half
+    t55 = s3R_half * c3R_half
+    t56 = t55 + t55
+    s2R3R = t53 * t54 + t51 * t56
+    c2R3R = t51 * t54 - t53 * t56
+    t57 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
+    t58 = d * (1.0 + t25 / t24)
+    inner_52 = (L1 * t51 / 2.0 + t57) / t58
+    t59 = L1 * (side2A * t27)
+    t60 = c23A * t42 - s23A * t40
+    t61 = c1 * t60 / 2.0
+    t62 = c1 * t59 / 2.0 - t61
+    t63 = c_phi * t41
+    t64 = t26 * t41
+    t65 = t30 * t36
+    t66 = c23A * t64 - s23A * t65
+    t67 = (gs - d / c_psi) * (d * t30)
+    t68 = s23A * c_psi
+    t69 = c23A * t38 + t68
+    t70 = c_psi * c_psi * wrist
+    t71 = s1 * t63 + c1 * t66 + t67 * (s1 * t31 + c1 * t69) / t70
+    t72 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
+    t73 = d * (1.0 + t29 / t24)
+    t74 = (L1 * t53 / 2.0 - t72) / t73
+    t75 = outer_15 * inner_52 - (t62 - t71 * t74) + t49
+    inner_43 = t72 / t73
+    inner_53 = t57 / t58
+    t76 = t61 - inner_43 * t71 + inner_53 * outer_15 + t49
+    t77 = s2L_half * c2L_half
+    t78 = t77 + t77
+    t79 = c2L_half * c2L_half - s2L_half * s2L_half
+    t80 = c3L_half * c3L_half - s3L_half * s3L_half
+    t81 = s3L_half * c3L_half
     t82 = t81 + t81
-    t83 = c2L_half * c2L_half - s2L_half * s2L_half
-    t84 = c3L_half * c3L_half - s3L_half * s3L_half
-    t85 = s3L_half * c3L_half
-    t86 = t85 + t85
-    c2L3L = t83 * t84 - t82 * t86
-    s2L3L = t82 * t84 + t83 * t86
-    t87 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
-    inner_44 = (L1 * t82 / 2.0 - t87) / t77
-    t88 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
-    t89 = (L1 * t83 / 2.0 + t88) / t62
-    t90 = -(t66 + t75 * inner_44 + outer_15 * t89) + t53
-    t91 = t87 / t77
-    t92 = t88 / t62
-    t93 = t32 * c_phi - t1 * t38
-    t94 = c23A * t93 - t1 * t72
-    t95 = t1 * t31 + t32 * t26
-    outer_25 = s1 * t54 - c1 * t39
-    t96 = s1 * t64 / 2.0
-    t97 = s1 * t63 / 2.0 - t96
-    outer_24 = c1 * t67 - s1 * t70 + t71 * (c1 * t31 - s1 * t73) / t74
-    t98 = inner_52 * outer_25 - (t97 + t78 * outer_24) + t53
-    t99 = t96 + inner_43 * outer_24 + inner_53 * outer_25
-    t100 = -(t97 - inner_44 * outer_24 + t89 * outer_25)
-    t101 = 0.0 + t53
-    t102 = outer_33 / 2.0
-    t103 = outer_32 / 2.0 + t102
-    t104 = c23A * c_psi
-    t105 = c23A * t69 + s23A * t68 - t71 * (t104 - s23A * t38) / t74
+    c2L3L = t79 * t80 - t78 * t82
+    s2L3L = t78 * t80 + t79 * t82
+    t83 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
+    inner_44 = (L1 * t78 / 2.0 - t83) / t73
+    t84 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
+    t85 = (L1 * t79 / 2.0 + t84) / t58
+    t86 = -(t62 + t71 * inner_44 + outer_15 * t85) + t49
+    t87 = t83 / t73
+    t88 = t84 / t58
+    t89 = t32 * c_phi - t1 * t38
+    t90 = c23A * t89 - t1 * t68
+    t91 = t1 * t31 + t32 * t26
+    outer_25 = s1 * t50 - c1 * t39
+    t92 = s1 * t60 / 2.0
+    t93 = s1 * t59 / 2.0 - t92
+    outer_24 = c1 * t63 - s1 * t66 + t67 * (c1 * t31 - s1 * t69) / t70
+    t94 = inner_52 * outer_25 - (t93 + t74 * outer_24) + t49
+    t95 = t92 + inner_43 * outer_24 + inner_53 * outer_25
+    t96 = -(t93 - inner_44 * outer_24 + t85 * outer_25)
+    t97 = 0.0 + t49
+    t98 = outer_33 / 2.0
+    t99 = outer_32 / 2.0 + t98
+    t100 = c23A * c_psi
+    t101 = c23A * t65 + s23A * t64 - t67 * (t100 - s23A * t38) / t70
     outer_35 = s23A * t37
-    t106 = t103 + t78 * t105 + inner_52 * outer_35 + t53
-    t107 = t102 - inner_43 * t105 + inner_53 * outer_35 + t53
-    t108 = t103 - inner_44 * t105 - t89 * outer_35 + t53
+    t102 = t98 - inner_43 * t101 + inner_53 * outer_35 + t49
     return (
-        -(c1 * t37 + s1 * t43) + t53,
-        t79,
-        t80,
-        t90,
-        t65 + t91 * t75 - t92 * outer_15 + t53,
-        c1 * t94 - s1 * t95 + t53,
-        c1 * t43 - s1 * t37 + t53,
-        t98,
-        t99 + t53,
-        t100 + t53,
-        t96 - t91 * outer_24 - t92 * outer_25 + t53,
-        s1 * t94 + c1 * t95 + t53,
-        t101,
-        t106,
-        t107,
-        t108,
-        t102 + t91 * t105 - t92 * outer_35 + t53,
-        t1 * t104 + s23A * t93 + t53,
-        t101,
-        -t78 + t53,
-        inner_43 + t53,
-        inner_44 + t53,
-        -t91 + t53,
-        t101,
-        t101,
-        inner_52 + t53,
-        inner_53 + t53,
-        -t89 + t53,
-        -t92 + t53,
-        t101,
-        t101,
-        t101,
-        t101,
-        t101,
-        t101,
-        1.0 + t53,
+        -(c1 * t37 + s1 * t43) + t49,
+        t75,
+        t76,
+        t86,
+        t61 + t87 * t71 - t88 * outer_15 + t49,
+        c1 * t90 - s1 * t91 + t49,
+        c1 * t43 - s1 * t37 + t49,
+        t94,
+        t95 + t49,
+        t96 + t49,
+        t92 - t87 * outer_24 - t88 * outer_25 + t49,
+        s1 * t90 + c1 * t91 + t49,
+        t97,
+        t99 + t74 * t101 + inner_52 * outer_35 + t49,
+        t102,
+        t99 - inner_44 * t101 - t85 * outer_35 + t49,
+        t98 + t87 * t101 - t88 * outer_35 + t49,
+        t1 * t100 + s23A * t89 + t49,
+        t97,
+        -t74 + t49,
+        inner_43 + t49,
+        inner_44 + t49,
+        -t87 + t49,
+        t97,
+        t97,
+        inner_52 + t49,
+        inner_53 + t49,
+        -t85 + t49,
+        -t88 + t49,
+        t97,
+        t97,
+        t97,
+        t97,
+        t97,
+        t97,
+        1.0 + t49,
     )
 
 
@@ -681,16 +667,12 @@ def _determinant(
     t36 = a3 + lp * s * c_phi + t30 / base * (t29 / rise) * t34
     t37 = t25 * (c_phi * c_phi) * (c_psi * c_psi) * (t23 * t35 + t24 * t36)
     t38 = t37 * (L1 * c2A + c23A * t36 + s23A * t35) / (t26 * 4.0)
-    t39 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t40 = t39 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t41 = t40 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t42 = t41 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t43 = t42 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t44 = t43 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t45 = t44 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t46 = t45 & np.isfinite(theta3L) & np.isfinite(theta)
-    t47 = -(_runtime.FEASIBILITY * t32)
-    failed = np.logical_not(t46) | np.logical_not((t47 <= t33) & (t47 <= t31))
+    t39 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t40 = t39 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t41 = t40 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t42 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t43 = -(_runtime.FEASIBILITY * t32)
+    failed = np.logical_not(t41 & (0.0 <= lp) & t42) | np.logical_not((t43 <= t33) & (t43 <= t31))
     return (
         -t38 + _runtime.poison(failed),
     )
@@ -766,27 +748,23 @@ def _singularities(
     t32 = a3 + lp * s * (d / rise) + t27 / base * (t25 / rise) * t31
     s23A = side23A * t21
     t33 = L2 + d / base * t31
-    t34 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t35 = t34 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t36 = t35 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t37 = t36 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t38 = t37 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t39 = t38 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t40 = t39 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t41 = t40 & np.isfinite(theta3L) & np.isfinite(theta)
-    t42 = -(_runtime.FEASIBILITY * t29)
-    failed = np.logical_not(t41) | np.logical_not((t42 <= t30) & (t42 <= t28))
-    t43 = _runtime.poison(failed)
+    t34 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t35 = t34 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t36 = t35 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t37 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t38 = -(_runtime.FEASIBILITY * t29)
+    failed = np.logical_not(t36 & (0.0 <= lp) & t37) | np.logical_not((t38 <= t30) & (t38 <= t28))
+    t39 = _runtime.poison(failed)
     s2A = side2A * t26
-    t44 = c2A * c23A + s2A * s23A
-    t45 = s2A * c23A - c2A * s23A
+    t40 = c2A * c23A + s2A * s23A
+    t41 = s2A * c23A - c2A * s23A
     return (
-        L1 * c2A + c23A * t32 + s23A * t33 + t43,
-        t44 * t33 + t45 * t32 + t43,
-        L2 * t44 + a3 * t45 + t43,
-        t3 * side2A + t43,
-        t13 * side23A + t43,
-        wrist + t43,
+        L1 * c2A + c23A * t32 + s23A * t33 + t39,
+        t40 * t33 + t41 * t32 + t39,
+        L2 * t40 + a3 * t41 + t39,
+        t3 * side2A + t39,
+        t13 * side23A + t39,
+        wrist + t39,
     )
 
 
@@ -834,386 +812,382 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t13 = np.sqrt(above)
     t14 = 2.0 * np.arctan2(t11, t13)
     t15 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t14))
-    t16 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t17 = t16 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t18 = t17 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t19 = t18 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t20 = t19 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t21 = t20 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t22 = t21 & np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t23 = t22 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    invalid = np.logical_not(t23)
-    t24 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t5)
-    t26 = -(_runtime.FEASIBILITY * t1)
-    t27 = t25 & (t24 <= t4) & (t26 <= t10) & (t26 <= t12)
+    t16 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    invalid = np.logical_not(t18 & (0.0 <= loff) & (0.0 <= lp) & t19)
+    t20 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t21 = (-_runtime.FEASIBILITY <= c_phi) & (t20 <= t5)
+    t22 = -(_runtime.FEASIBILITY * t1)
+    t23 = t21 & (t20 <= t4) & (t22 <= t10) & (t22 <= t12)
     L_2W = L2 + c_psi * t7
     a_3W = a3 + c_phi * t3 + s_phi * t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t28 = L1 + fore
-    t29 = -(_runtime.FEASIBILITY * t28)
-    t30 = z - d1
-    t31 = t30 * t30
+    t24 = L1 + fore
+    t25 = -(_runtime.FEASIBILITY * t24)
+    t26 = z - d1
+    t27 = t26 * t26
     total = below + above
-    t32 = (below - above) / total
-    t33 = y * t32
+    t28 = (below - above) / total
+    t29 = y * t28
     s_turn = 2.0 * t11 * t13 / total
-    t34 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -((t33 - t34) / h))
-    t35 = x * t32
-    t36 = y * s_turn
-    s1 = _runtime.select(nowhere, 0.0, (t35 + t36) / h)
+    t30 = x * s_turn
+    c1 = _runtime.select(nowhere, 1.0, -((t29 - t30) / h))
+    t31 = x * t28
+    t32 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, (t31 + t32) / h)
     outward = x * c1 + y * s1
-    reach = np.sqrt(t31 + outward * outward)
-    t37 = t28 - reach
-    t38 = L1 - fore
-    t39 = reach + t38
-    t40 = reach - t38
-    t41 = t27 & (t29 <= t37) & (t29 <= t39) & (t29 <= t40)
-    t42 = _runtime.VANISHING * t28
-    folded = reach <= t42
-    s_sight = _runtime.select(folded, 0.0, t30 / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t28 * t28)
-    t43 = folded | short
-    A = np.maximum(t37, 0.0)
-    C = np.maximum(t40, 0.0)
-    t44 = A * C
-    S = t28 + reach
-    B = np.maximum(t39, 0.0)
-    t45 = S * B
-    at_base = t44 + t45
-    c_base = _runtime.select(t43, 1.0, -((t44 - t45) / at_base))
-    t46 = s_sight * c_base
+    reach = np.sqrt(t27 + outward * outward)
+    t33 = t24 - reach
+    t34 = L1 - fore
+    t35 = reach + t34
+    t36 = reach - t34
+    t37 = t23 & (t25 <= t33) & (t25 <= t35) & (t25 <= t36)
+    t38 = _runtime.VANISHING * t24
+    folded = reach <= t38
+    s_sight = _runtime.select(folded, 0.0, t26 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t24 * t24)
+    t39 = folded | short
+    A = np.maximum(t33, 0.0)
+    C = np.maximum(t36, 0.0)
+    t40 = A * C
+    S = t24 + reach
+    B = np.maximum(t35, 0.0)
+    t41 = S * B
+    at_base = t40 + t41
+    c_base = _runtime.select(t39, 1.0, -((t40 - t41) / at_base))
+    t42 = s_sight * c_base
     c_sight = _runtime.select(folded, 1.0, outward / reach)
     rB = np.sqrt(B)
     rC = np.sqrt(C)
-    t47 = rB * rC
+    t43 = rB * rC
     rS = np.sqrt(S)
     rA = np.sqrt(A)
-    t48 = rS * rA
-    area_front_elbow_down = 2.0 * t47 * t48
-    s_base_front_elbow_down = _runtime.select(t43, 0.0, area_front_elbow_down / at_base)
-    t49 = c_sight * s_base_front_elbow_down
-    stheta2A = t46 + t49
-    t50 = L1 * stheta2A
-    t51 = c_sight * c_base
-    t52 = s_sight * s_base_front_elbow_down
-    ctheta2A = t51 - t52
+    t44 = rS * rA
+    area_front_elbow_down = 2.0 * t43 * t44
+    s_base_front_elbow_down = _runtime.select(t39, 0.0, area_front_elbow_down / at_base)
+    t45 = c_sight * s_base_front_elbow_down
+    stheta2A = t42 + t45
+    t46 = L1 * stheta2A
+    t47 = c_sight * c_base
+    t48 = s_sight * s_base_front_elbow_down
+    ctheta2A = t47 - t48
     u2 = L1 * ctheta2A
-    size_u = np.sqrt(t50 * t50 + u2 * u2)
-    t53 = -(_runtime.FEASIBILITY * (d * size_u))
-    bare = fore <= t42
+    size_u = np.sqrt(t46 * t46 + u2 * u2)
+    t49 = -(_runtime.FEASIBILITY * (d * size_u))
+    bare = fore <= t38
     c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    t54 = A * S
-    t55 = C * B
-    at_elbow = t54 + t55
-    c_bend = _runtime.select(short, 1.0, -((t54 - t55) / at_elbow))
-    t56 = c_lag * c_bend
+    t50 = A * S
+    t51 = C * B
+    at_elbow = t50 + t51
+    c_bend = _runtime.select(short, 1.0, -((t50 - t51) / at_elbow))
+    t52 = c_lag * c_bend
     s_lag = _runtime.select(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down = _runtime.select(short, 0.0, area_front_elbow_down / at_elbow)
-    t57 = s_lag * s_bend_front_elbow_down
-    c_relative = t56 + t57
-    t58 = s_lag * c_bend
-    t59 = c_lag * s_bend_front_elbow_down
-    s_relative = t58 - t59
+    t53 = s_lag * s_bend_front_elbow_down
+    c_relative = t52 + t53
+    t54 = s_lag * c_bend
+    t55 = c_lag * s_bend_front_elbow_down
+    s_relative = t54 - t55
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     v2 = L2 * stheta23A + a3 * ctheta23A
     v1 = L2 * ctheta23A - a3 * stheta23A
-    t60 = t50 * v2 + u2 * v1
-    sigma_uv = _runtime.select(0.0 <= -t60, 1.0, -1.0)
+    t56 = t46 * v2 + u2 * v1
+    sigma_uv = _runtime.select(0.0 <= -t56, 1.0, -1.0)
     ahead = d * s_psi / c_psi
     higher = d * s_phi / c_phi
-    t61 = sigma_uv * (ahead * u2 + higher * t50)
-    t62 = t60 * sigma_uv
-    t63 = t61 - t62
-    t64 = -(t62 + t61)
-    t65 = -(d * _runtime.FEASIBILITY)
-    t66 = _runtime.VANISHING * (64.0 * size_u * np.sqrt(v1 * v1 + v2 * v2))
-    parallel = -t62 <= t66
-    t67 = d * 16.0
-    t68 = _runtime.VANISHING * (_runtime.VANISHING * (t67 * size_u))
-    below_beta = np.maximum(t63, t68)
-    above_beta = np.maximum(t64, t68)
+    t57 = sigma_uv * (ahead * u2 + higher * t46)
+    t58 = t56 * sigma_uv
+    t59 = t57 - t58
+    t60 = -(t58 + t57)
+    t61 = -(d * _runtime.FEASIBILITY)
+    t62 = _runtime.VANISHING * (64.0 * size_u * np.sqrt(v1 * v1 + v2 * v2))
+    parallel = -t58 <= t62
+    t63 = d * 16.0
+    t64 = _runtime.VANISHING * (_runtime.VANISHING * (t63 * size_u))
+    below_beta = np.maximum(t59, t64)
+    above_beta = np.maximum(t60, t64)
     total_beta = below_beta + above_beta
-    t69 = _runtime.select(parallel, 0.0, (below_beta - above_beta) / total_beta)
-    t70 = t50 * (ahead + v1 * t69) - u2 * (higher + v2 * t69)
-    t71 = t70 / size_u
-    t72 = size_u + t71
-    t73 = t41 & (t53 <= t63) & (t53 <= t64) & (t65 <= t72)
-    t74 = size_u - t71
-    unreachable = np.logical_not(t73 & (t65 <= t74))
-    t75 = _runtime.poison(invalid | unreachable)
-    t76 = _runtime.select(folded, 0.0, np.arctan2(t30, outward))
-    t77 = _runtime.select(t43, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
-    t78 = t76 + t77
-    t79 = _runtime.VANISHING * (_runtime.VANISHING * t67)
-    below_alpha = np.maximum(t72, t79)
-    above_alpha = np.maximum(t74, t79)
+    t65 = _runtime.select(parallel, 0.0, (below_beta - above_beta) / total_beta)
+    t66 = t46 * (ahead + v1 * t65) - u2 * (higher + v2 * t65)
+    t67 = t66 / size_u
+    t68 = size_u + t67
+    t69 = t37 & (t49 <= t59) & (t49 <= t60) & (t61 <= t68)
+    t70 = size_u - t67
+    unreachable = np.logical_not(t69 & (t61 <= t70))
+    t71 = _runtime.poison(invalid | unreachable)
+    t72 = _runtime.select(folded, 0.0, np.arctan2(t26, outward))
+    t73 = _runtime.select(t39, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
+    t74 = t72 + t73
+    t75 = _runtime.VANISHING * (_runtime.VANISHING * t63)
+    below_alpha = np.maximum(t68, t75)
+    above_alpha = np.maximum(t70, t75)
     total_alpha = below_alpha + above_alpha
-    t80 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t81 = np.arctan2((below_alpha - above_alpha) / total_alpha, t80 / total_alpha)
-    t82 = _runtime.wrap_cut(_runtime.wrap(t78 - t81)) + t75
-    t83 = np.arctan2(s_lag, c_lag)
-    t84 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t48, t47))
-    t85 = t83 - t84
-    t86 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    c_beta = _runtime.select(parallel, 1.0, t86 / total_beta)
-    t87 = t81 - np.arctan2(t69, c_beta)
-    t88 = _runtime.wrap_up(_runtime.wrap(t85 + t87)) + t75
-    t89 = _runtime.wrap_cut(_runtime.wrap(t78 + t81)) + t75
-    t90 = _runtime.wrap_up(_runtime.wrap(t85 - t87)) + t75
-    t91 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    stheta2A_front_elbow_down = t46 - t49
-    t92 = L1 * stheta2A_front_elbow_down
-    ctheta2A_front_elbow_down = t51 + t52
+    t76 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t77 = np.arctan2((below_alpha - above_alpha) / total_alpha, t76 / total_alpha)
+    t78 = _runtime.wrap_cut(_runtime.wrap(t74 - t77)) + t71
+    t79 = np.arctan2(s_lag, c_lag)
+    t80 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t44, t43))
+    t81 = t79 - t80
+    t82 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    c_beta = _runtime.select(parallel, 1.0, t82 / total_beta)
+    t83 = t77 - np.arctan2(t65, c_beta)
+    t84 = _runtime.wrap_up(_runtime.wrap(t81 + t83)) + t71
+    t85 = _runtime.wrap_cut(_runtime.wrap(t74 + t77)) + t71
+    t86 = _runtime.wrap_up(_runtime.wrap(t81 - t83)) + t71
+    t87 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    stheta2A_front_elbow_down = t42 - t45
+    t88 = L1 * stheta2A_front_elbow_down
+    ctheta2A_front_elbow_down = t47 + t48
     u2_front_elbow_down = L1 * ctheta2A_front_elbow_down
-    t93 = t92 * t92 + u2_front_elbow_down * u2_front_elbow_down
-    size_u_front_elbow_down = np.sqrt(t93)
-    t94 = _runtime.FEASIBILITY * (d * size_u_front_elbow_down)
-    c_relative_front_elbow_down = t56 - t57
-    t95 = stheta2A_front_elbow_down * c_relative_front_elbow_down
-    s_relative_front_elbow_down = t58 + t59
-    t96 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
-    stheta23A_front_elbow_down = t95 + t96
-    t97 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
-    t98 = stheta2A_front_elbow_down * s_relative_front_elbow_down
-    ctheta23A_front_elbow_down = t97 - t98
+    t89 = t88 * t88 + u2_front_elbow_down * u2_front_elbow_down
+    size_u_front_elbow_down = np.sqrt(t89)
+    t90 = _runtime.FEASIBILITY * (d * size_u_front_elbow_down)
+    c_relative_front_elbow_down = t52 - t53
+    t91 = stheta2A_front_elbow_down * c_relative_front_elbow_down
+    s_relative_front_elbow_down = t54 + t55
+    t92 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
+    stheta23A_front_elbow_down = t91 + t92
+    t93 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
+    t94 = stheta2A_front_elbow_down * s_relative_front_elbow_down
+    ctheta23A_front_elbow_down = t93 - t94
     v2_front_elbow_down = L2 * stheta23A_front_elbow_down + a3 * ctheta23A_front_elbow_down
     v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down
-    t99 = t92 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
-    sigma_uv_front_elbow_down = _runtime.select(0.0 <= -t99, 1.0, -1.0)
-    t100 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t92)
-    t101 = t99 * sigma_uv_front_elbow_down
-    t102 = t100 - t101
-    t103 = -(t101 + t100)
-    t104 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
-    t105 = 64.0 * size_u_front_elbow_down * np.sqrt(t104)
-    parallel_front_elbow_down = -t101 <= _runtime.VANISHING * t105
-    t106 = _runtime.VANISHING * (t67 * size_u_front_elbow_down)
-    t107 = _runtime.VANISHING * t106
-    below_beta_front_elbow_down = np.maximum(t102, t107)
-    above_beta_front_elbow_down = np.maximum(t103, t107)
-    t108 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t95 = t88 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
+    sigma_uv_front_elbow_down = _runtime.select(0.0 <= -t95, 1.0, -1.0)
+    t96 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t88)
+    t97 = t95 * sigma_uv_front_elbow_down
+    t98 = t96 - t97
+    t99 = -(t97 + t96)
+    t100 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
+    t101 = 64.0 * size_u_front_elbow_down * np.sqrt(t100)
+    parallel_front_elbow_down = -t97 <= _runtime.VANISHING * t101
+    t102 = _runtime.VANISHING * (t63 * size_u_front_elbow_down)
+    t103 = _runtime.VANISHING * t102
+    below_beta_front_elbow_down = np.maximum(t98, t103)
+    above_beta_front_elbow_down = np.maximum(t99, t103)
+    t104 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t109 = _runtime.select(parallel_front_elbow_down, 0.0, t108 / total_beta_front_elbow_down)
-    t110 = u2_front_elbow_down * (higher + v2_front_elbow_down * t109)
-    t111 = t92 * (ahead + v1_front_elbow_down * t109) - t110
-    t112 = t111 / size_u_front_elbow_down
-    t113 = size_u_front_elbow_down + t112
-    t114 = t41 & (-t94 <= t102) & (-t94 <= t103) & (t65 <= t113)
-    t115 = size_u_front_elbow_down - t112
-    unreachable_2 = np.logical_not(t114 & (t65 <= t115))
-    t116 = _runtime.poison(invalid | unreachable_2)
-    t117 = t76 - t77
-    below_alpha_front_elbow_down = np.maximum(t113, t79)
-    above_alpha_front_elbow_down = np.maximum(t115, t79)
-    t118 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t105 = _runtime.select(parallel_front_elbow_down, 0.0, t104 / total_beta_front_elbow_down)
+    t106 = u2_front_elbow_down * (higher + v2_front_elbow_down * t105)
+    t107 = t88 * (ahead + v1_front_elbow_down * t105) - t106
+    t108 = t107 / size_u_front_elbow_down
+    t109 = size_u_front_elbow_down + t108
+    t110 = t37 & (-t90 <= t98) & (-t90 <= t99) & (t61 <= t109)
+    t111 = size_u_front_elbow_down - t108
+    unreachable_2 = np.logical_not(t110 & (t61 <= t111))
+    t112 = _runtime.poison(invalid | unreachable_2)
+    t113 = t72 - t73
+    below_alpha_front_elbow_down = np.maximum(t109, t75)
+    above_alpha_front_elbow_down = np.maximum(t111, t75)
+    t114 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t119 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
-    t120 = np.arctan2(t118 / total_alpha_front_elbow_down, t119 / total_alpha_front_elbow_down)
-    t121 = _runtime.wrap_cut(_runtime.wrap(t117 - t120))
-    t122 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    c_beta_front_elbow_down = _runtime.select(parallel_front_elbow_down, 1.0, t122 / total_beta_front_elbow_down)
-    t123 = t120 - np.arctan2(t109, c_beta_front_elbow_down)
-    t124 = t83 + t84
-    t125 = _runtime.wrap(_runtime.wrap(t123 + t124)) + t116
-    t126 = _runtime.wrap_cut(_runtime.wrap(t117 + t120))
-    t127 = _runtime.wrap(_runtime.wrap(t124 - t123)) + t116
-    t128 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
-    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t33 + t34) / h))
-    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t35 - t36) / h)
+    t115 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t116 = np.arctan2(t114 / total_alpha_front_elbow_down, t115 / total_alpha_front_elbow_down)
+    t117 = _runtime.wrap_cut(_runtime.wrap(t113 - t116))
+    t118 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    c_beta_front_elbow_down = _runtime.select(parallel_front_elbow_down, 1.0, t118 / total_beta_front_elbow_down)
+    t119 = t116 - np.arctan2(t105, c_beta_front_elbow_down)
+    t120 = t79 + t80
+    t121 = _runtime.wrap(_runtime.wrap(t119 + t120)) + t112
+    t122 = _runtime.wrap_cut(_runtime.wrap(t113 + t116))
+    t123 = _runtime.wrap(_runtime.wrap(t120 - t119)) + t112
+    t124 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
+    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t29 + t30) / h))
+    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t31 - t32) / h)
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
-    t129 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t31 + t129)
-    t130 = t28 - reach_rear_elbow_up
-    t131 = reach_rear_elbow_up + t38
-    t132 = reach_rear_elbow_up - t38
-    t133 = t27 & (t29 <= t130) & (t29 <= t131) & (t29 <= t132)
-    folded_rear_elbow_up = reach_rear_elbow_up <= t42
-    s_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 0.0, t30 / reach_rear_elbow_up)
-    t134 = folded_rear_elbow_up | short
-    A_rear_elbow_up = np.maximum(t130, 0.0)
-    C_rear_elbow_up = np.maximum(t132, 0.0)
-    t135 = A_rear_elbow_up * C_rear_elbow_up
-    S_rear_elbow_up = t28 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t131, 0.0)
-    t136 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t135 + t136
-    c_base_rear_elbow_up = _runtime.select(t134, 1.0, -((t135 - t136) / at_base_rear_elbow_up))
-    t137 = s_sight_rear_elbow_up * c_base_rear_elbow_up
+    t125 = outward_rear_elbow_up * outward_rear_elbow_up
+    reach_rear_elbow_up = np.sqrt(t27 + t125)
+    t126 = t24 - reach_rear_elbow_up
+    t127 = reach_rear_elbow_up + t34
+    t128 = reach_rear_elbow_up - t34
+    t129 = t23 & (t25 <= t126) & (t25 <= t127) & (t25 <= t128)
+    folded_rear_elbow_up = reach_rear_elbow_up <= t38
+    s_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 0.0, t26 / reach_rear_elbow_up)
+    t130 = folded_rear_elbow_up | short
+    A_rear_elbow_up = np.maximum(t126, 0.0)
+    C_rear_elbow_up = np.maximum(t128, 0.0)
+    t131 = A_rear_elbow_up * C_rear_elbow_up
+    S_rear_elbow_up = t24 + reach_rear_elbow_up
+    B_rear_elbow_up = np.maximum(t127, 0.0)
+    t132 = S_rear_elbow_up * B_rear_elbow_up
+    at_base_rear_elbow_up = t131 + t132
+    c_base_rear_elbow_up = _runtime.select(t130, 1.0, -((t131 - t132) / at_base_rear_elbow_up))
+    t133 = s_sight_rear_elbow_up * c_base_rear_elbow_up
     c_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
     rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
     rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t138 = rB_rear_elbow_up * rC_rear_elbow_up
+    t134 = rB_rear_elbow_up * rC_rear_elbow_up
     rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
     rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t139 = rS_rear_elbow_up * rA_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t138 * t139
-    s_base_rear_elbow_up = _runtime.select(t134, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t140 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t137 - t140
-    t141 = L1 * stheta2A_rear_elbow_up
-    t142 = c_sight_rear_elbow_up * c_base_rear_elbow_up
-    t143 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t142 + t143
+    t135 = rS_rear_elbow_up * rA_rear_elbow_up
+    area_rear_elbow_up = 2.0 * t134 * t135
+    s_base_rear_elbow_up = _runtime.select(t130, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
+    t136 = c_sight_rear_elbow_up * s_base_rear_elbow_up
+    stheta2A_rear_elbow_up = t133 - t136
+    t137 = L1 * stheta2A_rear_elbow_up
+    t138 = c_sight_rear_elbow_up * c_base_rear_elbow_up
+    t139 = s_sight_rear_elbow_up * s_base_rear_elbow_up
+    ctheta2A_rear_elbow_up = t138 + t139
     u2_rear_elbow_up = L1 * ctheta2A_rear_elbow_up
-    t144 = t141 * t141 + u2_rear_elbow_up * u2_rear_elbow_up
-    size_u_rear_elbow_up = np.sqrt(t144)
-    t145 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_up)
-    t146 = A_rear_elbow_up * S_rear_elbow_up
-    t147 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t146 + t147
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t146 - t147) / at_elbow_rear_elbow_up))
-    t148 = c_lag * c_bend_rear_elbow_up
+    t140 = t137 * t137 + u2_rear_elbow_up * u2_rear_elbow_up
+    size_u_rear_elbow_up = np.sqrt(t140)
+    t141 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_up)
+    t142 = A_rear_elbow_up * S_rear_elbow_up
+    t143 = C_rear_elbow_up * B_rear_elbow_up
+    at_elbow_rear_elbow_up = t142 + t143
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t142 - t143) / at_elbow_rear_elbow_up))
+    t144 = c_lag * c_bend_rear_elbow_up
     s_bend_rear_elbow_up = _runtime.select(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t149 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t148 - t149
-    t150 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t151 = s_lag * c_bend_rear_elbow_up
-    t152 = c_lag * s_bend_rear_elbow_up
-    s_relative_rear_elbow_up = t151 + t152
-    t153 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    stheta23A_rear_elbow_up = t150 + t153
-    t154 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t155 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    ctheta23A_rear_elbow_up = t154 - t155
+    t145 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t144 - t145
+    t146 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t147 = s_lag * c_bend_rear_elbow_up
+    t148 = c_lag * s_bend_rear_elbow_up
+    s_relative_rear_elbow_up = t147 + t148
+    t149 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    stheta23A_rear_elbow_up = t146 + t149
+    t150 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t151 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    ctheta23A_rear_elbow_up = t150 - t151
     v2_rear_elbow_up = L2 * stheta23A_rear_elbow_up + a3 * ctheta23A_rear_elbow_up
     v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up
-    t156 = t141 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
-    sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -t156, 1.0, -1.0)
-    t157 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t141)
-    t158 = t156 * sigma_uv_rear_elbow_up
-    t159 = t157 - t158
-    t160 = -(t158 + t157)
-    t161 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
-    t162 = _runtime.VANISHING * (64.0 * size_u_rear_elbow_up * np.sqrt(t161))
-    parallel_rear_elbow_up = -t158 <= t162
-    t163 = _runtime.VANISHING * (t67 * size_u_rear_elbow_up)
-    t164 = _runtime.VANISHING * t163
-    below_beta_rear_elbow_up = np.maximum(t159, t164)
-    above_beta_rear_elbow_up = np.maximum(t160, t164)
-    t165 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t152 = t137 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
+    sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -t152, 1.0, -1.0)
+    t153 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t137)
+    t154 = t152 * sigma_uv_rear_elbow_up
+    t155 = t153 - t154
+    t156 = -(t154 + t153)
+    t157 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
+    t158 = _runtime.VANISHING * (64.0 * size_u_rear_elbow_up * np.sqrt(t157))
+    parallel_rear_elbow_up = -t154 <= t158
+    t159 = _runtime.VANISHING * (t63 * size_u_rear_elbow_up)
+    t160 = _runtime.VANISHING * t159
+    below_beta_rear_elbow_up = np.maximum(t155, t160)
+    above_beta_rear_elbow_up = np.maximum(t156, t160)
+    t161 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t166 = _runtime.select(parallel_rear_elbow_up, 0.0, t165 / total_beta_rear_elbow_up)
-    t167 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t166)
-    t168 = t141 * (ahead + v1_rear_elbow_up * t166) - t167
-    t169 = t168 / size_u_rear_elbow_up
-    t170 = size_u_rear_elbow_up + t169
-    t171 = t133 & (-t145 <= t159) & (-t145 <= t160) & (t65 <= t170)
-    t172 = size_u_rear_elbow_up - t169
-    unreachable_3 = np.logical_not(t171 & (t65 <= t172))
-    t173 = _runtime.poison(invalid | unreachable_3)
-    t174 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t30, outward_rear_elbow_up))
-    t175 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
-    t176 = _runtime.select(t134, 0.0, 2.0 * t175)
-    t177 = t174 - t176
-    below_alpha_rear_elbow_up = np.maximum(t170, t79)
-    above_alpha_rear_elbow_up = np.maximum(t172, t79)
-    t178 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t162 = _runtime.select(parallel_rear_elbow_up, 0.0, t161 / total_beta_rear_elbow_up)
+    t163 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t162)
+    t164 = t137 * (ahead + v1_rear_elbow_up * t162) - t163
+    t165 = t164 / size_u_rear_elbow_up
+    t166 = size_u_rear_elbow_up + t165
+    t167 = t129 & (-t141 <= t155) & (-t141 <= t156) & (t61 <= t166)
+    t168 = size_u_rear_elbow_up - t165
+    unreachable_3 = np.logical_not(t167 & (t61 <= t168))
+    t169 = _runtime.poison(invalid | unreachable_3)
+    t170 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t26, outward_rear_elbow_up))
+    t171 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
+    t172 = _runtime.select(t130, 0.0, 2.0 * t171)
+    t173 = t170 - t172
+    below_alpha_rear_elbow_up = np.maximum(t166, t75)
+    above_alpha_rear_elbow_up = np.maximum(t168, t75)
+    t174 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t179 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    t180 = np.arctan2(t178 / total_alpha_rear_elbow_up, t179 / total_alpha_rear_elbow_up)
-    t181 = _runtime.wrap_cut(_runtime.wrap(t177 - t180))
-    t182 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    c_beta_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, 1.0, t182 / total_beta_rear_elbow_up)
-    t183 = t180 - np.arctan2(t166, c_beta_rear_elbow_up)
-    t184 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t139, t138))
-    t185 = t83 + t184
-    t186 = _runtime.wrap(_runtime.wrap(t183 + t185)) + t173
-    t187 = _runtime.wrap_cut(_runtime.wrap(t177 + t180))
-    t188 = _runtime.wrap(_runtime.wrap(t185 - t183)) + t173
-    stheta2A_rear_elbow_down = t137 + t140
-    t189 = L1 * stheta2A_rear_elbow_down
-    ctheta2A_rear_elbow_down = t142 - t143
+    t175 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t176 = np.arctan2(t174 / total_alpha_rear_elbow_up, t175 / total_alpha_rear_elbow_up)
+    t177 = _runtime.wrap_cut(_runtime.wrap(t173 - t176))
+    t178 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    c_beta_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, 1.0, t178 / total_beta_rear_elbow_up)
+    t179 = t176 - np.arctan2(t162, c_beta_rear_elbow_up)
+    t180 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t135, t134))
+    t181 = t79 + t180
+    t182 = _runtime.wrap(_runtime.wrap(t179 + t181)) + t169
+    t183 = _runtime.wrap_cut(_runtime.wrap(t173 + t176))
+    t184 = _runtime.wrap(_runtime.wrap(t181 - t179)) + t169
+    stheta2A_rear_elbow_down = t133 + t136
+    t185 = L1 * stheta2A_rear_elbow_down
+    ctheta2A_rear_elbow_down = t138 - t139
     u2_rear_elbow_down = L1 * ctheta2A_rear_elbow_down
-    t190 = t189 * t189 + u2_rear_elbow_down * u2_rear_elbow_down
-    size_u_rear_elbow_down = np.sqrt(t190)
-    t191 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_down)
-    c_relative_rear_elbow_down = t148 + t149
-    t192 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    s_relative_rear_elbow_down = t151 - t152
-    t193 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    stheta23A_rear_elbow_down = t192 + t193
-    t194 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    t195 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    ctheta23A_rear_elbow_down = t194 - t195
+    t186 = t185 * t185 + u2_rear_elbow_down * u2_rear_elbow_down
+    size_u_rear_elbow_down = np.sqrt(t186)
+    t187 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_down)
+    c_relative_rear_elbow_down = t144 + t145
+    t188 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    s_relative_rear_elbow_down = t147 - t148
+    t189 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    stheta23A_rear_elbow_down = t188 + t189
+    t190 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    t191 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    ctheta23A_rear_elbow_down = t190 - t191
     v2_rear_elbow_down = L2 * stheta23A_rear_elbow_down + a3 * ctheta23A_rear_elbow_down
     v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down
-    t196 = t189 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
-    sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -t196, 1.0, -1.0)
-    t197 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t189)
-    t198 = t196 * sigma_uv_rear_elbow_down
-    t199 = t197 - t198
-    t200 = -(t198 + t197)
-    t201 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
-    t202 = 64.0 * size_u_rear_elbow_down * np.sqrt(t201)
-    parallel_rear_elbow_down = -t198 <= _runtime.VANISHING * t202
-    t203 = _runtime.VANISHING * (t67 * size_u_rear_elbow_down)
-    t204 = _runtime.VANISHING * t203
-    below_beta_rear_elbow_down = np.maximum(t199, t204)
-    above_beta_rear_elbow_down = np.maximum(t200, t204)
-    t205 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t192 = t185 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
+    sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -t192, 1.0, -1.0)
+    t193 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t185)
+    t194 = t192 * sigma_uv_rear_elbow_down
+    t195 = t193 - t194
+    t196 = -(t194 + t193)
+    t197 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
+    t198 = 64.0 * size_u_rear_elbow_down * np.sqrt(t197)
+    parallel_rear_elbow_down = -t194 <= _runtime.VANISHING * t198
+    t199 = _runtime.VANISHING * (t63 * size_u_rear_elbow_down)
+    t200 = _runtime.VANISHING * t199
+    below_beta_rear_elbow_down = np.maximum(t195, t200)
+    above_beta_rear_elbow_down = np.maximum(t196, t200)
+    t201 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t206 = _runtime.select(parallel_rear_elbow_down, 0.0, t205 / total_beta_rear_elbow_down)
-    t207 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t206)
-    t208 = t189 * (ahead + v1_rear_elbow_down * t206) - t207
-    t209 = t208 / size_u_rear_elbow_down
-    t210 = size_u_rear_elbow_down + t209
-    t211 = t133 & (-t191 <= t199) & (-t191 <= t200) & (t65 <= t210)
-    t212 = size_u_rear_elbow_down - t209
-    unreachable_4 = np.logical_not(t211 & (t65 <= t212))
-    t213 = _runtime.poison(invalid | unreachable_4)
-    t214 = t174 + t176
-    below_alpha_rear_elbow_down = np.maximum(t210, t79)
-    above_alpha_rear_elbow_down = np.maximum(t212, t79)
-    t215 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t202 = _runtime.select(parallel_rear_elbow_down, 0.0, t201 / total_beta_rear_elbow_down)
+    t203 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t202)
+    t204 = t185 * (ahead + v1_rear_elbow_down * t202) - t203
+    t205 = t204 / size_u_rear_elbow_down
+    t206 = size_u_rear_elbow_down + t205
+    t207 = t129 & (-t187 <= t195) & (-t187 <= t196) & (t61 <= t206)
+    t208 = size_u_rear_elbow_down - t205
+    unreachable_4 = np.logical_not(t207 & (t61 <= t208))
+    t209 = _runtime.poison(invalid | unreachable_4)
+    t210 = t170 + t172
+    below_alpha_rear_elbow_down = np.maximum(t206, t75)
+    above_alpha_rear_elbow_down = np.maximum(t208, t75)
+    t211 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t216 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    t217 = np.arctan2(t215 / total_alpha_rear_elbow_down, t216 / total_alpha_rear_elbow_down)
-    t218 = _runtime.wrap_cut(_runtime.wrap(t214 - t217))
-    t219 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    c_beta_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, 1.0, t219 / total_beta_rear_elbow_down)
-    t220 = t217 - np.arctan2(t206, c_beta_rear_elbow_down)
-    t221 = t83 - t184
-    t222 = _runtime.wrap_up(_runtime.wrap(t220 + t221)) + t213
-    t223 = _runtime.wrap_cut(_runtime.wrap(t214 + t217))
-    t224 = _runtime.wrap_up(_runtime.wrap(t221 - t220)) + t213
-    t225 = nowhere | folded | short
-    t226 = _runtime.status(invalid, unreachable, t225 | parallel)
-    t227 = _runtime.status(invalid, unreachable_2, t225 | parallel_front_elbow_down)
-    t228 = nowhere | folded_rear_elbow_up | short
-    t229 = _runtime.status(invalid, unreachable_3, t228 | parallel_rear_elbow_up)
-    t230 = _runtime.status(invalid, unreachable_4, t228 | parallel_rear_elbow_down)
+    t212 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t213 = np.arctan2(t211 / total_alpha_rear_elbow_down, t212 / total_alpha_rear_elbow_down)
+    t214 = _runtime.wrap_cut(_runtime.wrap(t210 - t213))
+    t215 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    c_beta_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, 1.0, t215 / total_beta_rear_elbow_down)
+    t216 = t213 - np.arctan2(t202, c_beta_rear_elbow_down)
+    t217 = t79 - t180
+    t218 = _runtime.wrap_up(_runtime.wrap(t216 + t217)) + t209
+    t219 = _runtime.wrap_cut(_runtime.wrap(t210 + t213))
+    t220 = _runtime.wrap_up(_runtime.wrap(t217 - t216)) + t209
+    t221 = nowhere | folded | short
+    t222 = _runtime.status(invalid, unreachable, t221 | parallel)
+    t223 = _runtime.status(invalid, unreachable_2, t221 | parallel_front_elbow_down)
+    t224 = nowhere | folded_rear_elbow_up | short
+    t225 = _runtime.status(invalid, unreachable_3, t224 | parallel_rear_elbow_up)
+    t226 = _runtime.status(invalid, unreachable_4, t224 | parallel_rear_elbow_down)
     return (
-        t15 + t75,
-        t82,
-        t88,
-        t89,
-        t90,
-        t91 + t75,
-        t15 + t116,
-        t121 + t116,
-        t125,
-        t126 + t116,
-        t127,
-        t91 + t116,
-        t128 + t173,
-        t181 + t173,
-        t186,
-        t187 + t173,
-        t188,
-        t91 + t173,
-        t128 + t213,
-        t218 + t213,
+        t15 + t71,
+        t78,
+        t84,
+        t85,
+        t86,
+        t87 + t71,
+        t15 + t112,
+        t117 + t112,
+        t121,
+        t122 + t112,
+        t123,
+        t87 + t112,
+        t124 + t169,
+        t177 + t169,
+        t182,
+        t183 + t169,
+        t184,
+        t87 + t169,
+        t124 + t209,
+        t214 + t209,
+        t218,
+        t219 + t209,
+        t220,
+        t87 + t209,
         t222,
-        t223 + t213,
-        t224,
-        t91 + t213,
+        t223,
+        t225,
         t226,
-        t227,
-        t229,
-        t230,
     )
 
 
@@ -1245,14 +1219,13 @@ def _wrist_length(psi, phi, d, gs, al):
     t1 = d - c_psi * (gs - al)
     t2 = (gs + al) * c_psi - d
     t3 = np.sqrt(np.maximum(t1, 0.0)) * np.sqrt(np.maximum(t2, 0.0))
-    t4 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t5 = t4 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    invalid = np.logical_not(t5 & np.isfinite(psi) & np.isfinite(phi))
+    t4 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
+    t5 = t4 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
     t6 = -(_runtime.FEASIBILITY * (d / 2.0))
     t7 = (-_runtime.FEASIBILITY <= c_phi) & (t6 <= t2)
-    t8 = _runtime.poison(invalid | np.logical_not(t7 & (t6 <= t1)))
+    failed = np.logical_not(t5) | np.logical_not(t7 & (t6 <= t1))
     return (
-        t3 / c_psi + t8,
+        t3 / c_psi + _runtime.poison(failed),
     )
 
 
@@ -1314,13 +1287,12 @@ def _largest_yaw(phi, beta_min, d, gs, al):
     span = gs + al * c_beta_min
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
-    t3 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t4 = t3 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t5 = t4 & np.isfinite(phi) & np.isfinite(beta_min)
+    t3 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
+    t4 = t3 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(phi) & np.isfinite(beta_min))
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    t6 = _runtime.poison(np.logical_not(t5) | unreachable)
+    t5 = _runtime.poison(np.logical_not(t4) | unreachable)
     return (
-        _runtime.wrap_down(2.0 * t2) + t6,
+        _runtime.wrap_down(2.0 * t2) + t5,
     )
 
 
@@ -1350,13 +1322,12 @@ def _largest_angle(beta_min, d, gs, al):
     span = gs + al * c_beta_min
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
-    t3 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t4 = t3 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t3 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
+    t4 = t3 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & np.isfinite(beta_min)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    failed = np.logical_not(t4 & np.isfinite(beta_min)) | unreachable
-    t5 = _runtime.wrap_down(2.0 * t2) + _runtime.poison(failed)
+    t5 = _runtime.poison(np.logical_not(t4) | unreachable)
     return (
-        t5,
+        _runtime.wrap_down(2.0 * t2) + t5,
     )
 
 

@@ -3,18 +3,18 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 81 add, 85 compare and select, 3 atan2, 21 divide, 123 multiply, 6 sincos, 9 sqrt
-#   pose: 108 add, 82 compare and select, 21 divide, 164 multiply, 6 sincos, 9 sqrt
+#   fk: 81 add, 59 compare and select, 3 atan2, 21 divide, 123 multiply, 6 sincos, 9 sqrt
+#   pose: 108 add, 56 compare and select, 21 divide, 164 multiply, 6 sincos, 9 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 208 add, 78 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
-#   determinant: 86 add, 78 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
-#   singularities: 91 add, 78 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
-#   ik: 341 compare and select, 366 add, 28 atan2, 78 divide, 436 multiply, 3 sincos, 41 sqrt
-#   wrist_length: 5 add, 26 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
+#   jacobian: 208 add, 54 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
+#   determinant: 86 add, 54 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
+#   singularities: 91 add, 54 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
+#   ik: 315 compare and select, 366 add, 28 atan2, 78 divide, 436 multiply, 3 sincos, 41 sqrt
+#   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
-#   largest_yaw: 5 add, 22 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
-#   largest_angle: 5 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
+#   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
+#   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
 """H6AR, loop-closed model.
 
 A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist of
@@ -205,29 +205,25 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     c_psi = tilted / base
     t67 = L2 + t63 * c_psi
     t68 = L1 * ctheta2A + ctheta23A * t66 + stheta23A * t67
-    t69 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t70 = t69 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t71 = t70 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t72 = t71 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t73 = t72 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t74 = t73 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t75 = t74 & np.isfinite(theta1) & np.isfinite(theta2R)
-    t76 = t75 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t77 = t76 & np.isfinite(theta3L) & np.isfinite(theta)
-    t78 = -(_runtime.FEASIBILITY * (d * t23))
-    t79 = -(_runtime.FEASIBILITY * t61)
-    t80 = (t78 <= t45) & (t78 <= t43) & (t79 <= t62) & (t79 <= t60)
-    t81 = _runtime.poison(np.logical_not(t77) | np.logical_not(t80))
-    t82 = d1 + L1 * stheta2A - ctheta23A * t67 + stheta23A * t66
-    t83 = _runtime.wrap_cut(np.arctan2(-t59, c_psi)) + t81
-    t84 = _runtime.wrap_cut(-np.arctan2(-t58, c_phi)) + t81
+    t69 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t70 = t69 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t71 = t70 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    t72 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    invalid = np.logical_not(t71 & (0.0 <= loff) & (0.0 <= lp) & t72)
+    t73 = -(_runtime.FEASIBILITY * (d * t23))
+    t74 = -(_runtime.FEASIBILITY * t61)
+    t75 = (t73 <= t45) & (t73 <= t43) & (t74 <= t62) & (t74 <= t60)
+    t76 = _runtime.poison(invalid | np.logical_not(t75))
+    t77 = d1 + L1 * stheta2A - ctheta23A * t67 + stheta23A * t66
+    t78 = _runtime.wrap_cut(np.arctan2(-t59, c_psi)) + t76
+    t79 = _runtime.wrap_cut(-np.arctan2(-t58, c_phi)) + t76
     return (
-        s1 * t65 + c1 * t68 + t81,
-        s1 * t68 - c1 * t65 + t81,
-        t82 + t81,
-        t83,
-        t84,
-        _runtime.wrap_cut(np.arctan2(s, c)) + t81,
+        s1 * t65 + c1 * t68 + t76,
+        s1 * t68 - c1 * t65 + t76,
+        t77 + t76,
+        t78,
+        t79,
+        _runtime.wrap_cut(np.arctan2(s, c)) + t76,
     )
 
 
@@ -364,62 +360,58 @@ def _pose(
     t62 = c1 * stheta23A
     c_psi = tilted / base
     t63 = s * c_psi
-    t64 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t65 = t64 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t66 = t65 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t67 = t66 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t68 = t67 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t69 = t68 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t70 = t69 & np.isfinite(theta1) & np.isfinite(theta2R)
-    t71 = t70 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t72 = t71 & np.isfinite(theta3L) & np.isfinite(theta)
-    t73 = -(_runtime.FEASIBILITY * (d * t27))
-    t74 = gs + al
-    t75 = -(_runtime.FEASIBILITY * t74)
-    t76 = t74 - base
-    t77 = base - (gs - al)
-    t78 = (t73 <= t48) & (t73 <= t46) & (t75 <= t76) & (t75 <= t77)
-    t79 = _runtime.poison(np.logical_not(t72) | np.logical_not(t78))
-    t80 = t55 * hand_11 + s1 * hand_21 - t62 * t63 + t79
-    t81 = t58 * c_psi
+    t64 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t65 = t64 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t66 = t65 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    invalid = np.logical_not(t66 & (0.0 <= loff) & (0.0 <= lp) & t67)
+    t68 = -(_runtime.FEASIBILITY * (d * t27))
+    t69 = gs + al
+    t70 = -(_runtime.FEASIBILITY * t69)
+    t71 = t69 - base
+    t72 = base - (gs - al)
+    t73 = (t68 <= t48) & (t68 <= t46) & (t70 <= t71) & (t70 <= t72)
+    t74 = _runtime.poison(invalid | np.logical_not(t73))
+    t75 = t55 * hand_11 + s1 * hand_21 - t62 * t63 + t74
+    t76 = t58 * c_psi
     hand_22 = c_phi * c_psi
-    t82 = -(t55 * t81 - s1 * hand_22 + t62 * t59) + t79
+    t77 = -(t55 * t76 - s1 * hand_22 + t62 * t59) + t74
     hand_13 = s * c_phi - c * t60
-    t83 = s * t58 + c * t61
+    t78 = s * t58 + c * t61
     hand_33 = c * c_psi
-    t84 = t55 * hand_13 + s1 * t83 + t62 * hand_33 + t79
-    t85 = lp * s
-    wrist = np.sqrt(np.maximum(t77, 0.0)) * np.sqrt(np.maximum(t76, 0.0))
-    t86 = loff + lp * c + wrist
-    t87 = t85 * t58 + t61 * t86
-    t88 = a3 + t85 * c_phi - t60 * t86
-    t89 = L2 + c_psi * t86
-    t90 = L1 * ctheta2A + ctheta23A * t88 + stheta23A * t89
-    t91 = s1 * ctheta23A
-    t92 = s1 * stheta23A
-    t93 = t91 * hand_11 - c1 * hand_21 - t92 * t63 + t79
-    t94 = -(t91 * t81 + c1 * hand_22 + t92 * t59) + t79
-    t95 = t91 * hand_13 - c1 * t83 + t92 * hand_33 + t79
-    t96 = stheta23A * hand_13 - ctheta23A * hand_33 + t79
-    t97 = d1 + L1 * stheta2A - ctheta23A * t89 + stheta23A * t88
-    t98 = 0.0 + t79
+    t79 = t55 * hand_13 + s1 * t78 + t62 * hand_33 + t74
+    t80 = lp * s
+    wrist = np.sqrt(np.maximum(t72, 0.0)) * np.sqrt(np.maximum(t71, 0.0))
+    t81 = loff + lp * c + wrist
+    t82 = t80 * t58 + t61 * t81
+    t83 = a3 + t80 * c_phi - t60 * t81
+    t84 = L2 + c_psi * t81
+    t85 = L1 * ctheta2A + ctheta23A * t83 + stheta23A * t84
+    t86 = s1 * ctheta23A
+    t87 = s1 * stheta23A
+    t88 = t86 * hand_11 - c1 * hand_21 - t87 * t63 + t74
+    t89 = -(t86 * t76 + c1 * hand_22 + t87 * t59) + t74
+    t90 = t86 * hand_13 - c1 * t78 + t87 * hand_33 + t74
+    t91 = stheta23A * hand_13 - ctheta23A * hand_33 + t74
+    t92 = d1 + L1 * stheta2A - ctheta23A * t84 + stheta23A * t83
+    t93 = 0.0 + t74
     return (
-        t80,
-        t82,
-        t84,
-        s1 * t87 + c1 * t90 + t79,
+        t75,
+        t77,
+        t79,
+        s1 * t82 + c1 * t85 + t74,
+        t88,
+        t89,
+        t90,
+        s1 * t85 - c1 * t82 + t74,
+        ctheta23A * t63 + stheta23A * hand_11 + t74,
+        ctheta23A * t59 - stheta23A * t76 + t74,
+        t91,
+        t92 + t74,
         t93,
-        t94,
-        t95,
-        s1 * t90 - c1 * t87 + t79,
-        ctheta23A * t63 + stheta23A * hand_11 + t79,
-        ctheta23A * t59 - stheta23A * t81 + t79,
-        t96,
-        t97 + t79,
-        t98,
-        t98,
-        t98,
-        1.0 + t79,
+        t93,
+        t93,
+        1.0 + t74,
     )
 
 
@@ -667,148 +659,145 @@ def _jacobian(
     t75 = L2 + t74
     outer_33 = ctheta23A * t73 + stheta23A * t75
     t76 = outer_32 + outer_33
-    t77 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t78 = t77 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t79 = t78 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t80 = t79 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t81 = t80 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t82 = t81 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t83 = t82 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t84 = t83 & np.isfinite(theta3L) & np.isfinite(theta)
-    t85 = -(_runtime.FEASIBILITY * (d * t23))
-    t86 = -(_runtime.FEASIBILITY * t67)
-    t87 = (t85 <= t45) & (t85 <= t43) & (t86 <= t68) & (t86 <= t66)
-    t88 = _runtime.poison(np.logical_not(t84) | np.logical_not(t87))
-    t89 = c_phi * t74
-    t90 = t61 * t74
-    t91 = t63 * t69
-    t92 = ctheta23A * t90 + stheta23A * t91
-    t93 = d * (gs - d / (c_phi * c_psi))
-    t94 = t63 * t93
-    t95 = stheta23A * c_psi
-    t96 = t95 - ctheta23A * t71
-    t97 = s1 * t64 + c1 * t96
-    t98 = c_phi * wrist * (c_psi * c_psi)
-    t99 = s1 * t89 - c1 * t92 + t94 * t97 / t98
-    t100 = tilted * tilted
-    t101 = 1.0 + t62 * t62 / t100
-    t102 = t62 * t58 / (tilted * t100 * t101)
+    t77 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t78 = t77 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t79 = t78 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t80 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t81 = -(_runtime.FEASIBILITY * (d * t23))
+    t82 = -(_runtime.FEASIBILITY * t67)
+    t83 = (t81 <= t45) & (t81 <= t43) & (t82 <= t68) & (t82 <= t66)
+    failed = np.logical_not(t79 & (0.0 <= lp) & t80) | np.logical_not(t83)
+    t84 = _runtime.poison(failed)
+    t85 = c_phi * t74
+    t86 = t61 * t74
+    t87 = t63 * t69
+    t88 = ctheta23A * t86 + stheta23A * t87
+    t89 = d * (gs - d / (c_phi * c_psi))
+    t90 = t63 * t89
+    t91 = stheta23A * c_psi
+    t92 = t91 - ctheta23A * t71
+    t93 = s1 * t64 + c1 * t92
+    t94 = c_phi * wrist * (c_psi * c_psi)
+    t95 = s1 * t85 - c1 * t88 + t90 * t93 / t94
+    t96 = tilted * tilted
+    t97 = 1.0 + t62 * t62 / t96
+    t98 = t62 * t58 / (tilted * t96 * t97)
     c2R3R = t26 * t52 - t25 * t57
     s2R3R = t26 * t57 + t25 * t52
     mid_13 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
-    t103 = L1 * t57 / 2.0 - mid_13
+    t99 = L1 * t57 / 2.0 - mid_13
     mid_23 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
     mid_22 = L1 * t52 / 2.0 + mid_23
-    t104 = L1 * stheta2A
-    t105 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t106 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
-    t107 = L1 * (t105 + t106)
-    t108 = (outer_32 * t103 - t104 * mid_22) / t107
-    t109 = ctheta23A * t103 - stheta23A * mid_22 + t62 * t108
-    turn_12 = 1.0 / (tilted * t101)
-    t110 = ctheta23A * mid_22 + stheta23A * t103 - t58 * t108
-    inner_42 = t102 * t109 - turn_12 * t110
-    t111 = ctheta23A * t70
-    t112 = t61 * t93
-    t113 = c_phi * c_phi * wrist * c_psi
-    t114 = c1 * t111 - s1 * t72 - t97 * t112 / t113
-    t115 = 1.0 / (d * (1.0 + t60 / t59))
-    inner_52 = t115 * t109
-    t116 = c1 * t104
+    t100 = L1 * stheta2A
+    t101 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t102 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t103 = L1 * (t101 + t102)
+    t104 = (outer_32 * t99 - t100 * mid_22) / t103
+    t105 = ctheta23A * t99 - stheta23A * mid_22 + t62 * t104
+    turn_12 = 1.0 / (tilted * t97)
+    t106 = ctheta23A * mid_22 + stheta23A * t99 - t58 * t104
+    inner_42 = t98 * t105 - turn_12 * t106
+    t107 = ctheta23A * t70
+    t108 = t61 * t89
+    t109 = c_phi * c_phi * wrist * c_psi
+    t110 = c1 * t107 - s1 * t72 - t93 * t108 / t109
+    t111 = 1.0 / (d * (1.0 + t60 / t59))
+    inner_52 = t111 * t105
+    t112 = c1 * t100
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t117 = L2 * ctheta23A - a3 * stheta23A
-    rate_12 = (virtual_11 * t103 + t117 * mid_22) / t107
-    t118 = t99 * inner_42 + t114 * inner_52 + t116 * rate_12
-    t119 = ctheta23A * t75 - stheta23A * t73
-    outer_13 = c1 * t119
-    t120 = (mid_13 * virtual_11 - mid_23 * t117) / t107
-    rate_23 = (mid_13 * outer_32 + mid_23 * t104) / t107
+    t113 = L2 * ctheta23A - a3 * stheta23A
+    rate_12 = (virtual_11 * t99 + t113 * mid_22) / t103
+    t114 = t95 * inner_42 + t110 * inner_52 + t112 * rate_12
+    t115 = ctheta23A * t75 - stheta23A * t73
+    outer_13 = c1 * t115
+    t116 = (mid_13 * virtual_11 - mid_23 * t113) / t103
+    rate_23 = (mid_13 * outer_32 + mid_23 * t100) / t103
     line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t62 * rate_23
-    t121 = mid_23 * ctheta23A - mid_13 * stheta23A + t58 * rate_23
-    t122 = t102 * line_13 + turn_12 * t121
-    t123 = t115 * line_13
-    t124 = t116 * t120 + t122 * t99 + t123 * t114 + rate_23 * outer_13
-    t125 = s2L_half * c2L_half
-    t126 = t125 + t125
-    t127 = c2L_half * c2L_half - s2L_half * s2L_half
-    c2L3L = t39 * t127 - t38 * t126
-    s2L3L = t39 * t126 + t38 * t127
+    t117 = mid_23 * ctheta23A - mid_13 * stheta23A + t58 * rate_23
+    t118 = t98 * line_13 + turn_12 * t117
+    t119 = t111 * line_13
+    t120 = t112 * t116 + t118 * t95 + t119 * t110 + rate_23 * outer_13
+    t121 = s2L_half * c2L_half
+    t122 = t121 + t121
+    t123 = c2L_half * c2L_half - s2L_half * s2L_half
+    c2L3L = t39 * t123 - t38 * t122
+    s2L3L = t39 * t122 + t38 * t123
     mid_15 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
-    gap_14 = L1 * t126 / 2.0 - mid_15
+    gap_14 = L1 * t122 / 2.0 - mid_15
     mid_25 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
-    mid_24 = L1 * t127 / 2.0 + mid_25
-    t128 = (outer_32 * gap_14 - t104 * mid_24) / t107
-    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t62 * t128
-    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t58 * t128
-    t129 = t102 * line_14 - turn_12 * line_24
-    t130 = t115 * line_14
-    rate_14 = (virtual_11 * gap_14 + t117 * mid_24) / t107
-    t131 = t99 * t129 + t114 * t130 - t116 * rate_14 - outer_13 * t128
-    t132 = (mid_15 * virtual_11 - mid_25 * t117) / t107
-    rate_25 = (mid_15 * outer_32 + mid_25 * t104) / t107
-    t133 = mid_15 * ctheta23A + mid_25 * stheta23A - t62 * rate_25
+    mid_24 = L1 * t123 / 2.0 + mid_25
+    t124 = (outer_32 * gap_14 - t100 * mid_24) / t103
+    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t62 * t124
+    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t58 * t124
+    t125 = t98 * line_14 - turn_12 * line_24
+    t126 = t111 * line_14
+    rate_14 = (virtual_11 * gap_14 + t113 * mid_24) / t103
+    t127 = t95 * t125 + t110 * t126 - t112 * rate_14 - outer_13 * t124
+    t128 = (mid_15 * virtual_11 - mid_25 * t113) / t103
+    rate_25 = (mid_15 * outer_32 + mid_25 * t100) / t103
+    t129 = mid_15 * ctheta23A + mid_25 * stheta23A - t62 * rate_25
     line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t58 * rate_25
-    inner_45 = t102 * t133 + turn_12 * line_25
-    inner_55 = t115 * t133
-    t134 = t116 * t132 - inner_45 * t99 - inner_55 * t114
-    t135 = t65 * t61 - t1 * t64
-    t136 = t65 * c_phi + t1 * t71
-    t137 = t1 * t95 - ctheta23A * t136
-    t138 = c1 * t64 - s1 * t96
-    outer_24 = c1 * t89 + s1 * t92 + t94 * t138 / t98
-    t139 = s1 * t111 + c1 * t72 + t112 * t138 / t113
-    t140 = s1 * t104
-    t141 = inner_42 * outer_24 - inner_52 * t139 - t140 * rate_12
-    outer_23 = s1 * t119
-    t142 = t120 * t140 - t122 * outer_24 + t123 * t139 + rate_23 * outer_23
-    t143 = t129 * outer_24 - t130 * t139 + t140 * rate_14
-    t144 = t132 * t140 + inner_45 * outer_24 - inner_55 * t139
-    t145 = 0.0 + t88
-    t146 = ctheta23A * c_psi
-    t147 = t146 + stheta23A * t71
-    t148 = stheta23A * t90 - ctheta23A * t91 + t94 * t147 / t98
-    t149 = stheta23A * t70 + t112 * t147 / t113
-    t150 = inner_42 * t148 - inner_52 * t149 + outer_32 * rate_12
-    t151 = rate_23 * outer_33 - (outer_32 * t120 + t122 * t148 - t123 * t149)
-    t152 = t129 * t148 - t130 * t149 - outer_32 * rate_14
-    t153 = outer_32 * t132 - inner_45 * t148 + inner_55 * t149
+    inner_45 = t98 * t129 + turn_12 * line_25
+    inner_55 = t111 * t129
+    t130 = t112 * t128 - inner_45 * t95 - inner_55 * t110
+    t131 = t65 * t61 - t1 * t64
+    t132 = t65 * c_phi + t1 * t71
+    t133 = t1 * t91 - ctheta23A * t132
+    t134 = c1 * t64 - s1 * t92
+    outer_24 = c1 * t85 + s1 * t88 + t90 * t134 / t94
+    t135 = s1 * t107 + c1 * t72 + t108 * t134 / t109
+    t136 = s1 * t100
+    t137 = inner_42 * outer_24 - inner_52 * t135 - t136 * rate_12
+    outer_23 = s1 * t115
+    t138 = t116 * t136 - t118 * outer_24 + t119 * t135 + rate_23 * outer_23
+    t139 = t125 * outer_24 - t126 * t135 + t136 * rate_14
+    t140 = t128 * t136 + inner_45 * outer_24 - inner_55 * t135
+    t141 = 0.0 + t84
+    t142 = ctheta23A * c_psi
+    t143 = t142 + stheta23A * t71
+    t144 = stheta23A * t86 - ctheta23A * t87 + t90 * t143 / t94
+    t145 = stheta23A * t70 + t108 * t143 / t109
+    t146 = inner_42 * t144 - inner_52 * t145 + outer_32 * rate_12
+    t147 = rate_23 * outer_33 - (outer_32 * t116 + t118 * t144 - t119 * t145)
+    t148 = t125 * t144 - t126 * t145 - outer_32 * rate_14
+    t149 = outer_32 * t128 - inner_45 * t144 + inner_55 * t145
     return (
-        c1 * t70 - s1 * t76 + t88,
-        -(t118 + t108 * outer_13) + t88,
-        t124 + t88,
-        t131 + t88,
-        t134 + rate_25 * outer_13 + t88,
-        s1 * t135 - c1 * t137 + t88,
-        s1 * t70 + c1 * t76 + t88,
-        t141 - t108 * outer_23 + t88,
-        t142 + t88,
-        -(t143 + t128 * outer_23) + t88,
-        t144 + rate_25 * outer_23 + t88,
-        -(c1 * t135 + s1 * t137) + t88,
-        t145,
-        t150 - outer_33 * t108 + t88,
-        t151 + t88,
-        -(t152 + outer_33 * t128) + t88,
-        rate_25 * outer_33 - t153 + t88,
-        t1 * t146 + stheta23A * t136 + t88,
-        t145,
-        inner_42 + t88,
-        -t122 + t88,
-        -t129 + t88,
-        inner_45 + t88,
-        t145,
-        t145,
-        inner_52 + t88,
-        -t123 + t88,
-        -t130 + t88,
-        inner_55 + t88,
-        t145,
-        t145,
-        t145,
-        t145,
-        t145,
-        t145,
-        1.0 + t88,
+        c1 * t70 - s1 * t76 + t84,
+        -(t114 + t104 * outer_13) + t84,
+        t120 + t84,
+        t127 + t84,
+        t130 + rate_25 * outer_13 + t84,
+        s1 * t131 - c1 * t133 + t84,
+        s1 * t70 + c1 * t76 + t84,
+        t137 - t104 * outer_23 + t84,
+        t138 + t84,
+        -(t139 + t124 * outer_23) + t84,
+        t140 + rate_25 * outer_23 + t84,
+        -(c1 * t131 + s1 * t133) + t84,
+        t141,
+        t146 - outer_33 * t104 + t84,
+        t147 + t84,
+        -(t148 + outer_33 * t124) + t84,
+        rate_25 * outer_33 - t149 + t84,
+        t1 * t142 + stheta23A * t132 + t84,
+        t141,
+        inner_42 + t84,
+        -t118 + t84,
+        -t125 + t84,
+        inner_45 + t84,
+        t141,
+        t141,
+        inner_52 + t84,
+        -t119 + t84,
+        -t126 + t84,
+        inner_55 + t84,
+        t141,
+        t141,
+        t141,
+        t141,
+        t141,
+        t141,
+        1.0 + t84,
     )
 
 
@@ -958,20 +947,16 @@ def _determinant(
     t73 = d * (L1 * L1) * t7 * t14 * (t62 * t69 + t70 * t72)
     t74 = L1 * ctheta2A + ctheta23A * t72 + stheta23A * t69
     t75 = 4.0 * tilted * (L2 * t62 + a3 * t70) * (base * base)
-    t76 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t77 = t76 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t78 = t77 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t79 = t78 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t80 = t79 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t81 = t80 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t82 = t81 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t83 = t82 & np.isfinite(theta3L) & np.isfinite(theta)
-    t84 = -(_runtime.FEASIBILITY * (d * t41))
-    t85 = -(_runtime.FEASIBILITY * t66)
-    t86 = (t84 <= t56) & (t84 <= t54) & (t85 <= t67) & (t85 <= t65)
-    t87 = _runtime.poison(np.logical_not(t83) | np.logical_not(t86))
+    t76 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t77 = t76 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t78 = t77 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t79 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t80 = -(_runtime.FEASIBILITY * (d * t41))
+    t81 = -(_runtime.FEASIBILITY * t66)
+    t82 = (t80 <= t56) & (t80 <= t54) & (t81 <= t67) & (t81 <= t65)
+    failed = np.logical_not(t78 & (0.0 <= lp) & t79) | np.logical_not(t82)
     return (
-        t73 * t74 / t75 + t87,
+        t73 * t74 / t75 + _runtime.poison(failed),
     )
 
 
@@ -1106,36 +1091,33 @@ def _singularities(
     t64 = a3 + lp * s * (d / tilted) - t59 * t63
     t65 = L2 + t63 * (tilted / base)
     t66 = L1 * ctheta2A + ctheta23A * t64 + stheta23A * t65
-    t67 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t68 = t67 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t69 = t68 & np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t70 = t69 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t71 = t70 & np.isfinite(loff) & (0.0 <= loff) & np.isfinite(lp)
-    t72 = t71 & (0.0 <= lp) & np.isfinite(theta1) & np.isfinite(theta2R)
-    t73 = t72 & np.isfinite(theta3R) & np.isfinite(theta2L)
-    t74 = t73 & np.isfinite(theta3L) & np.isfinite(theta)
-    t75 = -(_runtime.FEASIBILITY * (d * t28))
-    t76 = -(_runtime.FEASIBILITY * t61)
-    t77 = (t75 <= t49) & (t75 <= t47) & (t76 <= t62) & (t76 <= t60)
-    t78 = _runtime.poison(np.logical_not(t74) | np.logical_not(t77))
-    t79 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t80 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t67 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t68 = t67 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t69 = t68 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t70 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t71 = -(_runtime.FEASIBILITY * (d * t28))
+    t72 = -(_runtime.FEASIBILITY * t61)
+    t73 = (t71 <= t49) & (t71 <= t47) & (t72 <= t62) & (t72 <= t60)
+    failed = np.logical_not(t69 & (0.0 <= lp) & t70) | np.logical_not(t73)
+    t74 = _runtime.poison(failed)
+    t75 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t76 = stheta2A * ctheta23A - ctheta2A * stheta23A
     s2R3R = t31 * t56 + t30 * t27
     c2R3R = t31 * t27 - t30 * t56
-    t81 = L2 * (t56 * s2R3R + t27 * c2R3R) + a3 * (t56 * c2R3R - t27 * s2R3R)
-    t82 = s2L_half * c2L_half
-    t83 = t82 + t82
-    t84 = c2L_half * c2L_half - s2L_half * s2L_half
-    s2L3L = t43 * t83 + t42 * t84
-    c2L3L = t43 * t84 - t42 * t83
-    t85 = L2 * (t83 * s2L3L + t84 * c2L3L) + a3 * (t83 * c2L3L - t84 * s2L3L)
+    t77 = L2 * (t56 * s2R3R + t27 * c2R3R) + a3 * (t56 * c2R3R - t27 * s2R3R)
+    t78 = s2L_half * c2L_half
+    t79 = t78 + t78
+    t80 = c2L_half * c2L_half - s2L_half * s2L_half
+    s2L3L = t43 * t79 + t42 * t80
+    c2L3L = t43 * t80 - t42 * t79
+    t81 = L2 * (t79 * s2L3L + t80 * c2L3L) + a3 * (t79 * c2L3L - t80 * s2L3L)
     return (
-        t66 + t78,
-        t79 * t65 + t80 * t64 + t78,
-        t81 + t78,
-        t85 + t78,
-        L2 * t79 + a3 * t80 + t78,
-        wrist + t78,
+        t66 + t74,
+        t75 * t65 + t76 * t64 + t74,
+        t77 + t74,
+        t81 + t74,
+        L2 * t75 + a3 * t76 + t74,
+        wrist + t74,
     )
 
 
@@ -1187,702 +1169,698 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t14 = np.sqrt(above)
     t15 = 2.0 * np.arctan2(t12, t14)
     t16 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t15))
-    t17 = np.isfinite(L1) & (0.0 <= L1) & np.isfinite(L2)
-    t18 = t17 & (0.0 <= L2) & np.isfinite(a3) & (0.0 <= a3)
-    t19 = t18 & np.isfinite(d1) & (0.0 <= d1) & np.isfinite(d)
-    t20 = t19 & (0.0 <= d) & np.isfinite(gs) & (0.0 <= gs)
-    t21 = t20 & np.isfinite(al) & (0.0 <= al) & np.isfinite(loff)
-    t22 = t21 & (0.0 <= loff) & np.isfinite(lp) & (0.0 <= lp)
-    t23 = t22 & np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t24 = t23 & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    invalid = np.logical_not(t24)
-    t25 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t26 = (-_runtime.FEASIBILITY <= c_phi) & (t25 <= t6)
-    t27 = -(_runtime.FEASIBILITY * t1)
-    t28 = t26 & (t25 <= t5) & (t27 <= t11) & (t27 <= t13)
+    t17 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    invalid = np.logical_not(t19 & (0.0 <= loff) & (0.0 <= lp) & t20)
+    t21 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t22 = (-_runtime.FEASIBILITY <= c_phi) & (t21 <= t6)
+    t23 = -(_runtime.FEASIBILITY * t1)
+    t24 = t22 & (t21 <= t5) & (t23 <= t11) & (t23 <= t13)
     L_2W = L2 + c_psi * t8
     a_3W = a3 + c_phi * t3 + s_phi * t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t29 = L1 + fore
-    t30 = -(_runtime.FEASIBILITY * t29)
-    t31 = z - d1
-    t32 = t31 * t31
+    t25 = L1 + fore
+    t26 = -(_runtime.FEASIBILITY * t25)
+    t27 = z - d1
+    t28 = t27 * t27
     total = below + above
-    t33 = (below - above) / total
-    t34 = y * t33
+    t29 = (below - above) / total
+    t30 = y * t29
     s_turn = 2.0 * t12 * t14 / total
-    t35 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -((t34 - t35) / h))
-    t36 = x * t33
-    t37 = y * s_turn
-    s1 = _runtime.select(nowhere, 0.0, (t36 + t37) / h)
+    t31 = x * s_turn
+    c1 = _runtime.select(nowhere, 1.0, -((t30 - t31) / h))
+    t32 = x * t29
+    t33 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, (t32 + t33) / h)
     outward = x * c1 + y * s1
-    reach = np.sqrt(t32 + outward * outward)
-    t38 = t29 - reach
-    t39 = L1 - fore
-    t40 = reach + t39
-    t41 = reach - t39
-    t42 = t28 & (t30 <= t38) & (t30 <= t40) & (t30 <= t41)
+    reach = np.sqrt(t28 + outward * outward)
+    t34 = t25 - reach
+    t35 = L1 - fore
+    t36 = reach + t35
+    t37 = reach - t35
+    t38 = t24 & (t26 <= t34) & (t26 <= t36) & (t26 <= t37)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    t43 = d * size
-    t44 = _runtime.VANISHING * t29
-    folded = reach <= t44
-    s_sight = _runtime.select(folded, 0.0, t31 / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t29 * t29)
-    t45 = folded | short
-    A = np.maximum(t38, 0.0)
-    C = np.maximum(t41, 0.0)
-    t46 = A * C
-    S = t29 + reach
-    B = np.maximum(t40, 0.0)
-    t47 = S * B
-    at_base = t46 + t47
-    c_base = _runtime.select(t45, 1.0, -((t46 - t47) / at_base))
-    t48 = s_sight * c_base
+    t39 = d * size
+    t40 = _runtime.VANISHING * t25
+    folded = reach <= t40
+    s_sight = _runtime.select(folded, 0.0, t27 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t25 * t25)
+    t41 = folded | short
+    A = np.maximum(t34, 0.0)
+    C = np.maximum(t37, 0.0)
+    t42 = A * C
+    S = t25 + reach
+    B = np.maximum(t36, 0.0)
+    t43 = S * B
+    at_base = t42 + t43
+    c_base = _runtime.select(t41, 1.0, -((t42 - t43) / at_base))
+    t44 = s_sight * c_base
     c_sight = _runtime.select(folded, 1.0, outward / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = _runtime.select(t45, 0.0, area_front_elbow_down_alike / at_base)
-    t49 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t48 + t49
-    t50 = c_sight * c_base
-    t51 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t50 - t51
-    bare = fore <= t44
+    s_base_front_elbow_down_alike = _runtime.select(t41, 0.0, area_front_elbow_down_alike / at_base)
+    t45 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t44 + t45
+    t46 = c_sight * c_base
+    t47 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t46 - t47
+    bare = fore <= t40
     c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    t52 = A * S
-    t53 = C * B
-    at_elbow = t52 + t53
-    c_bend = _runtime.select(short, 1.0, -((t52 - t53) / at_elbow))
-    t54 = c_lag * c_bend
+    t48 = A * S
+    t49 = C * B
+    at_elbow = t48 + t49
+    c_bend = _runtime.select(short, 1.0, -((t48 - t49) / at_elbow))
+    t50 = c_lag * c_bend
     s_lag = _runtime.select(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t55 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t54 + t55
-    t56 = s_lag * c_bend
-    t57 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t56 - t57
+    t51 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t50 + t51
+    t52 = s_lag * c_bend
+    t53 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t52 - t53
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    t58 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t54 = stheta2A * ctheta23A - ctheta2A * stheta23A
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    drawn = L1 - L_2W * t58 + a_3W * c_elbow
-    t59 = 2.0 * drawn
+    drawn = L1 - L_2W * t54 + a_3W * c_elbow
+    t55 = 2.0 * drawn
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t60 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t61 = d * t60
-    h_right_0 = point_21 - t61
+    t56 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
+    t57 = d * t56
+    h_right_0 = point_21 - t57
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
-    t62 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t63 = d * t62
-    r_right_0 = point_11 - t63
-    slope_right = t59 * (ctheta2A * h_right_0 - stheta2A * r_right_0)
-    t64 = size / 100000.0
-    t65 = t64 + np.abs(L_2W * c_elbow + a_3W * t58)
-    t66 = _runtime.FEASIBILITY * (t43 + size * np.abs(slope_right) / t65)
-    t67 = L1 * 2.0
-    t68 = L2 * t58 - a3 * c_elbow
-    t69 = 0.0 <= -t68
-    t70 = L2 * c_elbow + a3 * t58
-    large = fore_arm + _runtime.select(t69, -t68, t68)
-    small = t70 * t70 / large
-    gap = t63 * t63 + t61 * t61
-    t71 = t67 * _runtime.select(t69, small, large) - gap
-    t72 = 2.0 * point_11 * t63 + 2.0 * point_21 * t61
-    N_right_0 = t71 + t72
-    h_left_0 = point_21 + t61
-    r_left_0 = point_11 + t63
-    slope_left = t59 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
-    t73 = _runtime.FEASIBILITY * (t43 + size * np.abs(slope_left) / t65)
-    N_left_0 = t71 - t72
-    t74 = t42 & (-t66 <= N_right_0) & (-t73 <= N_left_0)
-    t75 = -(_runtime.FEASIBILITY * t43)
-    t76 = slope_left * (N_left_0 - np.maximum(N_left_0, 0.0))
-    t77 = size * size
-    t78 = t77 * t77 / 10000000000.0
-    t79 = slope_right * (N_right_0 - np.maximum(N_right_0, 0.0))
-    t80 = t76 / (t78 + slope_left * slope_left) + t79 / (t78 + slope_right * slope_right)
-    t81 = t72 - slope_right * t80
-    t82 = t71 + t81
-    swing = drawn * t80
-    t83 = ctheta2A * swing
-    h_right = h_right_0 + t83 - r_right_0 * t80
-    t84 = stheta2A * swing
-    r_right = r_right_0 + h_right_0 * t80 - t84
-    t85 = h_right * h_right + r_right * r_right
-    t86 = gap * gap
-    t87 = L1 - fore_arm
-    t88 = t87 * t87
-    t89 = gap + t67 * _runtime.select(t69, large, small)
-    t90 = _runtime.select(t77 * t85 < t86, t88 - t85, t81 - t89)
-    t91 = t72 + slope_left * t80
-    t92 = t71 - t91
-    t93 = t74 & (t75 <= t82) & (t75 <= -t90) & (t75 <= t92)
-    h_left = h_left_0 + t83 - r_left_0 * t80
-    r_left = r_left_0 - t84 + h_left_0 * t80
-    t94 = h_left * h_left + r_left * r_left
-    t95 = _runtime.select(t77 * t94 < t86, t94 - t88, t89 + t91)
-    unreachable = np.logical_not(t93 & (t75 <= t95))
-    t96 = _runtime.poison(invalid | unreachable)
-    t97 = t16 + t96
-    t98 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.sqrt(t85) <= t98
-    t99 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t77
-    t100 = 2.0 * fore_arm
-    t101 = _runtime.VANISHING * (_runtime.VANISHING * (t43 * 16.0))
-    M_right = np.maximum(-t90, t101)
-    N_right = np.maximum(t82, t101)
+    t58 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t59 = d * t58
+    r_right_0 = point_11 - t59
+    slope_right = t55 * (ctheta2A * h_right_0 - stheta2A * r_right_0)
+    t60 = size / 100000.0
+    t61 = t60 + np.abs(L_2W * c_elbow + a_3W * t54)
+    t62 = _runtime.FEASIBILITY * (t39 + size * np.abs(slope_right) / t61)
+    t63 = L1 * 2.0
+    t64 = L2 * t54 - a3 * c_elbow
+    t65 = 0.0 <= -t64
+    t66 = L2 * c_elbow + a3 * t54
+    large = fore_arm + _runtime.select(t65, -t64, t64)
+    small = t66 * t66 / large
+    gap = t59 * t59 + t57 * t57
+    t67 = t63 * _runtime.select(t65, small, large) - gap
+    t68 = 2.0 * point_11 * t59 + 2.0 * point_21 * t57
+    N_right_0 = t67 + t68
+    h_left_0 = point_21 + t57
+    r_left_0 = point_11 + t59
+    slope_left = t55 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    t69 = _runtime.FEASIBILITY * (t39 + size * np.abs(slope_left) / t61)
+    N_left_0 = t67 - t68
+    t70 = t38 & (-t62 <= N_right_0) & (-t69 <= N_left_0)
+    t71 = -(_runtime.FEASIBILITY * t39)
+    t72 = slope_left * (N_left_0 - np.maximum(N_left_0, 0.0))
+    t73 = size * size
+    t74 = t73 * t73 / 10000000000.0
+    t75 = slope_right * (N_right_0 - np.maximum(N_right_0, 0.0))
+    t76 = t72 / (t74 + slope_left * slope_left) + t75 / (t74 + slope_right * slope_right)
+    t77 = t68 - slope_right * t76
+    t78 = t67 + t77
+    swing = drawn * t76
+    t79 = ctheta2A * swing
+    h_right = h_right_0 + t79 - r_right_0 * t76
+    t80 = stheta2A * swing
+    r_right = r_right_0 + h_right_0 * t76 - t80
+    t81 = h_right * h_right + r_right * r_right
+    t82 = gap * gap
+    t83 = L1 - fore_arm
+    t84 = t83 * t83
+    t85 = gap + t63 * _runtime.select(t65, large, small)
+    t86 = _runtime.select(t73 * t81 < t82, t84 - t81, t77 - t85)
+    t87 = t68 + slope_left * t76
+    t88 = t67 - t87
+    t89 = t70 & (t71 <= t78) & (t71 <= -t86) & (t71 <= t88)
+    h_left = h_left_0 + t79 - r_left_0 * t76
+    r_left = r_left_0 - t80 + h_left_0 * t76
+    t90 = h_left * h_left + r_left * r_left
+    t91 = _runtime.select(t73 * t90 < t82, t90 - t84, t85 + t87)
+    unreachable = np.logical_not(t89 & (t71 <= t91))
+    t92 = _runtime.poison(invalid | unreachable)
+    t93 = t16 + t92
+    t94 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.sqrt(t81) <= t94
+    t95 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t73
+    t96 = 2.0 * fore_arm
+    t97 = _runtime.VANISHING * (_runtime.VANISHING * (t39 * 16.0))
+    M_right = np.maximum(-t86, t97)
+    N_right = np.maximum(t78, t97)
     whole_right = M_right + N_right
-    ahead_1_right = _runtime.select(short_right, size, t87 + t100 * M_right / whole_right)
-    t102 = 2.0 * _runtime.select(0.0 <= -t70, 1.0, -1.0)
+    ahead_1_right = _runtime.select(short_right, size, t83 + t96 * M_right / whole_right)
+    t98 = 2.0 * _runtime.select(0.0 <= -t66, 1.0, -1.0)
     rN_right = np.sqrt(N_right)
     rM_right = np.sqrt(M_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t102 * rN_right * rM_right / whole_right)
-    t103 = fore_arm * s_bend_right
-    t104 = np.arctan2(h_right * ahead_1_right - r_right * t103, r_right * ahead_1_right + h_right * t103)
-    t105 = _runtime.wrap_cut(_runtime.select(folded_right, t99, t104))
-    t106 = t105 + t96
+    s_bend_right = _runtime.select(short_right, 0.0, t98 * rN_right * rM_right / whole_right)
+    t99 = fore_arm * s_bend_right
+    t100 = np.arctan2(h_right * ahead_1_right - r_right * t99, r_right * ahead_1_right + h_right * t99)
+    t101 = _runtime.wrap_cut(_runtime.select(folded_right, t95, t100))
+    t102 = t101 + t92
     bare_right = fore_arm <= _runtime.VANISHING * size
     s_lag_right = _runtime.select(bare_right, 0.0, L2 / fore_arm)
     c_lag_right = _runtime.select(bare_right, 1.0, a3 / fore_arm)
-    t107 = np.arctan2(s_lag_right, c_lag_right)
-    t108 = _runtime.select(short_right, 0.0, t102 * np.arctan2(rN_right, rM_right))
-    t109 = _runtime.wrap_cut(_runtime.wrap(t107 + t108))
-    t110 = t109 + t96
-    folded_left = np.sqrt(t94) <= t98
-    M_left = np.maximum(t95, 0.0)
-    N_left = np.maximum(t92, 0.0)
+    t103 = np.arctan2(s_lag_right, c_lag_right)
+    t104 = _runtime.select(short_right, 0.0, t98 * np.arctan2(rN_right, rM_right))
+    t105 = _runtime.wrap_cut(_runtime.wrap(t103 + t104))
+    t106 = t105 + t92
+    folded_left = np.sqrt(t90) <= t94
+    M_left = np.maximum(t91, 0.0)
+    N_left = np.maximum(t88, 0.0)
     whole_left = M_left + N_left
-    ahead_1_left = _runtime.select(short_right, size, t87 + t100 * M_left / whole_left)
-    t111 = h_left * ahead_1_left
+    ahead_1_left = _runtime.select(short_right, size, t83 + t96 * M_left / whole_left)
+    t107 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t102 * rN_left * rM_left / whole_left)
-    t112 = fore_arm * s_bend_left
-    t113 = r_left * t112
-    t114 = r_left * ahead_1_left
-    t115 = h_left * t112
-    t116 = _runtime.select(folded_left, t99, np.arctan2(t111 - t113, t114 + t115))
-    t117 = _runtime.select(short_right, 0.0, t102 * np.arctan2(rN_left, rM_left))
-    t118 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    t119 = t118 + t96
-    t120 = _runtime.select(folded_left, t99, np.arctan2(t111 + t113, t114 - t115))
-    stheta2A_front_elbow_down_alike = t48 - t49
-    ctheta2A_front_elbow_down_alike = t50 + t51
-    c_relative_front_elbow_down_alike = t54 - t55
-    t121 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t56 + t57
-    t122 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t121 - t122
-    t123 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t124 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t125 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t124 + t125
-    t126 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t127 = t123 - t126
-    t128 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t129 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t128 + t129
-    drawn_front_elbow_down_alike = L1 - L_2W * t127 + a_3W * c_elbow_front_elbow_down_alike
-    t130 = 2.0 * drawn_front_elbow_down_alike
-    t131 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t131 + a3 * stheta23A_front_elbow_down_alike
-    t132 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t133 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t134 = d * (t132 + t133)
-    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t134
-    t135 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t136 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t136 + a3 * ctheta23A_front_elbow_down_alike
-    t137 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t138 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t139 = d * (t137 - t138)
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t139
-    t140 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    slope_right_front_elbow_down_alike = t130 * (t135 - t140)
-    t141 = size * np.abs(slope_right_front_elbow_down_alike)
-    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t127
-    t142 = t64 + np.abs(tilt_front_elbow_down_alike)
-    t143 = -(_runtime.FEASIBILITY * (t43 + t141 / t142))
-    t144 = L2 * t127 - a3 * c_elbow_front_elbow_down_alike
-    t145 = 0.0 <= -t144
-    t146 = L2 * c_elbow_front_elbow_down_alike + a3 * t127
-    large_front_elbow_down_alike = fore_arm + _runtime.select(t145, -t144, t144)
-    small_front_elbow_down_alike = t146 * t146 / large_front_elbow_down_alike
-    t147 = _runtime.select(t145, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    gap_front_elbow_down_alike = t139 * t139 + t134 * t134
-    t148 = t67 * t147 - gap_front_elbow_down_alike
-    t149 = 2.0 * point_11_front_elbow_down_alike * t139 + 2.0 * point_21_front_elbow_down_alike * t134
-    N_right_0_front_elbow_down_alike = t148 + t149
-    t150 = t42 & (t143 <= N_right_0_front_elbow_down_alike)
-    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t134
-    t151 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t139
-    t152 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    slope_left_front_elbow_down_alike = t130 * (t151 - t152)
-    t153 = size * np.abs(slope_left_front_elbow_down_alike)
-    t154 = -(_runtime.FEASIBILITY * (t43 + t153 / t142))
-    N_left_0_front_elbow_down_alike = t148 - t149
-    t155 = t150 & (t154 <= N_left_0_front_elbow_down_alike)
+    s_bend_left = _runtime.select(short_right, 0.0, t98 * rN_left * rM_left / whole_left)
+    t108 = fore_arm * s_bend_left
+    t109 = r_left * t108
+    t110 = r_left * ahead_1_left
+    t111 = h_left * t108
+    t112 = _runtime.select(folded_left, t95, np.arctan2(t107 - t109, t110 + t111))
+    t113 = _runtime.select(short_right, 0.0, t98 * np.arctan2(rN_left, rM_left))
+    t114 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t115 = t114 + t92
+    t116 = _runtime.select(folded_left, t95, np.arctan2(t107 + t109, t110 - t111))
+    stheta2A_front_elbow_down_alike = t44 - t45
+    ctheta2A_front_elbow_down_alike = t46 + t47
+    c_relative_front_elbow_down_alike = t50 - t51
+    t117 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t52 + t53
+    t118 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t117 - t118
+    t119 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t120 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t121 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t120 + t121
+    t122 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t123 = t119 - t122
+    t124 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t125 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t124 + t125
+    drawn_front_elbow_down_alike = L1 - L_2W * t123 + a_3W * c_elbow_front_elbow_down_alike
+    t126 = 2.0 * drawn_front_elbow_down_alike
+    t127 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t127 + a3 * stheta23A_front_elbow_down_alike
+    t128 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t129 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t130 = d * (t128 + t129)
+    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t130
+    t131 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t132 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t132 + a3 * ctheta23A_front_elbow_down_alike
+    t133 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t134 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t135 = d * (t133 - t134)
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t135
+    t136 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    slope_right_front_elbow_down_alike = t126 * (t131 - t136)
+    t137 = size * np.abs(slope_right_front_elbow_down_alike)
+    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t123
+    t138 = t60 + np.abs(tilt_front_elbow_down_alike)
+    t139 = -(_runtime.FEASIBILITY * (t39 + t137 / t138))
+    t140 = L2 * t123 - a3 * c_elbow_front_elbow_down_alike
+    t141 = 0.0 <= -t140
+    t142 = L2 * c_elbow_front_elbow_down_alike + a3 * t123
+    large_front_elbow_down_alike = fore_arm + _runtime.select(t141, -t140, t140)
+    small_front_elbow_down_alike = t142 * t142 / large_front_elbow_down_alike
+    t143 = _runtime.select(t141, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    gap_front_elbow_down_alike = t135 * t135 + t130 * t130
+    t144 = t63 * t143 - gap_front_elbow_down_alike
+    t145 = 2.0 * point_11_front_elbow_down_alike * t135 + 2.0 * point_21_front_elbow_down_alike * t130
+    N_right_0_front_elbow_down_alike = t144 + t145
+    t146 = t38 & (t139 <= N_right_0_front_elbow_down_alike)
+    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t130
+    t147 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t135
+    t148 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    slope_left_front_elbow_down_alike = t126 * (t147 - t148)
+    t149 = size * np.abs(slope_left_front_elbow_down_alike)
+    t150 = -(_runtime.FEASIBILITY * (t39 + t149 / t138))
+    N_left_0_front_elbow_down_alike = t144 - t145
+    t151 = t146 & (t150 <= N_left_0_front_elbow_down_alike)
     slack_left_front_elbow_down_alike = np.maximum(N_left_0_front_elbow_down_alike, 0.0)
-    t156 = N_left_0_front_elbow_down_alike - slack_left_front_elbow_down_alike
-    t157 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t158 = slope_left_front_elbow_down_alike * t156 / (t78 + t157)
+    t152 = N_left_0_front_elbow_down_alike - slack_left_front_elbow_down_alike
+    t153 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t154 = slope_left_front_elbow_down_alike * t152 / (t74 + t153)
     slack_right_front_elbow_down_alike = np.maximum(N_right_0_front_elbow_down_alike, 0.0)
-    t159 = N_right_0_front_elbow_down_alike - slack_right_front_elbow_down_alike
-    t160 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
-    t161 = slope_right_front_elbow_down_alike * t159 / (t78 + t160)
-    t162 = t158 + t161
-    t163 = t149 - slope_right_front_elbow_down_alike * t162
-    t164 = t148 + t163
-    swing_front_elbow_down_alike = drawn_front_elbow_down_alike * t162
-    t165 = ctheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
-    h_right_front_elbow_down_alike = h_right_0_front_elbow_down_alike + t165 - r_right_0_front_elbow_down_alike * t162
-    t166 = h_right_front_elbow_down_alike * h_right_front_elbow_down_alike
-    t167 = r_right_0_front_elbow_down_alike + h_right_0_front_elbow_down_alike * t162
-    t168 = stheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
-    r_right_front_elbow_down_alike = t167 - t168
-    t169 = r_right_front_elbow_down_alike * r_right_front_elbow_down_alike
-    t170 = t166 + t169
-    t171 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t172 = _runtime.select(t145, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    t173 = gap_front_elbow_down_alike + t67 * t172
-    t174 = _runtime.select(t77 * t170 < t171, t88 - t170, t163 - t173)
-    t175 = t149 + slope_left_front_elbow_down_alike * t162
-    t176 = t148 - t175
-    t177 = t155 & (t75 <= t164) & (t75 <= -t174) & (t75 <= t176)
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike + t165 - r_left_0_front_elbow_down_alike * t162
-    t178 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t168 + h_left_0_front_elbow_down_alike * t162
-    t179 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t180 = t178 + t179
-    t181 = _runtime.select(t77 * t180 < t171, t180 - t88, t173 + t175)
-    unreachable_2 = np.logical_not(t177 & (t75 <= t181))
-    t182 = _runtime.poison(invalid | unreachable_2)
-    t183 = t16 + t182
-    folded_right_front_elbow_down_alike = np.sqrt(t170) <= t98
-    t184 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(-t174, t101)
-    N_right_front_elbow_down_alike = np.maximum(t164, t101)
+    t155 = N_right_0_front_elbow_down_alike - slack_right_front_elbow_down_alike
+    t156 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
+    t157 = slope_right_front_elbow_down_alike * t155 / (t74 + t156)
+    t158 = t154 + t157
+    t159 = t145 - slope_right_front_elbow_down_alike * t158
+    t160 = t144 + t159
+    swing_front_elbow_down_alike = drawn_front_elbow_down_alike * t158
+    t161 = ctheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
+    h_right_front_elbow_down_alike = h_right_0_front_elbow_down_alike + t161 - r_right_0_front_elbow_down_alike * t158
+    t162 = h_right_front_elbow_down_alike * h_right_front_elbow_down_alike
+    t163 = r_right_0_front_elbow_down_alike + h_right_0_front_elbow_down_alike * t158
+    t164 = stheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
+    r_right_front_elbow_down_alike = t163 - t164
+    t165 = r_right_front_elbow_down_alike * r_right_front_elbow_down_alike
+    t166 = t162 + t165
+    t167 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t168 = _runtime.select(t141, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    t169 = gap_front_elbow_down_alike + t63 * t168
+    t170 = _runtime.select(t73 * t166 < t167, t84 - t166, t159 - t169)
+    t171 = t145 + slope_left_front_elbow_down_alike * t158
+    t172 = t144 - t171
+    t173 = t151 & (t71 <= t160) & (t71 <= -t170) & (t71 <= t172)
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike + t161 - r_left_0_front_elbow_down_alike * t158
+    t174 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t164 + h_left_0_front_elbow_down_alike * t158
+    t175 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t176 = t174 + t175
+    t177 = _runtime.select(t73 * t176 < t167, t176 - t84, t169 + t171)
+    unreachable_2 = np.logical_not(t173 & (t71 <= t177))
+    t178 = _runtime.poison(invalid | unreachable_2)
+    t179 = t16 + t178
+    folded_right_front_elbow_down_alike = np.sqrt(t166) <= t94
+    t180 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    M_right_front_elbow_down_alike = np.maximum(-t170, t97)
+    N_right_front_elbow_down_alike = np.maximum(t160, t97)
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t185 = t100 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t87 + t185)
-    t186 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t187 = 2.0 * _runtime.select(0.0 <= -t146, 1.0, -1.0)
+    t181 = t96 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t83 + t181)
+    t182 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t183 = 2.0 * _runtime.select(0.0 <= -t142, 1.0, -1.0)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t188 = t187 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t188 / whole_right_front_elbow_down_alike)
-    t189 = fore_arm * s_bend_right_front_elbow_down_alike
-    t190 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t191 = np.arctan2(t186 - r_right_front_elbow_down_alike * t189, t190 + h_right_front_elbow_down_alike * t189)
-    t192 = _runtime.select(folded_right_front_elbow_down_alike, t184, t191)
-    t193 = _runtime.wrap_cut(t192) + t182
-    t194 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t195 = _runtime.select(short_right, 0.0, t187 * t194)
-    t196 = _runtime.wrap_cut(_runtime.wrap(t107 + t195))
-    t197 = t196 + t182
-    folded_left_front_elbow_down_alike = np.sqrt(t180) <= t98
-    M_left_front_elbow_down_alike = np.maximum(t181, 0.0)
-    N_left_front_elbow_down_alike = np.maximum(t176, 0.0)
+    t184 = t183 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t184 / whole_right_front_elbow_down_alike)
+    t185 = fore_arm * s_bend_right_front_elbow_down_alike
+    t186 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t187 = np.arctan2(t182 - r_right_front_elbow_down_alike * t185, t186 + h_right_front_elbow_down_alike * t185)
+    t188 = _runtime.select(folded_right_front_elbow_down_alike, t180, t187)
+    t189 = _runtime.wrap_cut(t188) + t178
+    t190 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t191 = _runtime.select(short_right, 0.0, t183 * t190)
+    t192 = _runtime.wrap_cut(_runtime.wrap(t103 + t191))
+    t193 = t192 + t178
+    folded_left_front_elbow_down_alike = np.sqrt(t176) <= t94
+    M_left_front_elbow_down_alike = np.maximum(t177, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t172, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t198 = t100 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t87 + t198)
-    t199 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t194 = t96 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t83 + t194)
+    t195 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t200 = t187 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t200 / whole_left_front_elbow_down_alike)
-    t201 = fore_arm * s_bend_left_front_elbow_down_alike
-    t202 = r_left_front_elbow_down_alike * t201
-    t203 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t204 = h_left_front_elbow_down_alike * t201
-    t205 = _runtime.select(folded_left_front_elbow_down_alike, t184, np.arctan2(t199 - t202, t203 + t204))
-    t206 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t207 = _runtime.select(short_right, 0.0, t187 * t206)
-    t208 = t118 + t182
-    t209 = _runtime.select(folded_left_front_elbow_down_alike, t184, np.arctan2(t199 + t202, t203 - t204))
-    t210 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
-    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t34 + t35) / h))
-    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t36 - t37) / h)
+    t196 = t183 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t196 / whole_left_front_elbow_down_alike)
+    t197 = fore_arm * s_bend_left_front_elbow_down_alike
+    t198 = r_left_front_elbow_down_alike * t197
+    t199 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t200 = h_left_front_elbow_down_alike * t197
+    t201 = _runtime.select(folded_left_front_elbow_down_alike, t180, np.arctan2(t195 - t198, t199 + t200))
+    t202 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t203 = _runtime.select(short_right, 0.0, t183 * t202)
+    t204 = t114 + t178
+    t205 = _runtime.select(folded_left_front_elbow_down_alike, t180, np.arctan2(t195 + t198, t199 - t200))
+    t206 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t30 + t31) / h))
+    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t32 - t33) / h)
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
-    t211 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t32 + t211)
-    t212 = t29 - reach_rear_elbow_up_alike
-    t213 = reach_rear_elbow_up_alike + t39
-    t214 = reach_rear_elbow_up_alike - t39
-    t215 = t28 & (t30 <= t212) & (t30 <= t213) & (t30 <= t214)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t44
-    s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t31 / reach_rear_elbow_up_alike)
-    t216 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t212, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t214, 0.0)
-    t217 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
-    S_rear_elbow_up_alike = t29 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t213, 0.0)
-    t218 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t217 + t218
-    t219 = -((t217 - t218) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = _runtime.select(t216, 1.0, t219)
-    t220 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t221 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t221)
-    t222 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t222 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t223 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = _runtime.select(t216, 0.0, t223)
-    t224 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t220 - t224
-    t225 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t226 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t225 + t226
-    t227 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t228 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t227 + t228
-    t229 = -((t227 - t228) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t229)
-    t230 = c_lag * c_bend_rear_elbow_up_alike
-    t231 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t231)
-    t232 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t230 - t232
-    t233 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t234 = s_lag * c_bend_rear_elbow_up_alike
-    t235 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t234 + t235
-    t236 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t233 - t236
-    t237 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t238 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t239 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t238 + t239
-    t240 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t241 = t237 - t240
-    t242 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t243 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t242 + t243
-    drawn_rear_elbow_up_alike = L1 - L_2W * t241 + a_3W * c_elbow_rear_elbow_up_alike
-    t244 = 2.0 * drawn_rear_elbow_up_alike
-    t245 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t245 + a3 * stheta23A_rear_elbow_up_alike
-    t246 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t247 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t246
-    t248 = d * t247
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t248
-    t249 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t250 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t250 + a3 * ctheta23A_rear_elbow_up_alike
-    t251 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t252 = t251 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t253 = d * t252
-    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t253
-    t254 = stheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    slope_right_rear_elbow_up_alike = t244 * (t249 - t254)
-    t255 = size * np.abs(slope_right_rear_elbow_up_alike)
-    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t241
-    t256 = t64 + np.abs(tilt_rear_elbow_up_alike)
-    t257 = -(_runtime.FEASIBILITY * (t43 + t255 / t256))
-    t258 = L2 * t241 - a3 * c_elbow_rear_elbow_up_alike
-    t259 = 0.0 <= -t258
-    t260 = L2 * c_elbow_rear_elbow_up_alike + a3 * t241
-    large_rear_elbow_up_alike = fore_arm + _runtime.select(t259, -t258, t258)
-    small_rear_elbow_up_alike = t260 * t260 / large_rear_elbow_up_alike
-    t261 = _runtime.select(t259, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    gap_rear_elbow_up_alike = t253 * t253 + t248 * t248
-    t262 = t67 * t261 - gap_rear_elbow_up_alike
-    t263 = 2.0 * point_11_rear_elbow_up_alike * t253 + 2.0 * point_21_rear_elbow_up_alike * t248
-    N_right_0_rear_elbow_up_alike = t262 + t263
-    t264 = t215 & (t257 <= N_right_0_rear_elbow_up_alike)
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t248
-    t265 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t253
-    t266 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    slope_left_rear_elbow_up_alike = t244 * (t265 - t266)
-    t267 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t268 = -(_runtime.FEASIBILITY * (t43 + t267 / t256))
-    N_left_0_rear_elbow_up_alike = t262 - t263
-    t269 = t264 & (t268 <= N_left_0_rear_elbow_up_alike)
+    t207 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t28 + t207)
+    t208 = t25 - reach_rear_elbow_up_alike
+    t209 = reach_rear_elbow_up_alike + t35
+    t210 = reach_rear_elbow_up_alike - t35
+    t211 = t24 & (t26 <= t208) & (t26 <= t209) & (t26 <= t210)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t40
+    s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t27 / reach_rear_elbow_up_alike)
+    t212 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t208, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t210, 0.0)
+    t213 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    S_rear_elbow_up_alike = t25 + reach_rear_elbow_up_alike
+    B_rear_elbow_up_alike = np.maximum(t209, 0.0)
+    t214 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t213 + t214
+    t215 = -((t213 - t214) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = _runtime.select(t212, 1.0, t215)
+    t216 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t217 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t217)
+    t218 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t218 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t219 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = _runtime.select(t212, 0.0, t219)
+    t220 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t216 - t220
+    t221 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t222 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t221 + t222
+    t223 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t224 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t223 + t224
+    t225 = -((t223 - t224) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t225)
+    t226 = c_lag * c_bend_rear_elbow_up_alike
+    t227 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t227)
+    t228 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t226 - t228
+    t229 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t230 = s_lag * c_bend_rear_elbow_up_alike
+    t231 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t230 + t231
+    t232 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t229 - t232
+    t233 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t234 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t235 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t234 + t235
+    t236 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t237 = t233 - t236
+    t238 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t239 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t238 + t239
+    drawn_rear_elbow_up_alike = L1 - L_2W * t237 + a_3W * c_elbow_rear_elbow_up_alike
+    t240 = 2.0 * drawn_rear_elbow_up_alike
+    t241 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t241 + a3 * stheta23A_rear_elbow_up_alike
+    t242 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t243 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t242
+    t244 = d * t243
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t244
+    t245 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t246 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t246 + a3 * ctheta23A_rear_elbow_up_alike
+    t247 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t248 = t247 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t249 = d * t248
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t249
+    t250 = stheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    slope_right_rear_elbow_up_alike = t240 * (t245 - t250)
+    t251 = size * np.abs(slope_right_rear_elbow_up_alike)
+    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t237
+    t252 = t60 + np.abs(tilt_rear_elbow_up_alike)
+    t253 = -(_runtime.FEASIBILITY * (t39 + t251 / t252))
+    t254 = L2 * t237 - a3 * c_elbow_rear_elbow_up_alike
+    t255 = 0.0 <= -t254
+    t256 = L2 * c_elbow_rear_elbow_up_alike + a3 * t237
+    large_rear_elbow_up_alike = fore_arm + _runtime.select(t255, -t254, t254)
+    small_rear_elbow_up_alike = t256 * t256 / large_rear_elbow_up_alike
+    t257 = _runtime.select(t255, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    gap_rear_elbow_up_alike = t249 * t249 + t244 * t244
+    t258 = t63 * t257 - gap_rear_elbow_up_alike
+    t259 = 2.0 * point_11_rear_elbow_up_alike * t249 + 2.0 * point_21_rear_elbow_up_alike * t244
+    N_right_0_rear_elbow_up_alike = t258 + t259
+    t260 = t211 & (t253 <= N_right_0_rear_elbow_up_alike)
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t244
+    t261 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t249
+    t262 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t240 * (t261 - t262)
+    t263 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t264 = -(_runtime.FEASIBILITY * (t39 + t263 / t252))
+    N_left_0_rear_elbow_up_alike = t258 - t259
+    t265 = t260 & (t264 <= N_left_0_rear_elbow_up_alike)
     slack_left_rear_elbow_up_alike = np.maximum(N_left_0_rear_elbow_up_alike, 0.0)
-    t270 = N_left_0_rear_elbow_up_alike - slack_left_rear_elbow_up_alike
-    t271 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t272 = slope_left_rear_elbow_up_alike * t270 / (t78 + t271)
+    t266 = N_left_0_rear_elbow_up_alike - slack_left_rear_elbow_up_alike
+    t267 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t268 = slope_left_rear_elbow_up_alike * t266 / (t74 + t267)
     slack_right_rear_elbow_up_alike = np.maximum(N_right_0_rear_elbow_up_alike, 0.0)
-    t273 = N_right_0_rear_elbow_up_alike - slack_right_rear_elbow_up_alike
-    t274 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
-    t275 = slope_right_rear_elbow_up_alike * t273 / (t78 + t274)
-    t276 = t272 + t275
-    t277 = t263 - slope_right_rear_elbow_up_alike * t276
-    t278 = t262 + t277
-    swing_rear_elbow_up_alike = drawn_rear_elbow_up_alike * t276
-    t279 = ctheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
-    h_right_rear_elbow_up_alike = h_right_0_rear_elbow_up_alike + t279 - r_right_0_rear_elbow_up_alike * t276
-    t280 = h_right_rear_elbow_up_alike * h_right_rear_elbow_up_alike
-    t281 = r_right_0_rear_elbow_up_alike + h_right_0_rear_elbow_up_alike * t276
-    t282 = stheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
-    r_right_rear_elbow_up_alike = t281 - t282
-    t283 = r_right_rear_elbow_up_alike * r_right_rear_elbow_up_alike
-    t284 = t280 + t283
-    t285 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t286 = _runtime.select(t259, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    t287 = gap_rear_elbow_up_alike + t67 * t286
-    t288 = _runtime.select(t77 * t284 < t285, t88 - t284, t277 - t287)
-    t289 = t263 + slope_left_rear_elbow_up_alike * t276
-    t290 = t262 - t289
-    t291 = t269 & (t75 <= t278) & (t75 <= -t288) & (t75 <= t290)
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike + t279 - r_left_0_rear_elbow_up_alike * t276
-    t292 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t282 + h_left_0_rear_elbow_up_alike * t276
-    t293 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t294 = t292 + t293
-    t295 = _runtime.select(t77 * t294 < t285, t294 - t88, t287 + t289)
-    unreachable_3 = np.logical_not(t291 & (t75 <= t295))
-    t296 = _runtime.poison(invalid | unreachable_3)
-    t297 = t210 + t296
-    folded_right_rear_elbow_up_alike = np.sqrt(t284) <= t98
-    t298 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(-t288, t101)
-    N_right_rear_elbow_up_alike = np.maximum(t278, t101)
+    t269 = N_right_0_rear_elbow_up_alike - slack_right_rear_elbow_up_alike
+    t270 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
+    t271 = slope_right_rear_elbow_up_alike * t269 / (t74 + t270)
+    t272 = t268 + t271
+    t273 = t259 - slope_right_rear_elbow_up_alike * t272
+    t274 = t258 + t273
+    swing_rear_elbow_up_alike = drawn_rear_elbow_up_alike * t272
+    t275 = ctheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
+    h_right_rear_elbow_up_alike = h_right_0_rear_elbow_up_alike + t275 - r_right_0_rear_elbow_up_alike * t272
+    t276 = h_right_rear_elbow_up_alike * h_right_rear_elbow_up_alike
+    t277 = r_right_0_rear_elbow_up_alike + h_right_0_rear_elbow_up_alike * t272
+    t278 = stheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
+    r_right_rear_elbow_up_alike = t277 - t278
+    t279 = r_right_rear_elbow_up_alike * r_right_rear_elbow_up_alike
+    t280 = t276 + t279
+    t281 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t282 = _runtime.select(t255, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    t283 = gap_rear_elbow_up_alike + t63 * t282
+    t284 = _runtime.select(t73 * t280 < t281, t84 - t280, t273 - t283)
+    t285 = t259 + slope_left_rear_elbow_up_alike * t272
+    t286 = t258 - t285
+    t287 = t265 & (t71 <= t274) & (t71 <= -t284) & (t71 <= t286)
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike + t275 - r_left_0_rear_elbow_up_alike * t272
+    t288 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t278 + h_left_0_rear_elbow_up_alike * t272
+    t289 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t290 = t288 + t289
+    t291 = _runtime.select(t73 * t290 < t281, t290 - t84, t283 + t285)
+    unreachable_3 = np.logical_not(t287 & (t71 <= t291))
+    t292 = _runtime.poison(invalid | unreachable_3)
+    t293 = t206 + t292
+    folded_right_rear_elbow_up_alike = np.sqrt(t280) <= t94
+    t294 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    M_right_rear_elbow_up_alike = np.maximum(-t284, t97)
+    N_right_rear_elbow_up_alike = np.maximum(t274, t97)
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t299 = t100 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t87 + t299)
-    t300 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t301 = 2.0 * _runtime.select(0.0 <= -t260, 1.0, -1.0)
+    t295 = t96 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t83 + t295)
+    t296 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t297 = 2.0 * _runtime.select(0.0 <= -t256, 1.0, -1.0)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t302 = t301 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t302 / whole_right_rear_elbow_up_alike)
-    t303 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t304 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t305 = np.arctan2(t300 - r_right_rear_elbow_up_alike * t303, t304 + h_right_rear_elbow_up_alike * t303)
-    t306 = _runtime.select(folded_right_rear_elbow_up_alike, t298, t305)
-    t307 = _runtime.wrap_cut(t306) + t296
-    t308 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t309 = _runtime.select(short_right, 0.0, t301 * t308)
-    t310 = _runtime.wrap_cut(_runtime.wrap(t107 + t309))
-    t311 = t310 + t296
-    folded_left_rear_elbow_up_alike = np.sqrt(t294) <= t98
-    M_left_rear_elbow_up_alike = np.maximum(t295, 0.0)
-    N_left_rear_elbow_up_alike = np.maximum(t290, 0.0)
+    t298 = t297 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t298 / whole_right_rear_elbow_up_alike)
+    t299 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t300 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t301 = np.arctan2(t296 - r_right_rear_elbow_up_alike * t299, t300 + h_right_rear_elbow_up_alike * t299)
+    t302 = _runtime.select(folded_right_rear_elbow_up_alike, t294, t301)
+    t303 = _runtime.wrap_cut(t302) + t292
+    t304 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t305 = _runtime.select(short_right, 0.0, t297 * t304)
+    t306 = _runtime.wrap_cut(_runtime.wrap(t103 + t305))
+    t307 = t306 + t292
+    folded_left_rear_elbow_up_alike = np.sqrt(t290) <= t94
+    M_left_rear_elbow_up_alike = np.maximum(t291, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t286, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t312 = t100 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t87 + t312)
-    t313 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t308 = t96 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t83 + t308)
+    t309 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t314 = t301 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t314 / whole_left_rear_elbow_up_alike)
-    t315 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t316 = r_left_rear_elbow_up_alike * t315
-    t317 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t318 = h_left_rear_elbow_up_alike * t315
-    t319 = _runtime.select(folded_left_rear_elbow_up_alike, t298, np.arctan2(t313 - t316, t317 + t318))
-    t320 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t321 = _runtime.select(short_right, 0.0, t301 * t320)
-    t322 = t118 + t296
-    t323 = _runtime.select(folded_left_rear_elbow_up_alike, t298, np.arctan2(t313 + t316, t317 - t318))
-    stheta2A_rear_elbow_down_alike = t220 + t224
-    ctheta2A_rear_elbow_down_alike = t225 - t226
-    c_relative_rear_elbow_down_alike = t230 + t232
-    t324 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t234 - t235
-    t325 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t324 - t325
-    t326 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t327 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t328 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t327 + t328
-    t329 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t330 = t326 - t329
-    t331 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t332 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t331 + t332
-    drawn_rear_elbow_down_alike = L1 - L_2W * t330 + a_3W * c_elbow_rear_elbow_down_alike
-    t333 = 2.0 * drawn_rear_elbow_down_alike
-    t334 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t334 + a3 * stheta23A_rear_elbow_down_alike
-    t335 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t336 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t335
-    t337 = d * t336
-    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t337
-    t338 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t339 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t339 + a3 * ctheta23A_rear_elbow_down_alike
-    t340 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t341 = t340 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t342 = d * t341
-    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t342
-    t343 = stheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    slope_right_rear_elbow_down_alike = t333 * (t338 - t343)
-    t344 = size * np.abs(slope_right_rear_elbow_down_alike)
-    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t330
-    t345 = t64 + np.abs(tilt_rear_elbow_down_alike)
-    t346 = -(_runtime.FEASIBILITY * (t43 + t344 / t345))
-    t347 = L2 * t330 - a3 * c_elbow_rear_elbow_down_alike
-    t348 = 0.0 <= -t347
-    t349 = L2 * c_elbow_rear_elbow_down_alike + a3 * t330
-    large_rear_elbow_down_alike = fore_arm + _runtime.select(t348, -t347, t347)
-    small_rear_elbow_down_alike = t349 * t349 / large_rear_elbow_down_alike
-    t350 = _runtime.select(t348, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    gap_rear_elbow_down_alike = t342 * t342 + t337 * t337
-    t351 = t67 * t350 - gap_rear_elbow_down_alike
-    t352 = 2.0 * point_11_rear_elbow_down_alike * t342 + 2.0 * point_21_rear_elbow_down_alike * t337
-    N_right_0_rear_elbow_down_alike = t351 + t352
-    t353 = t215 & (t346 <= N_right_0_rear_elbow_down_alike)
-    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t337
-    t354 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t342
-    t355 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t333 * (t354 - t355)
-    t356 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t357 = -(_runtime.FEASIBILITY * (t43 + t356 / t345))
-    N_left_0_rear_elbow_down_alike = t351 - t352
-    t358 = t353 & (t357 <= N_left_0_rear_elbow_down_alike)
+    t310 = t297 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t310 / whole_left_rear_elbow_up_alike)
+    t311 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t312 = r_left_rear_elbow_up_alike * t311
+    t313 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t314 = h_left_rear_elbow_up_alike * t311
+    t315 = _runtime.select(folded_left_rear_elbow_up_alike, t294, np.arctan2(t309 - t312, t313 + t314))
+    t316 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t317 = _runtime.select(short_right, 0.0, t297 * t316)
+    t318 = t114 + t292
+    t319 = _runtime.select(folded_left_rear_elbow_up_alike, t294, np.arctan2(t309 + t312, t313 - t314))
+    stheta2A_rear_elbow_down_alike = t216 + t220
+    ctheta2A_rear_elbow_down_alike = t221 - t222
+    c_relative_rear_elbow_down_alike = t226 + t228
+    t320 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t230 - t231
+    t321 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t320 - t321
+    t322 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t323 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    t324 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t323 + t324
+    t325 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t326 = t322 - t325
+    t327 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t328 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t327 + t328
+    drawn_rear_elbow_down_alike = L1 - L_2W * t326 + a_3W * c_elbow_rear_elbow_down_alike
+    t329 = 2.0 * drawn_rear_elbow_down_alike
+    t330 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t330 + a3 * stheta23A_rear_elbow_down_alike
+    t331 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t332 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t331
+    t333 = d * t332
+    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t333
+    t334 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t335 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t335 + a3 * ctheta23A_rear_elbow_down_alike
+    t336 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t337 = t336 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t338 = d * t337
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t338
+    t339 = stheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    slope_right_rear_elbow_down_alike = t329 * (t334 - t339)
+    t340 = size * np.abs(slope_right_rear_elbow_down_alike)
+    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t326
+    t341 = t60 + np.abs(tilt_rear_elbow_down_alike)
+    t342 = -(_runtime.FEASIBILITY * (t39 + t340 / t341))
+    t343 = L2 * t326 - a3 * c_elbow_rear_elbow_down_alike
+    t344 = 0.0 <= -t343
+    t345 = L2 * c_elbow_rear_elbow_down_alike + a3 * t326
+    large_rear_elbow_down_alike = fore_arm + _runtime.select(t344, -t343, t343)
+    small_rear_elbow_down_alike = t345 * t345 / large_rear_elbow_down_alike
+    t346 = _runtime.select(t344, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    gap_rear_elbow_down_alike = t338 * t338 + t333 * t333
+    t347 = t63 * t346 - gap_rear_elbow_down_alike
+    t348 = 2.0 * point_11_rear_elbow_down_alike * t338 + 2.0 * point_21_rear_elbow_down_alike * t333
+    N_right_0_rear_elbow_down_alike = t347 + t348
+    t349 = t211 & (t342 <= N_right_0_rear_elbow_down_alike)
+    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t333
+    t350 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t338
+    t351 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t329 * (t350 - t351)
+    t352 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t353 = -(_runtime.FEASIBILITY * (t39 + t352 / t341))
+    N_left_0_rear_elbow_down_alike = t347 - t348
+    t354 = t349 & (t353 <= N_left_0_rear_elbow_down_alike)
     slack_left_rear_elbow_down_alike = np.maximum(N_left_0_rear_elbow_down_alike, 0.0)
-    t359 = N_left_0_rear_elbow_down_alike - slack_left_rear_elbow_down_alike
-    t360 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t361 = slope_left_rear_elbow_down_alike * t359 / (t78 + t360)
+    t355 = N_left_0_rear_elbow_down_alike - slack_left_rear_elbow_down_alike
+    t356 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t357 = slope_left_rear_elbow_down_alike * t355 / (t74 + t356)
     slack_right_rear_elbow_down_alike = np.maximum(N_right_0_rear_elbow_down_alike, 0.0)
-    t362 = N_right_0_rear_elbow_down_alike - slack_right_rear_elbow_down_alike
-    t363 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
-    t364 = slope_right_rear_elbow_down_alike * t362 / (t78 + t363)
-    t365 = t361 + t364
-    t366 = t352 - slope_right_rear_elbow_down_alike * t365
-    t367 = t351 + t366
-    swing_rear_elbow_down_alike = drawn_rear_elbow_down_alike * t365
-    t368 = ctheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
-    h_right_rear_elbow_down_alike = h_right_0_rear_elbow_down_alike + t368 - r_right_0_rear_elbow_down_alike * t365
-    t369 = h_right_rear_elbow_down_alike * h_right_rear_elbow_down_alike
-    t370 = r_right_0_rear_elbow_down_alike + h_right_0_rear_elbow_down_alike * t365
-    t371 = stheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
-    r_right_rear_elbow_down_alike = t370 - t371
-    t372 = r_right_rear_elbow_down_alike * r_right_rear_elbow_down_alike
-    t373 = t369 + t372
-    t374 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t375 = _runtime.select(t348, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    t376 = gap_rear_elbow_down_alike + t67 * t375
-    t377 = _runtime.select(t77 * t373 < t374, t88 - t373, t366 - t376)
-    t378 = t352 + slope_left_rear_elbow_down_alike * t365
-    t379 = t351 - t378
-    t380 = t358 & (t75 <= t367) & (t75 <= -t377) & (t75 <= t379)
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike + t368 - r_left_0_rear_elbow_down_alike * t365
-    t381 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t371 + h_left_0_rear_elbow_down_alike * t365
-    t382 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t383 = t381 + t382
-    t384 = _runtime.select(t77 * t383 < t374, t383 - t88, t376 + t378)
-    unreachable_4 = np.logical_not(t380 & (t75 <= t384))
-    t385 = _runtime.poison(invalid | unreachable_4)
-    t386 = t210 + t385
-    folded_right_rear_elbow_down_alike = np.sqrt(t373) <= t98
-    t387 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(-t377, t101)
-    N_right_rear_elbow_down_alike = np.maximum(t367, t101)
+    t358 = N_right_0_rear_elbow_down_alike - slack_right_rear_elbow_down_alike
+    t359 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
+    t360 = slope_right_rear_elbow_down_alike * t358 / (t74 + t359)
+    t361 = t357 + t360
+    t362 = t348 - slope_right_rear_elbow_down_alike * t361
+    t363 = t347 + t362
+    swing_rear_elbow_down_alike = drawn_rear_elbow_down_alike * t361
+    t364 = ctheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
+    h_right_rear_elbow_down_alike = h_right_0_rear_elbow_down_alike + t364 - r_right_0_rear_elbow_down_alike * t361
+    t365 = h_right_rear_elbow_down_alike * h_right_rear_elbow_down_alike
+    t366 = r_right_0_rear_elbow_down_alike + h_right_0_rear_elbow_down_alike * t361
+    t367 = stheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
+    r_right_rear_elbow_down_alike = t366 - t367
+    t368 = r_right_rear_elbow_down_alike * r_right_rear_elbow_down_alike
+    t369 = t365 + t368
+    t370 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t371 = _runtime.select(t344, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    t372 = gap_rear_elbow_down_alike + t63 * t371
+    t373 = _runtime.select(t73 * t369 < t370, t84 - t369, t362 - t372)
+    t374 = t348 + slope_left_rear_elbow_down_alike * t361
+    t375 = t347 - t374
+    t376 = t354 & (t71 <= t363) & (t71 <= -t373) & (t71 <= t375)
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike + t364 - r_left_0_rear_elbow_down_alike * t361
+    t377 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t367 + h_left_0_rear_elbow_down_alike * t361
+    t378 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t379 = t377 + t378
+    t380 = _runtime.select(t73 * t379 < t370, t379 - t84, t372 + t374)
+    unreachable_4 = np.logical_not(t376 & (t71 <= t380))
+    t381 = _runtime.poison(invalid | unreachable_4)
+    t382 = t206 + t381
+    folded_right_rear_elbow_down_alike = np.sqrt(t369) <= t94
+    t383 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    M_right_rear_elbow_down_alike = np.maximum(-t373, t97)
+    N_right_rear_elbow_down_alike = np.maximum(t363, t97)
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t388 = t100 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t87 + t388)
-    t389 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t390 = 2.0 * _runtime.select(0.0 <= -t349, 1.0, -1.0)
+    t384 = t96 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t83 + t384)
+    t385 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t386 = 2.0 * _runtime.select(0.0 <= -t345, 1.0, -1.0)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t391 = t390 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t391 / whole_right_rear_elbow_down_alike)
-    t392 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t393 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t394 = np.arctan2(t389 - r_right_rear_elbow_down_alike * t392, t393 + h_right_rear_elbow_down_alike * t392)
-    t395 = _runtime.select(folded_right_rear_elbow_down_alike, t387, t394)
-    t396 = _runtime.wrap_cut(t395) + t385
-    t397 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t398 = _runtime.select(short_right, 0.0, t390 * t397)
-    t399 = _runtime.wrap_cut(_runtime.wrap(t107 + t398))
-    t400 = t399 + t385
-    folded_left_rear_elbow_down_alike = np.sqrt(t383) <= t98
-    M_left_rear_elbow_down_alike = np.maximum(t384, 0.0)
-    N_left_rear_elbow_down_alike = np.maximum(t379, 0.0)
+    t387 = t386 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t387 / whole_right_rear_elbow_down_alike)
+    t388 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t389 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t390 = np.arctan2(t385 - r_right_rear_elbow_down_alike * t388, t389 + h_right_rear_elbow_down_alike * t388)
+    t391 = _runtime.select(folded_right_rear_elbow_down_alike, t383, t390)
+    t392 = _runtime.wrap_cut(t391) + t381
+    t393 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t394 = _runtime.select(short_right, 0.0, t386 * t393)
+    t395 = _runtime.wrap_cut(_runtime.wrap(t103 + t394))
+    t396 = t395 + t381
+    folded_left_rear_elbow_down_alike = np.sqrt(t379) <= t94
+    M_left_rear_elbow_down_alike = np.maximum(t380, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t375, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t401 = t100 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t87 + t401)
-    t402 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t397 = t96 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t83 + t397)
+    t398 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t403 = t390 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t403 / whole_left_rear_elbow_down_alike)
-    t404 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t405 = r_left_rear_elbow_down_alike * t404
-    t406 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t407 = h_left_rear_elbow_down_alike * t404
-    t408 = _runtime.select(folded_left_rear_elbow_down_alike, t387, np.arctan2(t402 - t405, t406 + t407))
-    t409 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t410 = _runtime.select(short_right, 0.0, t390 * t409)
-    t411 = t118 + t385
-    t412 = _runtime.select(folded_left_rear_elbow_down_alike, t387, np.arctan2(t402 + t405, t406 - t407))
-    t413 = nowhere | folded | short
-    t414 = t413 | folded_right | short_right | folded_left
-    t415 = _runtime.status(invalid, unreachable, t414)
-    t416 = t413 | folded_right_front_elbow_down_alike | short_right
-    t417 = _runtime.status(invalid, unreachable_2, t416 | folded_left_front_elbow_down_alike)
-    t418 = nowhere | folded_rear_elbow_up_alike | short
-    t419 = t418 | folded_right_rear_elbow_up_alike | short_right
-    t420 = _runtime.status(invalid, unreachable_3, t419 | folded_left_rear_elbow_up_alike)
-    t421 = t418 | folded_right_rear_elbow_down_alike | short_right
-    t422 = _runtime.status(invalid, unreachable_4, t421 | folded_left_rear_elbow_down_alike)
+    t399 = t386 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t399 / whole_left_rear_elbow_down_alike)
+    t400 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t401 = r_left_rear_elbow_down_alike * t400
+    t402 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t403 = h_left_rear_elbow_down_alike * t400
+    t404 = _runtime.select(folded_left_rear_elbow_down_alike, t383, np.arctan2(t398 - t401, t402 + t403))
+    t405 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t406 = _runtime.select(short_right, 0.0, t386 * t405)
+    t407 = t114 + t381
+    t408 = _runtime.select(folded_left_rear_elbow_down_alike, t383, np.arctan2(t398 + t401, t402 - t403))
+    t409 = nowhere | folded | short
+    t410 = t409 | folded_right | short_right | folded_left
+    t411 = _runtime.status(invalid, unreachable, t410)
+    t412 = t409 | folded_right_front_elbow_down_alike | short_right
+    t413 = _runtime.status(invalid, unreachable_2, t412 | folded_left_front_elbow_down_alike)
+    t414 = nowhere | folded_rear_elbow_up_alike | short
+    t415 = t414 | folded_right_rear_elbow_up_alike | short_right
+    t416 = _runtime.status(invalid, unreachable_3, t415 | folded_left_rear_elbow_up_alike)
+    t417 = t414 | folded_right_rear_elbow_down_alike | short_right
+    t418 = _runtime.status(invalid, unreachable_4, t417 | folded_left_rear_elbow_down_alike)
     return (
-        t97,
+        t93,
+        t102,
         t106,
-        t110,
-        _runtime.wrap_cut(t116) + t96,
-        _runtime.wrap(t107 + t117) + t96,
-        t119,
-        t97,
+        _runtime.wrap_cut(t112) + t92,
+        _runtime.wrap(t103 + t113) + t92,
+        t115,
+        t93,
+        t102,
         t106,
-        t110,
-        _runtime.wrap_cut(t120) + t96,
-        _runtime.wrap(t107 - t117) + t96,
-        t119,
-        t183,
+        _runtime.wrap_cut(t116) + t92,
+        _runtime.wrap(t103 - t113) + t92,
+        t115,
+        t179,
+        t189,
         t193,
-        t197,
-        _runtime.wrap_cut(t205) + t182,
-        _runtime.wrap(t107 + t207) + t182,
-        t208,
-        t183,
+        _runtime.wrap_cut(t201) + t178,
+        _runtime.wrap(t103 + t203) + t178,
+        t204,
+        t179,
+        t189,
         t193,
-        t197,
-        _runtime.wrap_cut(t209) + t182,
-        _runtime.wrap(t107 - t207) + t182,
-        t208,
-        t297,
+        _runtime.wrap_cut(t205) + t178,
+        _runtime.wrap(t103 - t203) + t178,
+        t204,
+        t293,
+        t303,
         t307,
-        t311,
-        _runtime.wrap_cut(t319) + t296,
-        _runtime.wrap(t107 + t321) + t296,
-        t322,
-        t297,
+        _runtime.wrap_cut(t315) + t292,
+        _runtime.wrap(t103 + t317) + t292,
+        t318,
+        t293,
+        t303,
         t307,
-        t311,
-        _runtime.wrap_cut(t323) + t296,
-        _runtime.wrap(t107 - t321) + t296,
-        t322,
-        t386,
+        _runtime.wrap_cut(t319) + t292,
+        _runtime.wrap(t103 - t317) + t292,
+        t318,
+        t382,
+        t392,
         t396,
-        t400,
-        _runtime.wrap_cut(t408) + t385,
-        _runtime.wrap(t107 + t410) + t385,
-        t411,
-        t386,
+        _runtime.wrap_cut(t404) + t381,
+        _runtime.wrap(t103 + t406) + t381,
+        t407,
+        t382,
+        t392,
         t396,
-        t400,
-        _runtime.wrap_cut(t412) + t385,
-        _runtime.wrap(t107 - t410) + t385,
+        _runtime.wrap_cut(t408) + t381,
+        _runtime.wrap(t103 - t406) + t381,
+        t407,
         t411,
-        t415,
-        t415,
-        t417,
-        t417,
-        t420,
-        t420,
-        t422,
-        t422,
+        t411,
+        t413,
+        t413,
+        t416,
+        t416,
+        t418,
+        t418,
     )
 
 
@@ -1923,14 +1901,13 @@ def _wrist_length(psi, phi, d, gs, al):
     t2 = d - (gs - al) * t1
     t3 = (gs + al) * t1 - d
     t4 = np.sqrt(np.maximum(t2, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
-    t5 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t6 = t5 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    invalid = np.logical_not(t6 & np.isfinite(psi) & np.isfinite(phi))
+    t5 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
+    t6 = t5 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
     t7 = -(_runtime.FEASIBILITY * (d / 2.0))
     t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t3)
-    t9 = _runtime.poison(invalid | np.logical_not(t8 & (t7 <= t2)))
+    failed = np.logical_not(t6) | np.logical_not(t8 & (t7 <= t2))
     return (
-        t4 / t1 + t9,
+        t4 / t1 + _runtime.poison(failed),
     )
 
 
@@ -1995,13 +1972,12 @@ def _largest_yaw(phi, beta_min, d, gs, al):
     span = (gs + al * c_beta_min) * c_phi
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
-    t3 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t4 = t3 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
-    t5 = t4 & np.isfinite(phi) & np.isfinite(beta_min)
+    t3 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
+    t4 = t3 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(phi) & np.isfinite(beta_min))
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    t6 = _runtime.poison(np.logical_not(t5) | unreachable)
+    t5 = _runtime.poison(np.logical_not(t4) | unreachable)
     return (
-        _runtime.wrap_down(2.0 * t2) + t6,
+        _runtime.wrap_down(2.0 * t2) + t5,
     )
 
 
@@ -2031,13 +2007,12 @@ def _largest_angle(beta_min, d, gs, al):
     span = gs + al * c_beta_min
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d) + np.sqrt(span))
-    t3 = np.isfinite(d) & (0.0 <= d) & np.isfinite(gs)
-    t4 = t3 & (0.0 <= gs) & np.isfinite(al) & (0.0 <= al)
+    t3 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
+    t4 = t3 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & np.isfinite(beta_min)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
-    failed = np.logical_not(t4 & np.isfinite(beta_min)) | unreachable
-    t5 = _runtime.wrap_down(2.0 * t2) + _runtime.poison(failed)
+    t5 = _runtime.poison(np.logical_not(t4) | unreachable)
     return (
-        t5,
+        _runtime.wrap_down(2.0 * t2) + t5,
     )
 
 

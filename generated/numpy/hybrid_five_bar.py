@@ -3,18 +3,18 @@
 # Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
 #     Manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 22 add, 30 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
-#   passive_angles: 16 add, 33 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
+#   fk: 22 add, 22 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
+#   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
 #     sqrt
-#   jacobian_parallel: 27 add, 29 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
-#   jacobian_serial: 24 add, 29 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
-#   jacobian: 35 add, 29 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
-#   determinant: 20 add, 29 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
-#   singularities: 26 add, 29 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
-#   condition_number: 9 add, 30 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
-#   ik: 29 add, 62 compare and select, 6 atan2, 14 multiply, 11 sqrt
-#   workspace_contains: 12 add, 32 compare and select, 6 multiply, 3 sqrt
-#   workspace_volume: 15 add, 31 compare and select, 4 divide, 29 multiply
+#   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
+#   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
+#   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
+#   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
+#   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
+#   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
+#   ik: 56 compare and select, 34 add, 6 atan2, 33 multiply, 5 sqrt
+#   workspace_contains: 21 compare and select, 11 add, 13 multiply
+#   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
 """Five-bar linkage on a revolute.
 
 The pivots A, the origin, and B lie L0 apart on the y axis.  The bars AC and BD of length L1 are
@@ -103,10 +103,10 @@ def _fk(theta1, theta2, theta3, L0, L1, L2):
     height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
     t9 = n_1 * height
     P_r = C_r - (t6 - t9)
-    t10 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t11 = t10 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t12 = t11 & np.isfinite(theta1) & np.isfinite(theta2)
-    invalid = np.logical_not(t12 & np.isfinite(theta3))
+    t10 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t12 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t11 & t12)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
     t13 = _runtime.poison(invalid | unreachable)
     t14 = distance * n_1 / 2.0
@@ -174,12 +174,11 @@ def _passive_angles(theta1, theta2, theta3, L0, L1, L2):
     t11 = t5 * height
     CP_y = t10 + t11
     t12 = _runtime.wrap_cut(-np.arctan2(DP_r_right_of_CD, CP_y))
-    t13 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t14 = t13 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t15 = t14 & np.isfinite(theta1) & np.isfinite(theta2)
+    t13 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t14 = t13 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t15 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
-    failed = np.logical_not(t15 & np.isfinite(theta3)) | unreachable
-    t16 = _runtime.poison(failed)
+    t16 = _runtime.poison(np.logical_not(t14 & t15) | unreachable)
     DP_r = t6 + t9
     CP_y_right_of_CD = t10 - t11
     t17 = _runtime.wrap_cut(np.arctan2(DP_r, -CP_y_right_of_CD))
@@ -220,9 +219,9 @@ def _jacobian_parallel(theta1, theta2, theta3, L0, L1, L2):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
-    t1 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t2 = t1 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t3 = t2 & np.isfinite(theta1) & np.isfinite(theta2)
+    t1 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t2 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t3 = t1 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t2
     t4 = L0 + L1 + L2
     t5 = L2 * 2.0
     t6 = L1 * s2 - L1 * s3
@@ -230,8 +229,7 @@ def _jacobian_parallel(theta1, theta2, theta3, L0, L1, L2):
     apart = np.sqrt(t6 * t6 + t7 * t7)
     t8 = t5 - apart
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t8)
-    failed = np.logical_not(t3 & np.isfinite(theta3)) | unreachable
-    t9 = _runtime.poison(failed)
+    t9 = _runtime.poison(np.logical_not(t3) | unreachable)
     t10 = L2 * s1 + t9
     t11 = 0.0 + t9
     t12 = L2 * c1 + t9
@@ -321,12 +319,11 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
-    t11 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t12 = t11 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t13 = t12 & np.isfinite(theta1) & np.isfinite(theta2)
+    t11 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
-    failed = np.logical_not(t13 & np.isfinite(theta3)) | unreachable
-    t14 = _runtime.poison(failed)
+    t14 = _runtime.poison(np.logical_not(t12 & t13) | unreachable)
     t15 = distance * n_1 / 2.0
     t16 = t6 * height
     CP_y = t15 + t16
@@ -390,12 +387,11 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     P_r = C_r - DP_r_right_of_CD
-    t11 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t12 = t11 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t13 = t12 & np.isfinite(theta1) & np.isfinite(theta2)
+    t11 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
-    failed = np.logical_not(t13 & np.isfinite(theta3)) | unreachable
-    t14 = _runtime.poison(failed)
+    t14 = _runtime.poison(np.logical_not(t12 & t13) | unreachable)
     t15 = distance * n_1 / 2.0
     t16 = t6 * height
     CP_y_right_of_CD = t15 - t16
@@ -488,12 +484,11 @@ def _determinant(theta1, theta2, theta3, L0, L1, L2):
     CP_y_right_of_CD = t11 - t12
     side = distance * height
     t14 = t13 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side
-    t15 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t16 = t15 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t17 = t16 & np.isfinite(theta1) & np.isfinite(theta2)
+    t15 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t16 = t15 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t17 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
-    failed = np.logical_not(t17 & np.isfinite(theta3)) | unreachable
-    t18 = _runtime.poison(failed)
+    t18 = _runtime.poison(np.logical_not(t16 & t17) | unreachable)
     t19 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD)
     t20 = t19 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side
     return (
@@ -548,12 +543,11 @@ def _singularities(theta1, theta2, theta3, L0, L1, L2):
     height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
-    t11 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t12 = t11 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t13 = t12 & np.isfinite(theta1) & np.isfinite(theta2)
+    t11 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
-    failed = np.logical_not(t13 & np.isfinite(theta3)) | unreachable
-    t14 = _runtime.poison(failed)
+    t14 = _runtime.poison(np.logical_not(t12 & t13) | unreachable)
     t15 = distance * n_1 / 2.0
     t16 = t6 * height
     CP_y = t15 + t16
@@ -609,15 +603,15 @@ def _condition_number(theta1, theta2, theta3, L0, L1, L2):
     slack = np.maximum(t7, 0.0)
     height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
     t8 = _runtime.select(coincide, 1.0, np.maximum(t5, height))
-    t9 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t10 = t9 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t11 = t10 & np.isfinite(theta1) & np.isfinite(theta2)
+    t9 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t10 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t11 = t9 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t10
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t7)
-    failed = np.logical_not(t11 & np.isfinite(theta3)) | unreachable
-    t12 = t8 / np.minimum(t5, height) + _runtime.poison(failed)
+    t12 = _runtime.poison(np.logical_not(t11) | unreachable)
+    t13 = t8 / np.minimum(t5, height) + t12
     return (
-        t12,
-        t12,
+        t13,
+        t13,
     )
 
 
@@ -646,90 +640,101 @@ def condition_number(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = 
 
 
 def _ik(x, y, z, L0, L1, L2):
-    r = np.sqrt(x * x + z * z)
+    r2 = x * x + z * z
+    r = np.sqrt(r2)
     t1 = L1 + L2
     t2 = _runtime.VANISHING * (L0 + t1)
     on_axis = r <= t2
     t3 = _runtime.select(on_axis, 0.0, np.arctan2(z, -x))
-    t4 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t5 = t4 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t6 = t5 & np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t4 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t5 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t6 = t4 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t5
     invalid = np.logical_not(t6)
-    t7 = -(_runtime.FEASIBILITY * t1)
-    t8 = r * r
-    reach_c = np.sqrt(t8 + y * y)
-    t9 = t1 - reach_c
-    t10 = L1 - L2
-    t11 = reach_c + t10
-    t12 = reach_c - t10
-    t13 = y - L0
-    reach_d = np.sqrt(t8 + t13 * t13)
-    t14 = t1 - reach_d
-    t15 = (t7 <= t9) & (t7 <= t11) & (t7 <= t12) & (t7 <= t14)
-    t16 = reach_d + t10
-    t17 = reach_d - t10
-    unreachable = np.logical_not(t15 & (t7 <= t16) & (t7 <= t17))
-    t18 = _runtime.poison(invalid | unreachable)
-    t19 = _runtime.wrap_cut(t3) + t18
-    at_A = reach_c <= t2
-    t20 = np.arctan2(r, y)
-    t21 = np.sqrt(np.maximum(t9, 0.0)) * np.sqrt(np.maximum(t12, 0.0))
-    t22 = np.sqrt(reach_c + t1) * np.sqrt(np.maximum(t11, 0.0))
-    t23 = 2.0 * np.arctan2(t21, t22)
-    t24 = _runtime.select(at_A, 0.0, t20 - t23)
-    t25 = _runtime.wrap_cut(t24) + t18
-    at_B = reach_d <= t2
-    t26 = np.arctan2(r, t13)
-    t27 = np.sqrt(np.maximum(t14, 0.0)) * np.sqrt(np.maximum(t17, 0.0))
-    t28 = np.sqrt(reach_d + t1) * np.sqrt(np.maximum(t16, 0.0))
-    t29 = 2.0 * np.arctan2(t27, t28)
-    t30 = _runtime.select(at_B, 0.0, t26 - t29)
-    t31 = _runtime.wrap_cut(t30) + t18
-    t32 = _runtime.select(at_B, 0.0, t26 + t29)
-    t33 = _runtime.wrap_down(t32) + t18
-    t34 = _runtime.select(at_A, 0.0, t20 + t23)
-    t35 = _runtime.wrap_down(t34) + t18
-    t36 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
-    t37 = _runtime.wrap_cut(-t36) + t18
-    t38 = _runtime.wrap_up(-t34) + t18
-    t39 = _runtime.wrap_up(-t32) + t18
-    t40 = _runtime.wrap_cut(-t30) + t18
-    t41 = _runtime.wrap_cut(-t24) + t18
-    t42 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
-    t43 = _runtime.status(invalid, unreachable, t42)
+    t7 = L2 * 2.0
+    t8 = _runtime.FEASIBILITY * (t1 * (L1 * 2.0 + t7))
+    t9 = t1 * t1
+    square_c = r2 + y * y
+    t10 = t9 - square_c
+    t11 = L1 - L2
+    t12 = _runtime.FEASIBILITY * (t1 * 2.0 * np.abs(t11))
+    t13 = t11 * t11
+    t14 = square_c - t13
+    t15 = y - L0
+    square_d = r2 + t15 * t15
+    t16 = t9 - square_d
+    t17 = square_d - t13
+    t18 = (-t8 <= t10) & (-t12 <= t14) & (-t8 <= t16) & (-t12 <= t17)
+    unreachable = np.logical_not(t18)
+    t19 = _runtime.poison(invalid | unreachable)
+    t20 = _runtime.wrap_cut(t3) + t19
+    at_A = r + np.abs(y) <= t2
+    no_link_c = L1 * L2 <= t9 * _runtime.VANISHING
+    M_c = np.maximum(t14, 0.0)
+    N_c = np.maximum(t10, 0.0)
+    ahead_c = _runtime.select(no_link_c, 1.0, t1 * M_c + N_c * t11)
+    t21 = ahead_c * r
+    beyond_c = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(M_c) * np.sqrt(N_c))
+    t22 = y * beyond_c
+    t23 = y * ahead_c
+    t24 = r * beyond_c
+    t25 = _runtime.select(at_A, 0.0, np.arctan2(t21 - t22, t23 + t24))
+    t26 = _runtime.wrap_cut(t25) + t19
+    at_B = r + np.abs(t15) <= t2
+    M_d = np.maximum(t17, 0.0)
+    N_d = np.maximum(t16, 0.0)
+    ahead_d = _runtime.select(no_link_c, 1.0, t1 * M_d + t11 * N_d)
+    t27 = ahead_d * r
+    beyond_d = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(M_d) * np.sqrt(N_d))
+    t28 = t15 * beyond_d
+    t29 = t15 * ahead_d
+    t30 = r * beyond_d
+    t31 = _runtime.select(at_B, 0.0, np.arctan2(t27 - t28, t29 + t30))
+    t32 = _runtime.wrap_cut(t31) + t19
+    t33 = _runtime.select(at_B, 0.0, np.arctan2(t27 + t28, t29 - t30))
+    t34 = _runtime.wrap_cut(t33) + t19
+    t35 = _runtime.select(at_A, 0.0, np.arctan2(t21 + t22, t23 - t24))
+    t36 = _runtime.wrap_cut(t35) + t19
+    t37 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
+    t38 = _runtime.wrap_cut(-t37) + t19
+    t39 = _runtime.wrap_cut(-t35) + t19
+    t40 = _runtime.wrap_cut(-t33) + t19
+    t41 = _runtime.wrap_cut(-t31) + t19
+    t42 = _runtime.wrap_cut(-t25) + t19
+    t43 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
+    t44 = _runtime.status(invalid, unreachable, t43)
     return (
-        t19,
-        t25,
-        t31,
-        t19,
-        t25,
-        t33,
-        t19,
-        t35,
-        t31,
-        t19,
-        t35,
-        t33,
-        t37,
+        t20,
+        t26,
+        t32,
+        t20,
+        t26,
+        t34,
+        t20,
+        t36,
+        t32,
+        t20,
+        t36,
+        t34,
         t38,
         t39,
-        t37,
+        t40,
         t38,
-        t40,
-        t37,
-        t41,
         t39,
-        t37,
         t41,
+        t38,
+        t42,
         t40,
-        t43,
-        t43,
-        t43,
-        t43,
-        t43,
-        t43,
-        t43,
-        t43,
+        t38,
+        t42,
+        t41,
+        t44,
+        t44,
+        t44,
+        t44,
+        t44,
+        t44,
+        t44,
+        t44,
     )
 
 
@@ -765,22 +770,24 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
 
 
 def _workspace_contains(x, y, z, L0, L1, L2):
-    t1 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t2 = t1 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
-    t3 = t2 & np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t1 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t2 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t3 = t1 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t2
     t4 = L1 + L2
-    t5 = -(_runtime.FEASIBILITY * t4)
-    r = np.sqrt(x * x + z * z)
-    t6 = r * r
-    reach_c = np.sqrt(t6 + y * y)
+    t5 = _runtime.FEASIBILITY * (t4 * (L1 * 2.0 + L2 * 2.0))
+    t6 = t4 * t4
+    r2 = x * x + z * z
+    square_c = r2 + y * y
     t7 = L1 - L2
-    t8 = (t5 <= t4 - reach_c) & (t5 <= reach_c + t7) & (t5 <= reach_c - t7)
-    t9 = y - L0
-    reach_d = np.sqrt(t6 + t9 * t9)
-    t10 = t8 & (t5 <= t4 - reach_d) & (t5 <= reach_d + t7)
-    failed = np.logical_not(t3) | np.logical_not(t10 & (t5 <= reach_d - t7))
+    t8 = _runtime.FEASIBILITY * (t4 * 2.0 * np.abs(t7))
+    t9 = t7 * t7
+    t10 = (-t5 <= t6 - square_c) & (-t8 <= square_c - t9)
+    t11 = y - L0
+    square_d = r2 + t11 * t11
+    t12 = t10 & (-t5 <= t6 - square_d) & (-t8 <= square_d - t9)
+    t13 = np.logical_not(np.logical_not(t3) | np.logical_not(t12))
     return (
-        np.logical_not(failed),
+        t13,
     )
 
 
@@ -827,8 +834,8 @@ def _workspace_volume(L0, L1, L2):
     t16 = _runtime.select(2.0 * np.maximum(m, r) <= L0, t12 + t14, t15)
     t17 = _runtime.select(L0 <= 2.0 * np.minimum(m, r), 3.141592653589793 * t11 / 6.0, t16)
     t18 = _runtime.select(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, _runtime.select(t2 <= L0, t8, t17))
-    t19 = np.isfinite(L0) & (0.0 <= L0) & np.isfinite(L1)
-    t20 = t19 & (0.0 <= L1) & np.isfinite(L2) & (0.0 <= L2)
+    t19 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t20 = t19 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
     unreachable = np.logical_not(-(t1 * _runtime.FEASIBILITY) <= t1)
     t21 = _runtime.poison(np.logical_not(t20) | unreachable)
     return (

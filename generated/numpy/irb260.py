@@ -15,10 +15,10 @@
 #   determinant: 4 add, 7 multiply, 2 sincos
 #   singularities: 4 add, 4 multiply, 2 sincos
 #   point_velocity: 11 add, 20 multiply, 3 sincos
-#   ik: 45 add, 87 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
+#   ik: 45 add, 71 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
 #   workspace_section: 1 compare and select, 4 add
 #   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
-#   workspace_contains: 38 compare and select, 17 add, 6 multiply, 3 sqrt
+#   workspace_contains: 24 compare and select, 17 add, 6 multiply, 3 sqrt
 """ABB IRB 260 palletiser.
 
 A turret (theta1, about z) carries a lower arm (theta2) and an upper arm (theta3, against the
@@ -598,90 +598,88 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     s_turret_back_elbow_up = _runtime.select(on_axis, 0.0, px)
     c_turret = _runtime.select(on_axis, 1.0, py)
     t5 = _runtime.wrap_cut(-np.arctan2(s_turret_back_elbow_up, c_turret))
-    t6 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
-    t7 = t6 & (0.0 <= l2) & np.isfinite(l3) & (0.0 <= l3)
-    t8 = t7 & np.isfinite(l4) & (0.0 <= l4) & np.isfinite(l5)
-    t9 = t8 & (0.0 <= l5) & np.isfinite(l6) & (0.0 <= l6)
-    t10 = t9 & np.isfinite(px) & np.isfinite(py) & np.isfinite(pz)
-    invalid = np.logical_not(t10 & np.isfinite(psi))
-    t11 = -(_runtime.FEASIBILITY * t3)
+    t6 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(l3) & np.isfinite(l4) & np.isfinite(l5) & np.isfinite(l6)
+    t7 = t6 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= l3) & (0.0 <= l4)
+    t8 = np.isfinite(px) & np.isfinite(py) & np.isfinite(pz) & np.isfinite(psi)
+    invalid = np.logical_not(t7 & (0.0 <= l5) & (0.0 <= l6) & t8)
+    t9 = -(_runtime.FEASIBILITY * t3)
     h = pz - l2 + l5
-    t12 = h * h
-    t13 = r - t2
-    reach = np.sqrt(t12 + t13 * t13)
-    t14 = t1 - reach
-    t15 = l3 - l4
-    t16 = t15 + reach
-    t17 = reach - t15
-    unreachable = np.logical_not((t11 <= t14) & (t11 <= t16) & (t11 <= t17))
-    t18 = _runtime.poison(invalid | unreachable)
-    t19 = t5 + t18
+    t10 = h * h
+    t11 = r - t2
+    reach = np.sqrt(t10 + t11 * t11)
+    t12 = t1 - reach
+    t13 = l3 - l4
+    t14 = t13 + reach
+    t15 = reach - t13
+    unreachable = np.logical_not((t9 <= t12) & (t9 <= t14) & (t9 <= t15))
+    t16 = _runtime.poison(invalid | unreachable)
+    t17 = t5 + t16
     folded = reach <= t4
     no_link = l3 * l4 <= _runtime.VANISHING * (t1 * t1)
-    rA = np.sqrt(np.maximum(t14, 0.0))
-    rC = np.sqrt(np.maximum(t17, 0.0))
+    rA = np.sqrt(np.maximum(t12, 0.0))
+    rC = np.sqrt(np.maximum(t15, 0.0))
     rS = np.sqrt(t1 + reach)
-    rB = np.sqrt(np.maximum(t16, 0.0))
-    t20 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
-    t21 = np.arctan2(-t13, h)
-    t22 = _runtime.wrap_up(-_runtime.select(folded, 0.0, t20 + t21))
-    t23 = 2.0 * np.arctan2(rA * rS, rC * rB)
-    t24 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t23)
-    t25 = c_psi * s_turret_back_elbow_up
-    t26 = s_psi * s_turret_back_elbow_up
-    t27 = np.arctan2(s_psi * c_turret + t25, c_psi * c_turret - t26)
-    t28 = _runtime.wrap_cut(t27) + t18
-    t29 = _runtime.wrap(_runtime.select(folded, 0.0, t20 - t21))
-    t30 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t23)
+    rB = np.sqrt(np.maximum(t14, 0.0))
+    t18 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
+    t19 = np.arctan2(-t11, h)
+    t20 = _runtime.wrap_up(-_runtime.select(folded, 0.0, t18 + t19))
+    t21 = 2.0 * np.arctan2(rA * rS, rC * rB)
+    t22 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t21)
+    t23 = c_psi * s_turret_back_elbow_up
+    t24 = s_psi * s_turret_back_elbow_up
+    t25 = np.arctan2(s_psi * c_turret + t23, c_psi * c_turret - t24)
+    t26 = _runtime.wrap_cut(t25) + t16
+    t27 = _runtime.wrap(_runtime.select(folded, 0.0, t18 - t19))
+    t28 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t21)
     c_turret_back_elbow_up = _runtime.select(on_axis, 1.0, -py)
-    t31 = np.arctan2(s_turret_back_elbow_up, c_turret_back_elbow_up)
-    t32 = r + t2
-    reach_back_elbow_up = np.sqrt(t12 + t32 * t32)
-    t33 = t1 - reach_back_elbow_up
-    t34 = t15 + reach_back_elbow_up
-    t35 = reach_back_elbow_up - t15
-    unreachable_2 = np.logical_not((t11 <= t33) & (t11 <= t34) & (t11 <= t35))
-    t36 = _runtime.poison(invalid | unreachable_2)
-    t37 = _runtime.wrap_cut(t31) + t36
+    t29 = np.arctan2(s_turret_back_elbow_up, c_turret_back_elbow_up)
+    t30 = r + t2
+    reach_back_elbow_up = np.sqrt(t10 + t30 * t30)
+    t31 = t1 - reach_back_elbow_up
+    t32 = t13 + reach_back_elbow_up
+    t33 = reach_back_elbow_up - t13
+    unreachable_2 = np.logical_not((t9 <= t31) & (t9 <= t32) & (t9 <= t33))
+    t34 = _runtime.poison(invalid | unreachable_2)
+    t35 = _runtime.wrap_cut(t29) + t34
     folded_back_elbow_up = reach_back_elbow_up <= t4
-    rA_back_elbow_up = np.sqrt(np.maximum(t33, 0.0))
-    rC_back_elbow_up = np.sqrt(np.maximum(t35, 0.0))
+    rA_back_elbow_up = np.sqrt(np.maximum(t31, 0.0))
+    rC_back_elbow_up = np.sqrt(np.maximum(t33, 0.0))
     rS_back_elbow_up = np.sqrt(t1 + reach_back_elbow_up)
-    rB_back_elbow_up = np.sqrt(np.maximum(t34, 0.0))
-    t38 = np.arctan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up)
-    t39 = _runtime.select(no_link, 0.0, 2.0 * t38)
-    t40 = np.arctan2(t32, h)
-    t41 = _runtime.select(folded_back_elbow_up, 0.0, t39 + t40)
-    t42 = np.arctan2(rA_back_elbow_up * rS_back_elbow_up, rC_back_elbow_up * rB_back_elbow_up)
-    t43 = 2.0 * t42
-    t44 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t43)
-    t45 = np.arctan2(t25 - s_psi * c_turret_back_elbow_up, t26 + c_psi * c_turret_back_elbow_up)
-    t46 = _runtime.wrap_cut(-t45) + t36
-    t47 = _runtime.select(folded_back_elbow_up, 0.0, t39 - t40)
-    t48 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t43)
-    t49 = _runtime.status(invalid, unreachable, on_axis | folded | no_link)
-    t50 = _runtime.status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link)
+    rB_back_elbow_up = np.sqrt(np.maximum(t32, 0.0))
+    t36 = np.arctan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up)
+    t37 = _runtime.select(no_link, 0.0, 2.0 * t36)
+    t38 = np.arctan2(t30, h)
+    t39 = _runtime.select(folded_back_elbow_up, 0.0, t37 + t38)
+    t40 = np.arctan2(rA_back_elbow_up * rS_back_elbow_up, rC_back_elbow_up * rB_back_elbow_up)
+    t41 = 2.0 * t40
+    t42 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t41)
+    t43 = np.arctan2(t23 - s_psi * c_turret_back_elbow_up, t24 + c_psi * c_turret_back_elbow_up)
+    t44 = _runtime.wrap_cut(-t43) + t34
+    t45 = _runtime.select(folded_back_elbow_up, 0.0, t37 - t38)
+    t46 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t41)
+    t47 = _runtime.status(invalid, unreachable, on_axis | folded | no_link)
+    t48 = _runtime.status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link)
     return (
-        t19,
-        t22 + t18,
-        -t24 + t18,
-        t28,
-        t19,
-        t29 + t18,
-        _runtime.wrap_up(-t30) + t18,
-        t28,
-        t37,
-        _runtime.wrap_up(-t41) + t36,
-        -t44 + t36,
-        t46,
-        t37,
-        _runtime.wrap_cut(t47) + t36,
-        _runtime.wrap_up(-t48) + t36,
-        t46,
-        t49,
-        t49,
-        t50,
-        t50,
+        t17,
+        t20 + t16,
+        -t22 + t16,
+        t26,
+        t17,
+        t27 + t16,
+        _runtime.wrap_up(-t28) + t16,
+        t26,
+        t35,
+        _runtime.wrap_up(-t39) + t34,
+        -t42 + t34,
+        t44,
+        t35,
+        _runtime.wrap_cut(t45) + t34,
+        _runtime.wrap_up(-t46) + t34,
+        t44,
+        t47,
+        t47,
+        t48,
+        t48,
     )
 
 
@@ -783,28 +781,26 @@ def workspace_margin(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = 
 
 
 def _workspace_contains(px, py, pz, l1, l2, l3, l4, l5, l6):
-    t1 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
-    t2 = t1 & (0.0 <= l2) & np.isfinite(l3) & (0.0 <= l3)
-    t3 = t2 & np.isfinite(l4) & (0.0 <= l4) & np.isfinite(l5)
-    t4 = t3 & (0.0 <= l5) & np.isfinite(l6) & (0.0 <= l6)
-    t5 = t4 & np.isfinite(px) & np.isfinite(py) & np.isfinite(pz)
-    t6 = l1 + l6
-    t7 = l3 + l4
-    t8 = -(_runtime.FEASIBILITY * (l2 + l5 + t6 + t7))
+    t1 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(l3) & np.isfinite(l4) & np.isfinite(l5) & np.isfinite(l6)
+    t2 = t1 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= l3) & (0.0 <= l4)
+    t3 = np.isfinite(px) & np.isfinite(py) & np.isfinite(pz)
+    invalid = np.logical_not(t2 & (0.0 <= l5) & (0.0 <= l6) & t3)
+    t4 = l1 + l6
+    t5 = l3 + l4
+    t6 = -(_runtime.FEASIBILITY * (l2 + l5 + t4 + t5))
     h = pz - l2 + l5
-    t9 = h * h
+    t7 = h * h
     r = np.sqrt(px * px + py * py)
-    t10 = r + t6
-    reach_back = np.sqrt(t9 + t10 * t10)
-    t11 = np.abs(l3 - l4)
-    margin_back = np.minimum(reach_back - t11, t7 - reach_back)
-    t12 = r - t6
-    reach_front = np.sqrt(t9 + t12 * t12)
-    margin_front = np.minimum(reach_front - t11, t7 - reach_front)
-    unreachable = np.logical_not(t8 <= np.maximum(margin_back, margin_front))
-    t13 = np.logical_not(np.logical_not(t5) | unreachable)
+    t8 = r + t4
+    reach_back = np.sqrt(t7 + t8 * t8)
+    t9 = np.abs(l3 - l4)
+    t10 = r - t4
+    reach_front = np.sqrt(t7 + t10 * t10)
+    margin_front = np.minimum(reach_front - t9, t5 - reach_front)
+    t11 = np.maximum(np.minimum(reach_back - t9, t5 - reach_back), margin_front)
+    t12 = np.logical_not(invalid | np.logical_not(t6 <= t11))
     return (
-        t13,
+        t12,
     )
 
 

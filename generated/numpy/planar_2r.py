@@ -10,8 +10,8 @@
 #   determinant: 2 multiply, 1 sincos
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
 #   singularities: 1 sincos
-#   ik: 13 add, 32 compare and select, 3 atan2, 13 multiply, 5 sqrt
-#   ik_pose: 67 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+#   ik: 31 compare and select, 16 add, 3 atan2, 23 multiply, 2 sqrt
+#   ik_pose: 61 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
 #   workspace_radii: 1 compare and select, 2 add
 """Planar 2R arm.
 
@@ -297,37 +297,43 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 
 
 def _ik(px, py, l1, l2):
-    r = np.sqrt(px * px + py * py)
     t1 = l1 + l2
-    at_base = r <= t1 * _runtime.VANISHING
-    t2 = np.arctan2(py, px)
-    t3 = t1 - r
-    rA = np.sqrt(np.maximum(t3, 0.0))
-    t4 = l1 - l2
-    t5 = r - t4
-    rC = np.sqrt(np.maximum(t5, 0.0))
-    rS = np.sqrt(r + t1)
-    t6 = r + t4
-    rB = np.sqrt(np.maximum(t6, 0.0))
-    t7 = 2.0 * np.arctan2(rA * rC, rS * rB)
-    t8 = _runtime.wrap_up(_runtime.select(at_base, 0.0, t2 - t7))
-    t9 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
-    t10 = t9 & (0.0 <= l2) & np.isfinite(px) & np.isfinite(py)
-    invalid = np.logical_not(t10)
-    t11 = -(_runtime.FEASIBILITY * t1)
-    unreachable = np.logical_not((t11 <= t3) & (t11 <= t6) & (t11 <= t5))
-    t12 = _runtime.poison(invalid | unreachable)
-    t13 = 2.0 * np.arctan2(rA * rS, rC * rB)
-    t14 = _runtime.wrap(_runtime.select(at_base, 0.0, t2 + t7))
-    t15 = at_base | (l1 * l2 <= _runtime.VANISHING * (t1 * t1))
-    t16 = _runtime.status(invalid, unreachable, t15)
+    at_base = np.abs(px) + np.abs(py) <= t1 * _runtime.VANISHING
+    t2 = t1 * t1
+    no_link = l1 * l2 <= t2 * _runtime.VANISHING
+    r2 = px * px + py * py
+    t3 = l1 - l2
+    t4 = r2 - t3 * t3
+    M = np.maximum(t4, 0.0)
+    t5 = t2 - r2
+    N = np.maximum(t5, 0.0)
+    ahead = _runtime.select(no_link, 1.0, t1 * M + N * t3)
+    t6 = py * ahead
+    t7 = l2 * 2.0
+    t8 = np.sqrt(M)
+    t9 = np.sqrt(N)
+    beyond = _runtime.select(no_link, 0.0, t7 * t8 * t9)
+    t10 = px * beyond
+    t11 = px * ahead
+    t12 = py * beyond
+    t13 = _runtime.select(at_base, 0.0, np.arctan2(t6 - t10, t11 + t12))
+    t14 = (np.isfinite(l1) & np.isfinite(l2)) & (0.0 <= l1)
+    t15 = t14 & (0.0 <= l2) & (np.isfinite(px) & np.isfinite(py))
+    invalid = np.logical_not(t15)
+    t16 = _runtime.FEASIBILITY * (t1 * (l1 * 2.0 + t7))
+    t17 = _runtime.FEASIBILITY * (t1 * 2.0 * np.abs(t3))
+    unreachable = np.logical_not((-t16 <= t5) & (-t17 <= t4))
+    t18 = _runtime.poison(invalid | unreachable)
+    t19 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(t9, t8))
+    t20 = _runtime.select(at_base, 0.0, np.arctan2(t6 + t10, t11 - t12))
+    t21 = _runtime.status(invalid, unreachable, no_link | at_base)
     return (
-        t8 + t12,
-        t13 + t12,
-        t14 + t12,
-        _runtime.wrap_cut(-t13) + t12,
-        t16,
-        t16,
+        _runtime.wrap_cut(t13) + t18,
+        t19 + t18,
+        _runtime.wrap_cut(t20) + t18,
+        _runtime.wrap_cut(-t19) + t18,
+        t21,
+        t21,
     )
 
 
@@ -344,7 +350,7 @@ _IK = _runtime.Kernel(
 def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
     """Both elbow configurations that reach a position.
 
-    Source: eqs. (3) and (4), in half-angle form.
+    Source: eqs. (3) and (4), by arctangents.
     x: shape (..., 2): px, py.
     Returns q: shape (..., 2, 2).
     Branches: elbow_down, elbow_up.
@@ -366,13 +372,13 @@ def _ik_pose(
     s1 = _runtime.select(no_first_link, 0.0, elbow_y / l1)
     elbow_x = T14 - T11 * l2
     c1 = _runtime.select(no_first_link, 1.0, elbow_x / l1)
-    t2 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
-    t3 = t2 & (0.0 <= l2) & np.isfinite(T14) & np.isfinite(T24)
+    t2 = (np.isfinite(l1) & np.isfinite(l2)) & (0.0 <= l1)
+    t3 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t4 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t5 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
     t6 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
     t7 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t8 = t3 & np.isfinite(T34) & t4 & t5 & t6 & (t7 <= _runtime.ROTATION)
+    t8 = t2 & (0.0 <= l2) & t3 & t4 & t5 & t6 & (t7 <= _runtime.ROTATION)
     t9 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
     t10 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
     t11 = t8 & (t9 <= _runtime.ROTATION) & t10 & (np.abs(T41) <= _runtime.ROTATION)

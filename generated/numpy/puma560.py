@@ -10,7 +10,7 @@
 #   jacobian_body: 26 add, 61 multiply, 5 sincos
 #   determinant: 9 add, 22 multiply, 3 sincos
 #   singularities: 5 add, 9 multiply, 3 sincos
-#   ik: 143 compare and select, 141 add, 20 atan2, 20 divide, 152 multiply, 10 sqrt
+#   ik: 133 compare and select, 141 add, 20 atan2, 20 divide, 152 multiply, 10 sqrt
 """Puma 560.
 
 A vertical base axis (theta1), two parallel horizontal axes (theta2, theta3) and a spherical
@@ -549,17 +549,17 @@ def _ik(
     t11 = T24 * t5 / t6
     t12 = T14 * t8 / t6
     c1 = _runtime.select(free_theta1, 1.0, t11 + t12)
-    t13 = np.isfinite(a2) & (0.0 <= a2) & np.isfinite(a3)
-    t14 = t13 & np.isfinite(d3) & np.isfinite(d4) & (0.0 <= d4)
-    t15 = t14 & np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t16 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t17 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t13 = np.isfinite(a2) & np.isfinite(a3) & np.isfinite(d3) & np.isfinite(d4)
+    t14 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t15 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t16 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t17 = t13 & (0.0 <= a2) & (0.0 <= d4) & t14 & t15 & t16
     t18 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
     t19 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t20 = t15 & t16 & t17 & t18 & (t19 <= _runtime.ROTATION)
-    t21 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t20 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t21 = t17 & t18 & (t19 <= _runtime.ROTATION) & (t20 <= _runtime.ROTATION)
     t22 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t23 = t20 & (t21 <= _runtime.ROTATION) & t22 & (np.abs(T41) <= _runtime.ROTATION)
+    t23 = t21 & t22 & (np.abs(T41) <= _runtime.ROTATION)
     t24 = t23 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
     t25 = t24 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
     invalid = np.logical_not(t25)

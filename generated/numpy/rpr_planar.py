@@ -2,12 +2,12 @@
 # derivations/rpr_planar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 10 add, 26 compare and select, 4 divide, 9 multiply, 4 sqrt
-#   passive_angles: 12 add, 29 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
-#   jacobian: 14 add, 25 compare and select, 8 divide, 13 multiply, 4 sqrt
-#   determinant: 8 add, 24 compare and select, 3 divide, 9 multiply, 4 sqrt
-#   singularities: 10 add, 24 compare and select, 2 divide, 7 multiply, 4 sqrt
-#   ik: 5 add, 10 compare and select, 3 multiply, 2 sqrt
+#   fk: 10 add, 24 compare and select, 4 divide, 9 multiply, 4 sqrt
+#   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
+#   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 4 sqrt
+#   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 4 sqrt
+#   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 4 sqrt
+#   ik: 5 add, 8 compare and select, 3 multiply, 2 sqrt
 """Planar parallel mechanism (two RPR legs).
 
 Two legs turn freely about A, at the origin, and B, at b on the x axis; each slides out by rho1
@@ -72,8 +72,8 @@ def _fk(rho1, rho2, b):
     t4 = rho1 - rho2
     t5 = b * 2.0
     t6 = _runtime.select(coincide, rho1, b / 2.0 + t4 * t1 / t5)
-    t7 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
-    invalid = np.logical_not(t7 & np.isfinite(rho2))
+    t7 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    invalid = np.logical_not(t7)
     t8 = -(_runtime.FEASIBILITY * t2)
     t9 = t1 - b
     t10 = b + t4
@@ -138,11 +138,10 @@ def _passive_angles(rho1, rho2, b):
     t11 = _runtime.select(coincide, rho1, b / 2.0 + t5 * t1 / t9)
     P_x = n_1 * t11
     t12 = np.arctan2(P_y, P_x)
-    t13 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
+    t13 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t14 = -(_runtime.FEASIBILITY * t2)
     unreachable = np.logical_not((t14 <= t4) & (t14 <= t7) & (t14 <= t6))
-    failed = np.logical_not(t13 & np.isfinite(rho2)) | unreachable
-    t15 = _runtime.poison(failed)
+    t15 = _runtime.poison(np.logical_not(t13) | unreachable)
     t16 = np.arctan2(P_y, P_x - b)
     return (
         _runtime.wrap_cut(t12) + t15,
@@ -174,7 +173,7 @@ def passive_angles(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = No
 
 
 def _jacobian(rho1, rho2, b):
-    t1 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
+    t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
     t3 = b + t2
     t4 = -(_runtime.FEASIBILITY * t3)
@@ -183,8 +182,7 @@ def _jacobian(rho1, rho2, b):
     t7 = b + t6
     t8 = b - t6
     unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
-    failed = np.logical_not(t1 & np.isfinite(rho2)) | unreachable
-    t9 = _runtime.poison(failed)
+    t9 = _runtime.poison(np.logical_not(t1) | unreachable)
     t10 = rho1 / b + t9
     t11 = -(rho2 / b) + t9
     t12 = _runtime.VANISHING * t3
@@ -248,11 +246,10 @@ def _determinant(rho1, rho2, b):
     height = _runtime.select(slack <= t3, 0.0, _runtime.select(coincide, 0.0, t9))
     P_y = _runtime.select(coincide, 1.0, b / b) * height
     t10 = rho1 * rho2 / (b * P_y)
-    t11 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
+    t11 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t12 = -(_runtime.FEASIBILITY * t2)
     unreachable = np.logical_not((t12 <= t4) & (t12 <= t7) & (t12 <= t6))
-    failed = np.logical_not(t11 & np.isfinite(rho2)) | unreachable
-    t13 = _runtime.poison(failed)
+    t13 = _runtime.poison(np.logical_not(t11) | unreachable)
     return (
         t10 + t13,
         -t10 + t13,
@@ -281,7 +278,7 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 
 
 def _singularities(rho1, rho2, b):
-    t1 = np.isfinite(b) & (0.0 <= b) & np.isfinite(rho1)
+    t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
     t3 = b + t2
     t4 = -(_runtime.FEASIBILITY * t3)
@@ -290,8 +287,7 @@ def _singularities(rho1, rho2, b):
     t7 = b + t6
     t8 = b - t6
     unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
-    failed = np.logical_not(t1 & np.isfinite(rho2)) | unreachable
-    t9 = _runtime.poison(failed)
+    t9 = _runtime.poison(np.logical_not(t1) | unreachable)
     t10 = rho1 + t9
     t11 = rho2 + t9
     t12 = _runtime.VANISHING * t3
@@ -334,7 +330,7 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 
 def _ik(x, y, b):
     t1 = y * y
-    t2 = np.isfinite(b) & (0.0 <= b) & np.isfinite(x) & np.isfinite(y)
+    t2 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(x) & np.isfinite(y))
     invalid = np.logical_not(t2)
     t3 = _runtime.poison(invalid)
     t4 = x - b

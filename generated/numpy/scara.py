@@ -9,7 +9,7 @@
 #   singularities: 1 sincos
 #   jacobian_space: 4 add, 8 multiply, 2 sincos
 #   jacobian_body: 4 add, 8 multiply, 2 sincos
-#   ik: 32 add, 49 compare and select, 5 atan2, 10 divide, 35 multiply, 1 sincos, 5 sqrt
+#   ik: 32 add, 39 compare and select, 5 atan2, 10 divide, 35 multiply, 1 sincos, 5 sqrt
 """SCARA arm (RRPR).
 
 Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a
@@ -386,10 +386,10 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     t11 = x_x * c_base_elbow / r_elbow
     t12 = x_y * s_base_elbow / r_elbow
     c1 = _runtime.select(folded_elbow, 1.0, t11 + t12)
-    t13 = np.isfinite(l1) & (0.0 <= l1) & np.isfinite(l2)
-    t14 = t13 & (0.0 <= l2) & np.isfinite(h) & (0.0 <= h)
-    t15 = t14 & np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z)
-    invalid = np.logical_not(t15 & np.isfinite(x_yaw))
+    t13 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(h)
+    t14 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z) & np.isfinite(x_yaw)
+    t15 = t13 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= h) & t14
+    invalid = np.logical_not(t15)
     t16 = -(_runtime.FEASIBILITY * (l1 / 2.0 + l2 / 2.0))
     unreachable = np.logical_not((t16 <= t2) & (t16 <= t6) & (t16 <= t4))
     t17 = _runtime.poison(invalid | unreachable)

@@ -10,7 +10,7 @@
 #   jacobian_body: 14 add, 41 multiply, 4 sincos
 #   determinant: 3 multiply, 2 sincos
 #   singularities: 2 sincos
-#   ik: 111 compare and select, 111 add, 16 atan2, 14 divide, 102 multiply, 9 sqrt
+#   ik: 107 compare and select, 111 add, 16 atan2, 14 divide, 102 multiply, 9 sqrt
 """Stanford arm.
 
 A vertical base axis (theta1), a horizontal shoulder (theta2), a boom that slides through it
@@ -501,12 +501,12 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t11 = T14 * t9 / t7
     t12 = T24 * t6 / t7
     c1 = _runtime.select(free_theta1, 1.0, t11 - t12)
-    t13 = np.isfinite(d2) & np.isfinite(T14) & np.isfinite(T24)
+    t13 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t14 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t15 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
     t16 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
     t17 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t18 = t13 & np.isfinite(T34) & t14 & t15 & t16 & (t17 <= _runtime.ROTATION)
+    t18 = np.isfinite(d2) & t13 & t14 & t15 & t16 & (t17 <= _runtime.ROTATION)
     t19 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
     t20 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
     t21 = t18 & (t19 <= _runtime.ROTATION) & t20 & (np.abs(T41) <= _runtime.ROTATION)

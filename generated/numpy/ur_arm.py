@@ -9,7 +9,7 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 46 add, 76 multiply, 5 sincos
 #   jacobian_body: 34 add, 64 multiply, 5 sincos
-#   ik: 316 compare and select, 279 add, 30 atan2, 78 divide, 298 multiply, 47 sqrt
+#   ik: 302 compare and select, 279 add, 30 atan2, 78 divide, 298 multiply, 47 sqrt
 """UR-type arm (three parallel axes).
 
 theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and
@@ -584,515 +584,514 @@ def _ik(
     t13 = w_x * t9 / t7
     c1 = _runtime.select(free1, 1.0, t12 - t13)
     t14 = _runtime.wrap_cut(-np.arctan2(t11, c1))
-    t15 = np.isfinite(d1) & (0.0 <= d1) & np.isfinite(L2)
-    t16 = t15 & (0.0 <= L2) & np.isfinite(L3) & (0.0 <= L3)
-    t17 = t16 & np.isfinite(d4) & (0.0 <= d4) & np.isfinite(d5)
-    t18 = t17 & (0.0 <= d5) & np.isfinite(d6) & (0.0 <= d6)
-    t19 = t18 & np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t20 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t21 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t22 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t23 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t24 = t19 & t20 & t21 & t22 & (t23 <= _runtime.ROTATION)
-    t25 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t26 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t27 = t24 & (t25 <= _runtime.ROTATION) & t26 & (np.abs(T41) <= _runtime.ROTATION)
-    t28 = t27 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    t29 = t28 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    invalid = np.logical_not(t29)
-    t30 = L2 / 2.0 + L3 / 2.0 + d1 / 2.0 + d4 / 2.0 + d5 / 2.0
-    t31 = -(_runtime.FEASIBILITY * (t30 + d6 / 2.0))
-    t32 = (t31 <= t4) & (t31 <= t5)
+    t15 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
+    t16 = t15 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    t17 = t16 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    t18 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t19 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t20 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t21 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t22 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t23 = t17 & t18 & t19 & t20 & t21 & (t22 <= _runtime.ROTATION)
+    t24 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t25 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t26 = t23 & (t24 <= _runtime.ROTATION) & t25 & (np.abs(T41) <= _runtime.ROTATION)
+    t27 = t26 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    t28 = t27 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    invalid = np.logical_not(t28)
+    t29 = L2 / 2.0 + L3 / 2.0 + d1 / 2.0 + d4 / 2.0 + d5 / 2.0
+    t30 = -(_runtime.FEASIBILITY * (t29 + d6 / 2.0))
+    t31 = (t30 <= t4) & (t30 <= t5)
     across = w_x * c1 - w_y * t11
-    t33 = T33 * T33
+    t32 = T33 * T33
     M_13 = T13 * c1 - T23 * t11
-    h_wrist = np.sqrt(t33 + M_13 * M_13)
-    t34 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t34
-    t35 = d1 - (T34 - T33 * d6)
-    t36 = t35 * t35
-    r_hub = np.sqrt(t36 + across * across)
+    h_wrist = np.sqrt(t32 + M_13 * M_13)
+    t33 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t33
+    t34 = d1 - (T34 - T33 * d6)
+    t35 = t34 * t34
+    r_hub = np.sqrt(t35 + across * across)
     hub_mid = r_hub <= t3
-    t37 = d5 + r_hub
-    t38 = L2 - L3
-    t39 = np.abs(t38)
-    t40 = d5 - r_hub
-    mid_reach = np.minimum(t1, t37) / 2.0 + np.maximum(t39, np.abs(t40)) / 2.0
-    k_mid = np.maximum(0.0, (t37 - mid_reach) * (t37 + mid_reach))
-    d_mid = np.maximum(0.0, -((t40 - mid_reach) * (t40 + mid_reach)))
+    t36 = d5 + r_hub
+    t37 = L2 - L3
+    t38 = np.abs(t37)
+    t39 = d5 - r_hub
+    mid_reach = np.minimum(t1, t36) / 2.0 + np.maximum(t38, np.abs(t39)) / 2.0
+    k_mid = np.maximum(0.0, (t36 - mid_reach) * (t36 + mid_reach))
+    d_mid = np.maximum(0.0, -((t39 - mid_reach) * (t39 + mid_reach)))
     n_mid = k_mid + d_mid
-    t41 = _runtime.VANISHING * (t2 * t2)
-    any_mid = n_mid <= t41
+    t40 = _runtime.VANISHING * (t2 * t2)
+    any_mid = n_mid <= t40
     uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) / n_mid)
-    t42 = 2.0 * np.sqrt(d_mid) * np.sqrt(k_mid) / n_mid
-    us_mid = _runtime.select(any_mid, 0.0, t42)
-    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t35 * us_mid) / r_hub)
+    t41 = 2.0 * np.sqrt(d_mid) * np.sqrt(k_mid) / n_mid
+    us_mid = _runtime.select(any_mid, 0.0, t41)
+    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t34 * us_mid) / r_hub)
     s_phi = _runtime.select(aligned_wrist, 0.0, T33 / h_wrist)
-    t43 = d5 * s_phi
-    t44 = across - t43
-    t45 = M_13 / h_wrist
-    c_phi = _runtime.select(aligned_wrist, 1.0, t45)
-    t46 = t35 - d5 * c_phi
-    here = np.sqrt(t44 * t44 + t46 * t46)
-    in_reach = np.minimum(t1, np.maximum(here, t39))
-    k_near = np.maximum(0.0, (t37 - in_reach) * (t37 + in_reach))
-    d_near = np.maximum(0.0, -((t40 - in_reach) * (t40 + in_reach)))
+    t42 = d5 * s_phi
+    t43 = across - t42
+    t44 = M_13 / h_wrist
+    c_phi = _runtime.select(aligned_wrist, 1.0, t44)
+    t45 = t34 - d5 * c_phi
+    here = np.sqrt(t43 * t43 + t45 * t45)
+    in_reach = np.minimum(t1, np.maximum(here, t38))
+    k_near = np.maximum(0.0, (t36 - in_reach) * (t36 + in_reach))
+    d_near = np.maximum(0.0, -((t39 - in_reach) * (t39 + in_reach)))
     n_near = k_near + d_near
-    any_near = n_near <= t41
+    any_near = n_near <= t40
     uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) / n_near)
-    t47 = t35 * s_phi
-    t48 = across * c_phi - t47
-    t49 = np.abs(t48)
-    side = _runtime.select(t49 <= t3, 1.0, -(t48 / t49))
-    t50 = 2.0 * side * np.sqrt(d_near) * np.sqrt(k_near)
-    us_near = _runtime.select(any_near, 0.0, t50 / n_near)
-    c_near = _runtime.select(hub_mid, 1.0, (across * uc_near + t35 * us_near) / r_hub)
-    t51 = s_phi - c_near
-    s_near = _runtime.select(hub_mid, 0.0, (across * us_near - t35 * uc_near) / r_hub)
-    t52 = c_phi + s_near
-    t53 = _runtime.VANISHING * 4.0
-    within_rounding = h_wrist * np.sqrt(t51 * t51 + t52 * t52) <= t53
+    t46 = t34 * s_phi
+    t47 = across * c_phi - t46
+    t48 = np.abs(t47)
+    side = _runtime.select(t48 <= t3, 1.0, -(t47 / t48))
+    t49 = 2.0 * side * np.sqrt(d_near) * np.sqrt(k_near)
+    us_near = _runtime.select(any_near, 0.0, t49 / n_near)
+    c_near = _runtime.select(hub_mid, 1.0, (across * uc_near + t34 * us_near) / r_hub)
+    t50 = s_phi - c_near
+    s_near = _runtime.select(hub_mid, 0.0, (across * us_near - t34 * uc_near) / r_hub)
+    t51 = c_phi + s_near
+    t52 = _runtime.VANISHING * 4.0
+    within_rounding = h_wrist * np.sqrt(t50 * t50 + t51 * t51) <= t52
     inside = np.abs(here - in_reach) <= t3
-    t54 = _runtime.select(within_rounding, _runtime.select(inside, s_phi, c_near), s_phi)
-    sphi = _runtime.select(aligned_wrist, c_mid, t54)
-    t55 = across - d5 * sphi
-    s_mid = _runtime.select(hub_mid, 0.0, (across * us_mid - t35 * uc_mid) / r_hub)
-    t56 = _runtime.select(within_rounding, -_runtime.select(inside, -c_phi, s_near), c_phi)
-    cphi = _runtime.select(aligned_wrist, -s_mid, t56)
-    ey = t35 - d5 * cphi
-    r_elbow = np.sqrt(t55 * t55 + ey * ey)
-    t57 = t1 - r_elbow
-    t58 = t38 + r_elbow
-    t59 = r_elbow - t38
-    t60 = t32 & (t31 <= t57) & (t31 <= t58) & (t31 <= t59)
-    unreachable = np.logical_not(t60)
-    t61 = _runtime.poison(invalid | unreachable)
-    t62 = t14 + t61
+    t53 = _runtime.select(within_rounding, _runtime.select(inside, s_phi, c_near), s_phi)
+    sphi = _runtime.select(aligned_wrist, c_mid, t53)
+    t54 = across - d5 * sphi
+    s_mid = _runtime.select(hub_mid, 0.0, (across * us_mid - t34 * uc_mid) / r_hub)
+    t55 = _runtime.select(within_rounding, -_runtime.select(inside, -c_phi, s_near), c_phi)
+    cphi = _runtime.select(aligned_wrist, -s_mid, t55)
+    ey = t34 - d5 * cphi
+    r_elbow = np.sqrt(t54 * t54 + ey * ey)
+    t56 = t1 - r_elbow
+    t57 = t37 + r_elbow
+    t58 = r_elbow - t37
+    t59 = t31 & (t30 <= t56) & (t30 <= t57) & (t30 <= t58)
+    unreachable = np.logical_not(t59)
+    t60 = _runtime.poison(invalid | unreachable)
+    t61 = t14 + t60
     folded_elbow = r_elbow <= t3
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (t1 * t1)
-    A_elbow = np.maximum(t57, 0.0)
-    C_elbow = np.maximum(t59, 0.0)
-    t63 = A_elbow * C_elbow
+    A_elbow = np.maximum(t56, 0.0)
+    C_elbow = np.maximum(t58, 0.0)
+    t62 = A_elbow * C_elbow
     S_elbow = t1 + r_elbow
-    B_elbow = np.maximum(t58, 0.0)
-    t64 = S_elbow * B_elbow
-    width_elbow = t63 + t64
-    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t63 - t64) / width_elbow))
-    t65 = ey * c_base_elbow / r_elbow
-    t66 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
-    area_elbow = t66 * np.sqrt(S_elbow)
+    B_elbow = np.maximum(t57, 0.0)
+    t63 = S_elbow * B_elbow
+    width_elbow = t62 + t63
+    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t62 - t63) / width_elbow))
+    t64 = ey * c_base_elbow / r_elbow
+    t65 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
+    area_elbow = t65 * np.sqrt(S_elbow)
     s_base_elbow = _runtime.select(no_link_elbow, 0.0, area_elbow / width_elbow)
-    t67 = t55 * s_base_elbow / r_elbow
-    s2 = _runtime.select(folded_elbow, 0.0, t65 + t67)
-    t68 = ey * s_base_elbow / r_elbow
-    t69 = t55 * c_base_elbow / r_elbow
-    c2 = _runtime.select(folded_elbow, 1.0, t68 - t69)
-    t70 = A_elbow * S_elbow
-    t71 = C_elbow * B_elbow
-    sum_elbow = t70 + t71
+    t66 = t54 * s_base_elbow / r_elbow
+    s2 = _runtime.select(folded_elbow, 0.0, t64 + t66)
+    t67 = ey * s_base_elbow / r_elbow
+    t68 = t54 * c_base_elbow / r_elbow
+    c2 = _runtime.select(folded_elbow, 1.0, t67 - t68)
+    t69 = A_elbow * S_elbow
+    t70 = C_elbow * B_elbow
+    sum_elbow = t69 + t70
     s3 = _runtime.select(no_link_elbow, 0.0, area_elbow / sum_elbow)
-    c3 = _runtime.select(no_link_elbow, 1.0, -((t70 - t71) / sum_elbow))
-    t72 = np.arctan2(s3, c3)
-    t73 = sphi * c2 - cphi * s2
-    t74 = cphi * c2 + sphi * s2
-    t75 = np.arctan2(c3 * t73 - s3 * t74, c3 * t74 + s3 * t73)
+    c3 = _runtime.select(no_link_elbow, 1.0, -((t69 - t70) / sum_elbow))
+    t71 = np.arctan2(s3, c3)
+    t72 = sphi * c2 - cphi * s2
+    t73 = cphi * c2 + sphi * s2
+    t74 = np.arctan2(c3 * t72 - s3 * t73, c3 * t73 + s3 * t72)
     M_33 = -(T13 * t11 + T23 * c1)
-    t76 = _runtime.wrap_cut(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
-    t77 = t76 + t61
+    t75 = _runtime.wrap_cut(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
+    t76 = t75 + t60
     M_11 = T11 * c1 - T21 * t11
     M_12 = T12 * c1 - T22 * t11
-    t78 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
-    t79 = _runtime.wrap_cut(-t78) + t61
-    s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t65 - t67)
-    c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t69 + t68))
-    t80 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
-    t81 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
-    t82 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
-    t83 = np.arctan2(c3 * t81 + s3 * t82, c3 * t82 - s3 * t81)
-    t84 = across + t43
-    c_phi_left_flip_up = _runtime.select(aligned_wrist, 1.0, -t45)
-    t85 = t35 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t84 * t84 + t85 * t85)
-    in_reach_left_flip_up = np.minimum(t1, np.maximum(here_left_flip_up, t39))
-    t86 = (t37 - in_reach_left_flip_up) * (t37 + in_reach_left_flip_up)
-    k_near_left_flip_up = np.maximum(0.0, t86)
-    t87 = (t40 - in_reach_left_flip_up) * (t40 + in_reach_left_flip_up)
-    d_near_left_flip_up = np.maximum(0.0, -t87)
+    t77 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
+    t78 = _runtime.wrap_cut(-t77) + t60
+    s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t64 - t66)
+    c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t68 + t67))
+    t79 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t80 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t81 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    t82 = np.arctan2(c3 * t80 + s3 * t81, c3 * t81 - s3 * t80)
+    t83 = across + t42
+    c_phi_left_flip_up = _runtime.select(aligned_wrist, 1.0, -t44)
+    t84 = t34 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t83 * t83 + t84 * t84)
+    in_reach_left_flip_up = np.minimum(t1, np.maximum(here_left_flip_up, t38))
+    t85 = (t36 - in_reach_left_flip_up) * (t36 + in_reach_left_flip_up)
+    k_near_left_flip_up = np.maximum(0.0, t85)
+    t86 = (t39 - in_reach_left_flip_up) * (t39 + in_reach_left_flip_up)
+    d_near_left_flip_up = np.maximum(0.0, -t86)
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
-    any_near_left_flip_up = n_near_left_flip_up <= t41
-    t88 = (k_near_left_flip_up - d_near_left_flip_up) / n_near_left_flip_up
-    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t88)
-    t89 = t47 + across * c_phi_left_flip_up
-    t90 = np.abs(t89)
-    side_left_flip_up = _runtime.select(t90 <= t3, 1.0, -(t89 / t90))
-    t91 = 2.0 * side_left_flip_up * np.sqrt(d_near_left_flip_up)
-    t92 = t91 * np.sqrt(k_near_left_flip_up) / n_near_left_flip_up
-    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t92)
-    t93 = across * uc_near_left_flip_up + t35 * us_near_left_flip_up
-    c_near_left_flip_up = _runtime.select(hub_mid, 1.0, t93 / r_hub)
-    t94 = s_phi + c_near_left_flip_up
-    t95 = across * us_near_left_flip_up - t35 * uc_near_left_flip_up
-    s_near_left_flip_up = _runtime.select(hub_mid, 0.0, t95 / r_hub)
-    t96 = c_phi_left_flip_up + s_near_left_flip_up
-    within_rounding_left_flip_up = h_wrist * np.sqrt(t94 * t94 + t96 * t96) <= t53
-    t97 = np.abs(here_left_flip_up - in_reach_left_flip_up)
-    inside_left_flip_up = t97 <= t3
+    any_near_left_flip_up = n_near_left_flip_up <= t40
+    t87 = (k_near_left_flip_up - d_near_left_flip_up) / n_near_left_flip_up
+    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t87)
+    t88 = t46 + across * c_phi_left_flip_up
+    t89 = np.abs(t88)
+    side_left_flip_up = _runtime.select(t89 <= t3, 1.0, -(t88 / t89))
+    t90 = 2.0 * side_left_flip_up * np.sqrt(d_near_left_flip_up)
+    t91 = t90 * np.sqrt(k_near_left_flip_up) / n_near_left_flip_up
+    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t91)
+    t92 = across * uc_near_left_flip_up + t34 * us_near_left_flip_up
+    c_near_left_flip_up = _runtime.select(hub_mid, 1.0, t92 / r_hub)
+    t93 = s_phi + c_near_left_flip_up
+    t94 = across * us_near_left_flip_up - t34 * uc_near_left_flip_up
+    s_near_left_flip_up = _runtime.select(hub_mid, 0.0, t94 / r_hub)
+    t95 = c_phi_left_flip_up + s_near_left_flip_up
+    within_rounding_left_flip_up = h_wrist * np.sqrt(t93 * t93 + t95 * t95) <= t52
+    t96 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    inside_left_flip_up = t96 <= t3
     c_moved_left_flip_up = _runtime.select(inside_left_flip_up, -s_phi, c_near_left_flip_up)
-    t98 = _runtime.select(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
-    sphi_left_flip_up = _runtime.select(aligned_wrist, c_mid, t98)
-    t99 = across - d5 * sphi_left_flip_up
+    t97 = _runtime.select(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
+    sphi_left_flip_up = _runtime.select(aligned_wrist, c_mid, t97)
+    t98 = across - d5 * sphi_left_flip_up
     s_moved_left_flip_up = _runtime.select(inside_left_flip_up, -c_phi_left_flip_up, s_near_left_flip_up)
-    t100 = _runtime.select(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
-    cphi_left_flip_up = _runtime.select(aligned_wrist, -s_mid, t100)
-    ey_left_flip_up = t35 - d5 * cphi_left_flip_up
-    t101 = t99 * t99 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t101)
-    t102 = t1 - r_elbow_left_flip_up
-    t103 = t38 + r_elbow_left_flip_up
-    t104 = r_elbow_left_flip_up - t38
-    t105 = t32 & (t31 <= t102) & (t31 <= t103) & (t31 <= t104)
-    unreachable_2 = np.logical_not(t105)
-    t106 = _runtime.poison(invalid | unreachable_2)
-    t107 = t14 + t106
+    t99 = _runtime.select(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
+    cphi_left_flip_up = _runtime.select(aligned_wrist, -s_mid, t99)
+    ey_left_flip_up = t34 - d5 * cphi_left_flip_up
+    t100 = t98 * t98 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t100)
+    t101 = t1 - r_elbow_left_flip_up
+    t102 = t37 + r_elbow_left_flip_up
+    t103 = r_elbow_left_flip_up - t37
+    t104 = t31 & (t30 <= t101) & (t30 <= t102) & (t30 <= t103)
+    unreachable_2 = np.logical_not(t104)
+    t105 = _runtime.poison(invalid | unreachable_2)
+    t106 = t14 + t105
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t3
-    A_elbow_left_flip_up = np.maximum(t102, 0.0)
-    C_elbow_left_flip_up = np.maximum(t104, 0.0)
-    t108 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    A_elbow_left_flip_up = np.maximum(t101, 0.0)
+    C_elbow_left_flip_up = np.maximum(t103, 0.0)
+    t107 = A_elbow_left_flip_up * C_elbow_left_flip_up
     S_elbow_left_flip_up = t1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t103, 0.0)
-    t109 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    width_elbow_left_flip_up = t108 + t109
-    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t108 - t109) / width_elbow_left_flip_up))
-    t110 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up
-    t111 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
-    area_elbow_left_flip_up = t111 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
-    t112 = area_elbow_left_flip_up / width_elbow_left_flip_up
-    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t112)
-    t113 = t99 * s_base_elbow_left_flip_up / r_elbow_left_flip_up
-    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t110 + t113)
-    t114 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up
-    t115 = t99 * c_base_elbow_left_flip_up / r_elbow_left_flip_up
-    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t114 - t115)
-    t116 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t117 = A_elbow_left_flip_up * S_elbow_left_flip_up
-    t118 = C_elbow_left_flip_up * B_elbow_left_flip_up
-    sum_elbow_left_flip_up = t117 + t118
-    t119 = area_elbow_left_flip_up / sum_elbow_left_flip_up
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, t119)
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t117 - t118) / sum_elbow_left_flip_up))
-    t120 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t121 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t122 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
-    t123 = c3_left_flip_up * t121 - s3_left_flip_up * t122
-    t124 = c3_left_flip_up * t122 + s3_left_flip_up * t121
-    t125 = _runtime.wrap_cut(np.arctan2(t123, t124)) + t106
-    t126 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
-    t127 = _runtime.wrap_cut(-np.arctan2(t126, M_33)) + t106
-    t128 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
-    t129 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
-    t130 = _runtime.wrap_cut(-np.arctan2(t128, t129)) + t106
-    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t110 - t113)
-    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t115 + t114))
-    t131 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t132 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t133 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
-    t134 = c3_left_flip_up * t132 + s3_left_flip_up * t133
-    t135 = c3_left_flip_up * t133 - s3_left_flip_up * t132
-    t136 = _runtime.wrap_cut(np.arctan2(t134, t135)) + t106
-    t137 = _runtime.select(free1, 0.0, t8 - t10)
+    B_elbow_left_flip_up = np.maximum(t102, 0.0)
+    t108 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    width_elbow_left_flip_up = t107 + t108
+    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t107 - t108) / width_elbow_left_flip_up))
+    t109 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up
+    t110 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
+    area_elbow_left_flip_up = t110 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
+    t111 = area_elbow_left_flip_up / width_elbow_left_flip_up
+    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t111)
+    t112 = t98 * s_base_elbow_left_flip_up / r_elbow_left_flip_up
+    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t109 + t112)
+    t113 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up
+    t114 = t98 * c_base_elbow_left_flip_up / r_elbow_left_flip_up
+    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t113 - t114)
+    t115 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t116 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t117 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    sum_elbow_left_flip_up = t116 + t117
+    t118 = area_elbow_left_flip_up / sum_elbow_left_flip_up
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, t118)
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t116 - t117) / sum_elbow_left_flip_up))
+    t119 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t120 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t121 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    t122 = c3_left_flip_up * t120 - s3_left_flip_up * t121
+    t123 = c3_left_flip_up * t121 + s3_left_flip_up * t120
+    t124 = _runtime.wrap_cut(np.arctan2(t122, t123)) + t105
+    t125 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t126 = _runtime.wrap_cut(-np.arctan2(t125, M_33)) + t105
+    t127 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
+    t128 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
+    t129 = _runtime.wrap_cut(-np.arctan2(t127, t128)) + t105
+    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t109 - t112)
+    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t114 + t113))
+    t130 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t131 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t132 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t133 = c3_left_flip_up * t131 + s3_left_flip_up * t132
+    t134 = c3_left_flip_up * t132 - s3_left_flip_up * t131
+    t135 = _runtime.wrap_cut(np.arctan2(t133, t134)) + t105
+    t136 = _runtime.select(free1, 0.0, t8 - t10)
     c1_right_noflip_up = _runtime.select(free1, 1.0, t12 + t13)
-    t138 = _runtime.wrap_cut(np.arctan2(-t137, c1_right_noflip_up))
-    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t137
-    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t137
-    t139 = t33 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t139)
-    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t34
-    t140 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t36 + t140)
+    t137 = _runtime.wrap_cut(np.arctan2(-t136, c1_right_noflip_up))
+    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t136
+    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t136
+    t138 = t32 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t138)
+    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t33
+    t139 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t35 + t139)
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t3
-    t141 = d5 + r_hub_right_noflip_up
-    t142 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(t1, t141) / 2.0 + np.maximum(t39, np.abs(t142)) / 2.0
+    t140 = d5 + r_hub_right_noflip_up
+    t141 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(t1, t140) / 2.0 + np.maximum(t38, np.abs(t141)) / 2.0
+    t142 = (t140 - mid_reach_right_noflip_up) * (t140 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t142)
     t143 = (t141 - mid_reach_right_noflip_up) * (t141 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t143)
-    t144 = (t142 - mid_reach_right_noflip_up) * (t142 + mid_reach_right_noflip_up)
-    d_mid_right_noflip_up = np.maximum(0.0, -t144)
+    d_mid_right_noflip_up = np.maximum(0.0, -t143)
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
-    any_mid_right_noflip_up = n_mid_right_noflip_up <= t41
-    t145 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t145 / n_mid_right_noflip_up)
-    t146 = across_right_noflip_up * uc_mid_right_noflip_up
-    t147 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t147 / n_mid_right_noflip_up)
-    t148 = (t146 + t35 * us_mid_right_noflip_up) / r_hub_right_noflip_up
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t148)
+    any_mid_right_noflip_up = n_mid_right_noflip_up <= t40
+    t144 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t144 / n_mid_right_noflip_up)
+    t145 = across_right_noflip_up * uc_mid_right_noflip_up
+    t146 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t146 / n_mid_right_noflip_up)
+    t147 = (t145 + t34 * us_mid_right_noflip_up) / r_hub_right_noflip_up
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t147)
     s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 / h_wrist_right_noflip_up)
-    t149 = d5 * s_phi_right_noflip_up
-    t150 = across_right_noflip_up - t149
-    t151 = M_13_right_noflip_up / h_wrist_right_noflip_up
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, t151)
-    t152 = t35 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t150 * t150 + t152 * t152)
-    in_reach_right_noflip_up = np.minimum(t1, np.maximum(here_right_noflip_up, t39))
+    t148 = d5 * s_phi_right_noflip_up
+    t149 = across_right_noflip_up - t148
+    t150 = M_13_right_noflip_up / h_wrist_right_noflip_up
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, t150)
+    t151 = t34 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t149 * t149 + t151 * t151)
+    in_reach_right_noflip_up = np.minimum(t1, np.maximum(here_right_noflip_up, t38))
+    t152 = (t140 - in_reach_right_noflip_up) * (t140 + in_reach_right_noflip_up)
+    k_near_right_noflip_up = np.maximum(0.0, t152)
     t153 = (t141 - in_reach_right_noflip_up) * (t141 + in_reach_right_noflip_up)
-    k_near_right_noflip_up = np.maximum(0.0, t153)
-    t154 = (t142 - in_reach_right_noflip_up) * (t142 + in_reach_right_noflip_up)
-    d_near_right_noflip_up = np.maximum(0.0, -t154)
+    d_near_right_noflip_up = np.maximum(0.0, -t153)
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
-    any_near_right_noflip_up = n_near_right_noflip_up <= t41
-    t155 = k_near_right_noflip_up - d_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t155 / n_near_right_noflip_up)
-    t156 = across_right_noflip_up * uc_near_right_noflip_up
-    t157 = across_right_noflip_up * c_phi_right_noflip_up
-    t158 = t35 * s_phi_right_noflip_up
-    t159 = t157 - t158
-    t160 = np.abs(t159)
-    side_right_noflip_up = _runtime.select(t160 <= t3, 1.0, -(t159 / t160))
-    t161 = 2.0 * side_right_noflip_up * np.sqrt(d_near_right_noflip_up)
-    t162 = t161 * np.sqrt(k_near_right_noflip_up) / n_near_right_noflip_up
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t162)
-    t163 = (t156 + t35 * us_near_right_noflip_up) / r_hub_right_noflip_up
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t163)
-    t164 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t165 = across_right_noflip_up * us_near_right_noflip_up
-    t166 = (t165 - t35 * uc_near_right_noflip_up) / r_hub_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t166)
-    t167 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t168 = h_wrist_right_noflip_up * np.sqrt(t164 * t164 + t167 * t167)
-    within_rounding_right_noflip_up = t168 <= t53
-    t169 = here_right_noflip_up - in_reach_right_noflip_up
-    inside_right_noflip_up = np.abs(t169) <= t3
+    any_near_right_noflip_up = n_near_right_noflip_up <= t40
+    t154 = k_near_right_noflip_up - d_near_right_noflip_up
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t154 / n_near_right_noflip_up)
+    t155 = across_right_noflip_up * uc_near_right_noflip_up
+    t156 = across_right_noflip_up * c_phi_right_noflip_up
+    t157 = t34 * s_phi_right_noflip_up
+    t158 = t156 - t157
+    t159 = np.abs(t158)
+    side_right_noflip_up = _runtime.select(t159 <= t3, 1.0, -(t158 / t159))
+    t160 = 2.0 * side_right_noflip_up * np.sqrt(d_near_right_noflip_up)
+    t161 = t160 * np.sqrt(k_near_right_noflip_up) / n_near_right_noflip_up
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t161)
+    t162 = (t155 + t34 * us_near_right_noflip_up) / r_hub_right_noflip_up
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t162)
+    t163 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t164 = across_right_noflip_up * us_near_right_noflip_up
+    t165 = (t164 - t34 * uc_near_right_noflip_up) / r_hub_right_noflip_up
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t165)
+    t166 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t167 = h_wrist_right_noflip_up * np.sqrt(t163 * t163 + t166 * t166)
+    within_rounding_right_noflip_up = t167 <= t52
+    t168 = here_right_noflip_up - in_reach_right_noflip_up
+    inside_right_noflip_up = np.abs(t168) <= t3
     c_moved_right_noflip_up = _runtime.select(inside_right_noflip_up, s_phi_right_noflip_up, c_near_right_noflip_up)
-    t170 = _runtime.select(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t170)
-    t171 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t172 = across_right_noflip_up * us_mid_right_noflip_up
-    t173 = (t172 - t35 * uc_mid_right_noflip_up) / r_hub_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t173)
+    t169 = _runtime.select(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t169)
+    t170 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t171 = across_right_noflip_up * us_mid_right_noflip_up
+    t172 = (t171 - t34 * uc_mid_right_noflip_up) / r_hub_right_noflip_up
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t172)
     s_moved_right_noflip_up = _runtime.select(inside_right_noflip_up, -c_phi_right_noflip_up, s_near_right_noflip_up)
-    t174 = _runtime.select(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t174)
-    ey_right_noflip_up = t35 - d5 * cphi_right_noflip_up
-    t175 = t171 * t171 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t175)
-    t176 = t1 - r_elbow_right_noflip_up
-    t177 = t38 + r_elbow_right_noflip_up
-    t178 = r_elbow_right_noflip_up - t38
-    t179 = t32 & (t31 <= t176) & (t31 <= t177) & (t31 <= t178)
-    unreachable_3 = np.logical_not(t179)
-    t180 = _runtime.poison(invalid | unreachable_3)
-    t181 = t138 + t180
+    t173 = _runtime.select(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t173)
+    ey_right_noflip_up = t34 - d5 * cphi_right_noflip_up
+    t174 = t170 * t170 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t174)
+    t175 = t1 - r_elbow_right_noflip_up
+    t176 = t37 + r_elbow_right_noflip_up
+    t177 = r_elbow_right_noflip_up - t37
+    t178 = t31 & (t30 <= t175) & (t30 <= t176) & (t30 <= t177)
+    unreachable_3 = np.logical_not(t178)
+    t179 = _runtime.poison(invalid | unreachable_3)
+    t180 = t137 + t179
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
-    A_elbow_right_noflip_up = np.maximum(t176, 0.0)
-    C_elbow_right_noflip_up = np.maximum(t178, 0.0)
-    t182 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    A_elbow_right_noflip_up = np.maximum(t175, 0.0)
+    C_elbow_right_noflip_up = np.maximum(t177, 0.0)
+    t181 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t177, 0.0)
-    t183 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    width_elbow_right_noflip_up = t182 + t183
-    t184 = -((t182 - t183) / width_elbow_right_noflip_up)
-    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, t184)
-    t185 = ey_right_noflip_up * c_base_elbow_right_noflip_up
-    t186 = t185 / r_elbow_right_noflip_up
-    t187 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
-    area_elbow_right_noflip_up = t187 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
-    t188 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
-    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t188)
-    t189 = t171 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t186 + t189)
-    t190 = ey_right_noflip_up * s_base_elbow_right_noflip_up
-    t191 = t190 / r_elbow_right_noflip_up
-    t192 = t171 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t191 - t192)
-    t193 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t194 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
-    t195 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
-    sum_elbow_right_noflip_up = t194 + t195
-    t196 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t196)
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t194 - t195) / sum_elbow_right_noflip_up))
-    t197 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t198 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t199 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
-    t200 = c3_right_noflip_up * t198 - s3_right_noflip_up * t199
-    t201 = c3_right_noflip_up * t199 + s3_right_noflip_up * t198
-    t202 = _runtime.wrap_cut(np.arctan2(t200, t201)) + t180
-    t203 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
-    M_33_right_noflip_up = -(T13 * t137 + T23 * c1_right_noflip_up)
-    t204 = _runtime.wrap_cut(-np.arctan2(t203, M_33_right_noflip_up))
-    t205 = t204 + t180
-    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t137
-    t206 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
-    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t137
-    t207 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
-    t208 = _runtime.wrap_cut(-np.arctan2(t206, t207)) + t180
-    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t186 - t189)
-    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t192 + t191))
-    t209 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t210 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t211 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
-    t212 = c3_right_noflip_up * t210 + s3_right_noflip_up * t211
-    t213 = c3_right_noflip_up * t211 - s3_right_noflip_up * t210
-    t214 = _runtime.wrap_cut(np.arctan2(t212, t213)) + t180
-    t215 = across_right_noflip_up + t149
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, -t151)
-    t216 = t35 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t215 * t215 + t216 * t216)
-    in_reach_right_flip_up = np.minimum(t1, np.maximum(here_right_flip_up, t39))
+    B_elbow_right_noflip_up = np.maximum(t176, 0.0)
+    t182 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    width_elbow_right_noflip_up = t181 + t182
+    t183 = -((t181 - t182) / width_elbow_right_noflip_up)
+    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, t183)
+    t184 = ey_right_noflip_up * c_base_elbow_right_noflip_up
+    t185 = t184 / r_elbow_right_noflip_up
+    t186 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
+    area_elbow_right_noflip_up = t186 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
+    t187 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
+    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t187)
+    t188 = t170 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
+    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t185 + t188)
+    t189 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    t190 = t189 / r_elbow_right_noflip_up
+    t191 = t170 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
+    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t190 - t191)
+    t192 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t193 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t194 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    sum_elbow_right_noflip_up = t193 + t194
+    t195 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t195)
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t193 - t194) / sum_elbow_right_noflip_up))
+    t196 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t197 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t198 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    t199 = c3_right_noflip_up * t197 - s3_right_noflip_up * t198
+    t200 = c3_right_noflip_up * t198 + s3_right_noflip_up * t197
+    t201 = _runtime.wrap_cut(np.arctan2(t199, t200)) + t179
+    t202 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    M_33_right_noflip_up = -(T13 * t136 + T23 * c1_right_noflip_up)
+    t203 = _runtime.wrap_cut(-np.arctan2(t202, M_33_right_noflip_up))
+    t204 = t203 + t179
+    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t136
+    t205 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t136
+    t206 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t207 = _runtime.wrap_cut(-np.arctan2(t205, t206)) + t179
+    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t185 - t188)
+    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t191 + t190))
+    t208 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t209 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t210 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t211 = c3_right_noflip_up * t209 + s3_right_noflip_up * t210
+    t212 = c3_right_noflip_up * t210 - s3_right_noflip_up * t209
+    t213 = _runtime.wrap_cut(np.arctan2(t211, t212)) + t179
+    t214 = across_right_noflip_up + t148
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, -t150)
+    t215 = t34 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t214 * t214 + t215 * t215)
+    in_reach_right_flip_up = np.minimum(t1, np.maximum(here_right_flip_up, t38))
+    t216 = (t140 - in_reach_right_flip_up) * (t140 + in_reach_right_flip_up)
+    k_near_right_flip_up = np.maximum(0.0, t216)
     t217 = (t141 - in_reach_right_flip_up) * (t141 + in_reach_right_flip_up)
-    k_near_right_flip_up = np.maximum(0.0, t217)
-    t218 = (t142 - in_reach_right_flip_up) * (t142 + in_reach_right_flip_up)
-    d_near_right_flip_up = np.maximum(0.0, -t218)
+    d_near_right_flip_up = np.maximum(0.0, -t217)
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
-    any_near_right_flip_up = n_near_right_flip_up <= t41
-    t219 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t219)
-    t220 = across_right_noflip_up * uc_near_right_flip_up
-    t221 = t158 + across_right_noflip_up * c_phi_right_flip_up
-    t222 = np.abs(t221)
-    side_right_flip_up = _runtime.select(t222 <= t3, 1.0, -(t221 / t222))
-    t223 = 2.0 * side_right_flip_up * np.sqrt(d_near_right_flip_up)
-    t224 = t223 * np.sqrt(k_near_right_flip_up) / n_near_right_flip_up
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t224)
-    t225 = (t220 + t35 * us_near_right_flip_up) / r_hub_right_noflip_up
-    c_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t225)
-    t226 = s_phi_right_noflip_up + c_near_right_flip_up
-    t227 = across_right_noflip_up * us_near_right_flip_up
-    t228 = (t227 - t35 * uc_near_right_flip_up) / r_hub_right_noflip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t228)
-    t229 = c_phi_right_flip_up + s_near_right_flip_up
-    t230 = h_wrist_right_noflip_up * np.sqrt(t226 * t226 + t229 * t229)
-    within_rounding_right_flip_up = t230 <= t53
-    t231 = np.abs(here_right_flip_up - in_reach_right_flip_up)
-    inside_right_flip_up = t231 <= t3
+    any_near_right_flip_up = n_near_right_flip_up <= t40
+    t218 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t218)
+    t219 = across_right_noflip_up * uc_near_right_flip_up
+    t220 = t157 + across_right_noflip_up * c_phi_right_flip_up
+    t221 = np.abs(t220)
+    side_right_flip_up = _runtime.select(t221 <= t3, 1.0, -(t220 / t221))
+    t222 = 2.0 * side_right_flip_up * np.sqrt(d_near_right_flip_up)
+    t223 = t222 * np.sqrt(k_near_right_flip_up) / n_near_right_flip_up
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t223)
+    t224 = (t219 + t34 * us_near_right_flip_up) / r_hub_right_noflip_up
+    c_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t224)
+    t225 = s_phi_right_noflip_up + c_near_right_flip_up
+    t226 = across_right_noflip_up * us_near_right_flip_up
+    t227 = (t226 - t34 * uc_near_right_flip_up) / r_hub_right_noflip_up
+    s_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t227)
+    t228 = c_phi_right_flip_up + s_near_right_flip_up
+    t229 = h_wrist_right_noflip_up * np.sqrt(t225 * t225 + t228 * t228)
+    within_rounding_right_flip_up = t229 <= t52
+    t230 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    inside_right_flip_up = t230 <= t3
     c_moved_right_flip_up = _runtime.select(inside_right_flip_up, -s_phi_right_noflip_up, c_near_right_flip_up)
-    t232 = _runtime.select(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t232)
-    t233 = across_right_noflip_up - d5 * sphi_right_flip_up
+    t231 = _runtime.select(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t231)
+    t232 = across_right_noflip_up - d5 * sphi_right_flip_up
     s_moved_right_flip_up = _runtime.select(inside_right_flip_up, -c_phi_right_flip_up, s_near_right_flip_up)
-    t234 = _runtime.select(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t234)
-    ey_right_flip_up = t35 - d5 * cphi_right_flip_up
-    t235 = t233 * t233 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t235)
-    t236 = t1 - r_elbow_right_flip_up
-    t237 = t38 + r_elbow_right_flip_up
-    t238 = r_elbow_right_flip_up - t38
-    t239 = t32 & (t31 <= t236) & (t31 <= t237) & (t31 <= t238)
-    unreachable_4 = np.logical_not(t239)
-    t240 = _runtime.poison(invalid | unreachable_4)
-    t241 = t138 + t240
+    t233 = _runtime.select(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t233)
+    ey_right_flip_up = t34 - d5 * cphi_right_flip_up
+    t234 = t232 * t232 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t234)
+    t235 = t1 - r_elbow_right_flip_up
+    t236 = t37 + r_elbow_right_flip_up
+    t237 = r_elbow_right_flip_up - t37
+    t238 = t31 & (t30 <= t235) & (t30 <= t236) & (t30 <= t237)
+    unreachable_4 = np.logical_not(t238)
+    t239 = _runtime.poison(invalid | unreachable_4)
+    t240 = t137 + t239
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3
-    A_elbow_right_flip_up = np.maximum(t236, 0.0)
-    C_elbow_right_flip_up = np.maximum(t238, 0.0)
-    t242 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    A_elbow_right_flip_up = np.maximum(t235, 0.0)
+    C_elbow_right_flip_up = np.maximum(t237, 0.0)
+    t241 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = t1 + r_elbow_right_flip_up
-    B_elbow_right_flip_up = np.maximum(t237, 0.0)
-    t243 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    width_elbow_right_flip_up = t242 + t243
-    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t242 - t243) / width_elbow_right_flip_up))
-    t244 = ey_right_flip_up * c_base_elbow_right_flip_up
-    t245 = t244 / r_elbow_right_flip_up
-    t246 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
-    area_elbow_right_flip_up = t246 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
-    t247 = area_elbow_right_flip_up / width_elbow_right_flip_up
-    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t247)
-    t248 = t233 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
-    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t245 + t248)
-    t249 = ey_right_flip_up * s_base_elbow_right_flip_up
-    t250 = t249 / r_elbow_right_flip_up
-    t251 = t233 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
-    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t250 - t251)
-    t252 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t253 = A_elbow_right_flip_up * S_elbow_right_flip_up
-    t254 = C_elbow_right_flip_up * B_elbow_right_flip_up
-    sum_elbow_right_flip_up = t253 + t254
-    t255 = area_elbow_right_flip_up / sum_elbow_right_flip_up
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, t255)
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t253 - t254) / sum_elbow_right_flip_up))
-    t256 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t257 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t258 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
-    t259 = c3_right_flip_up * t257 - s3_right_flip_up * t258
-    t260 = c3_right_flip_up * t258 + s3_right_flip_up * t257
-    t261 = _runtime.wrap_cut(np.arctan2(t259, t260)) + t240
-    t262 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
-    t263 = _runtime.wrap_cut(-np.arctan2(t262, M_33_right_noflip_up))
-    t264 = t263 + t240
-    t265 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
-    t266 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
-    t267 = _runtime.wrap_cut(-np.arctan2(t265, t266)) + t240
-    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t245 - t248)
-    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t251 + t250))
-    t268 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t269 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t270 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
-    t271 = c3_right_flip_up * t269 + s3_right_flip_up * t270
-    t272 = c3_right_flip_up * t270 - s3_right_flip_up * t269
-    t273 = _runtime.wrap_cut(np.arctan2(t271, t272)) + t240
-    t274 = free1 | aligned_wrist | no_link_elbow
-    t275 = _runtime.status(invalid, unreachable, t274 | folded_elbow)
-    t276 = _runtime.status(invalid, unreachable_2, t274 | folded_elbow_left_flip_up)
-    t277 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
-    t278 = _runtime.status(invalid, unreachable_3, t277 | folded_elbow_right_noflip_up)
-    t279 = _runtime.status(invalid, unreachable_4, t277 | folded_elbow_right_flip_up)
+    B_elbow_right_flip_up = np.maximum(t236, 0.0)
+    t242 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    width_elbow_right_flip_up = t241 + t242
+    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t241 - t242) / width_elbow_right_flip_up))
+    t243 = ey_right_flip_up * c_base_elbow_right_flip_up
+    t244 = t243 / r_elbow_right_flip_up
+    t245 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
+    area_elbow_right_flip_up = t245 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    t246 = area_elbow_right_flip_up / width_elbow_right_flip_up
+    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t246)
+    t247 = t232 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
+    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t244 + t247)
+    t248 = ey_right_flip_up * s_base_elbow_right_flip_up
+    t249 = t248 / r_elbow_right_flip_up
+    t250 = t232 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
+    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t249 - t250)
+    t251 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t252 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t253 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    sum_elbow_right_flip_up = t252 + t253
+    t254 = area_elbow_right_flip_up / sum_elbow_right_flip_up
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, t254)
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t252 - t253) / sum_elbow_right_flip_up))
+    t255 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t256 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t257 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    t258 = c3_right_flip_up * t256 - s3_right_flip_up * t257
+    t259 = c3_right_flip_up * t257 + s3_right_flip_up * t256
+    t260 = _runtime.wrap_cut(np.arctan2(t258, t259)) + t239
+    t261 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t262 = _runtime.wrap_cut(-np.arctan2(t261, M_33_right_noflip_up))
+    t263 = t262 + t239
+    t264 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
+    t265 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
+    t266 = _runtime.wrap_cut(-np.arctan2(t264, t265)) + t239
+    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t244 - t247)
+    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t250 + t249))
+    t267 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t268 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t269 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t270 = c3_right_flip_up * t268 + s3_right_flip_up * t269
+    t271 = c3_right_flip_up * t269 - s3_right_flip_up * t268
+    t272 = _runtime.wrap_cut(np.arctan2(t270, t271)) + t239
+    t273 = free1 | aligned_wrist | no_link_elbow
+    t274 = _runtime.status(invalid, unreachable, t273 | folded_elbow)
+    t275 = _runtime.status(invalid, unreachable_2, t273 | folded_elbow_left_flip_up)
+    t276 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t277 = _runtime.status(invalid, unreachable_3, t276 | folded_elbow_right_noflip_up)
+    t278 = _runtime.status(invalid, unreachable_4, t276 | folded_elbow_right_flip_up)
     return (
-        t62,
-        _runtime.wrap_cut(np.arctan2(s2, c2)) + t61,
-        _runtime.wrap_cut(t72) + t61,
-        _runtime.wrap_cut(t75) + t61,
-        t77,
-        t79,
-        t62,
-        _runtime.wrap_cut(t80) + t61,
-        _runtime.wrap_cut(-t72) + t61,
-        _runtime.wrap_cut(t83) + t61,
-        t77,
-        t79,
-        t107,
-        t116 + t106,
-        _runtime.wrap_cut(t120) + t106,
-        t125,
-        t127,
-        t130,
-        t107,
-        _runtime.wrap_cut(t131) + t106,
-        _runtime.wrap_cut(-t120) + t106,
-        t136,
-        t127,
-        t130,
-        t181,
-        _runtime.wrap_cut(t193) + t180,
-        _runtime.wrap_cut(t197) + t180,
-        t202,
-        t205,
-        t208,
-        t181,
-        _runtime.wrap_cut(t209) + t180,
-        _runtime.wrap_cut(-t197) + t180,
-        t214,
-        t205,
-        t208,
-        t241,
-        _runtime.wrap_cut(t252) + t240,
-        _runtime.wrap_cut(t256) + t240,
-        t261,
-        t264,
-        t267,
-        t241,
-        _runtime.wrap_cut(t268) + t240,
-        _runtime.wrap_cut(-t256) + t240,
-        t273,
-        t264,
-        t267,
+        t61,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t60,
+        _runtime.wrap_cut(t71) + t60,
+        _runtime.wrap_cut(t74) + t60,
+        t76,
+        t78,
+        t61,
+        _runtime.wrap_cut(t79) + t60,
+        _runtime.wrap_cut(-t71) + t60,
+        _runtime.wrap_cut(t82) + t60,
+        t76,
+        t78,
+        t106,
+        t115 + t105,
+        _runtime.wrap_cut(t119) + t105,
+        t124,
+        t126,
+        t129,
+        t106,
+        _runtime.wrap_cut(t130) + t105,
+        _runtime.wrap_cut(-t119) + t105,
+        t135,
+        t126,
+        t129,
+        t180,
+        _runtime.wrap_cut(t192) + t179,
+        _runtime.wrap_cut(t196) + t179,
+        t201,
+        t204,
+        t207,
+        t180,
+        _runtime.wrap_cut(t208) + t179,
+        _runtime.wrap_cut(-t196) + t179,
+        t213,
+        t204,
+        t207,
+        t240,
+        _runtime.wrap_cut(t251) + t239,
+        _runtime.wrap_cut(t255) + t239,
+        t260,
+        t263,
+        t266,
+        t240,
+        _runtime.wrap_cut(t267) + t239,
+        _runtime.wrap_cut(-t255) + t239,
+        t272,
+        t263,
+        t266,
+        t274,
+        t274,
         t275,
         t275,
-        t276,
-        t276,
+        t277,
+        t277,
         t278,
         t278,
-        t279,
-        t279,
     )
 
 

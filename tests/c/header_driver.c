@@ -11,7 +11,7 @@ void wrap_all(size_t n, const real_t *angle, real_t *wrapped);
 void wrap_cut_all(size_t n, const real_t *angle, real_t *wrapped);
 void wrap_down_all(size_t n, const real_t *angle, real_t *wrapped);
 void wrap_up_all(size_t n, const real_t *angle, real_t *wrapped);
-void is_finite_all(size_t n, const real_t *x, real_t *yes);
+void nought_all(size_t n, const real_t *x, real_t *yes);
 void max_min_all(size_t n, const real_t *a, const real_t *b, real_t *larger, real_t *smaller);
 void constants(real_t *out);
 
@@ -68,10 +68,10 @@ WRAP(wrap_cut)
 WRAP(wrap_down)
 WRAP(wrap_up)
 
-CLOSEDFORM_DISPATCHED void is_finite_all(size_t n, const real_t *CF_RESTRICT x,
-                                    real_t *CF_RESTRICT yes)
+CLOSEDFORM_DISPATCHED void nought_all(size_t n, const real_t *CF_RESTRICT x,
+                                    real_t *CF_RESTRICT zero)
 {
-    for (size_t i = 0; i < n; ++i) yes[i] = cf_is_finite(x[i]) ? CLOSEDFORM_C(1) : CLOSEDFORM_C(0);
+    for (size_t i = 0; i < n; ++i) zero[i] = cf_nought(x[i]);
 }
 
 CLOSEDFORM_DISPATCHED void max_min_all(size_t n, const real_t *CF_RESTRICT a,

@@ -220,6 +220,8 @@ def two_link_triangle_by_square(
     turns with it.  Both angles rest on the same N and M, whose rounding counts as some of R; so
     the links end where they should even where their angles are ill-conditioned.
 
+    A fold of some 2^-44 of the links is none: there M may be missed by its own square.
+
     The elbow is free where a link has no length: the convention is a stretched one, and the
     ``free`` joints get the status for it.  The base is free where R = 0.  ``scale`` is the natural
     scale of the lengths: by default that of the links, more where R comes from larger ones.
@@ -230,7 +232,10 @@ def two_link_triangle_by_square(
         f"N{suffix}", total**2 - square, 2 * total * scale, "nearer than full stretch"
     )
     M = program.bound(
-        f"M{suffix}", square - apart**2, 2 * sp.Abs(apart) * scale, "farther than the fold"
+        f"M{suffix}",
+        square - apart**2,
+        2 * (sp.Abs(apart) + total / 2**44) * scale,
+        "farther than the fold",
     )
     bend, lead = triangle_angles(first, second, N, M, sigma)
     no_link = program.vanishes(

@@ -13,8 +13,8 @@
  *   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
  *   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
  *   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
- *   ik: 56 compare and select, 34 add, 6 atan2, 33 multiply, 5 sqrt
- *   workspace_contains: 21 compare and select, 11 add, 13 multiply
+ *   ik: 56 compare and select, 36 add, 6 atan2, 2 divide, 33 multiply, 5 sqrt
+ *   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
  *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
  */
 #include "hybrid_five_bar.h"
@@ -850,40 +850,41 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const real_t t8 = t1 * t1;
     const real_t square_c = r2 + y * y;
     const real_t t9 = t8 - square_c;
-    const real_t t10 = L1 - L2;
-    const real_t t11 = CLOSEDFORM_FEASIBILITY * (t1 * CLOSEDFORM_C(2.0) * cf_abs(t10));
-    const real_t t12 = t10 * t10;
-    const real_t t13 = square_c - t12;
-    const real_t t14 = y - L0;
-    const real_t square_d = r2 + t14 * t14;
-    const real_t t15 = t8 - square_d;
-    const real_t t16 = square_d - t12;
-    const int t17 = (-t7 <= t9) & (-t11 <= t13) & (-t7 <= t15) & (-t11 <= t16);
-    const int unreachable = !t17;
-    const real_t t18 = cf_poison(single, invalid | unreachable);
+    const real_t t10 = L1 / CLOSEDFORM_C(8796093022208.0) + L2 / CLOSEDFORM_C(8796093022208.0);
+    const real_t t11 = L1 - L2;
+    const real_t t12 = CLOSEDFORM_FEASIBILITY * (t1 * (t10 + CLOSEDFORM_C(2.0) * cf_abs(t11)));
+    const real_t t13 = t11 * t11;
+    const real_t t14 = square_c - t13;
+    const real_t t15 = y - L0;
+    const real_t square_d = r2 + t15 * t15;
+    const real_t t16 = t8 - square_d;
+    const real_t t17 = square_d - t13;
+    const int t18 = (-t7 <= t9) & (-t12 <= t14) & (-t7 <= t16) & (-t12 <= t17);
+    const int unreachable = !t18;
+    const real_t t19 = cf_poison(single, invalid | unreachable);
     const int at_A = r + cf_abs(y) <= t2;
     const int no_link_c = L1 * L2 <= t8 * CLOSEDFORM_VANISHING;
-    const real_t M_c = cf_max(t13, CLOSEDFORM_C(0.0));
+    const real_t M_c = cf_max(t14, CLOSEDFORM_C(0.0));
     const real_t N_c = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t ahead_c = cf_rarely(single, no_link_c, CLOSEDFORM_C(1.0), t1 * M_c + N_c * t10);
-    const real_t t19 = ahead_c * r;
+    const real_t ahead_c = cf_rarely(single, no_link_c, CLOSEDFORM_C(1.0), t1 * M_c + N_c * t11);
+    const real_t t20 = ahead_c * r;
     const real_t beyond_c = cf_rarely(single, no_link_c, CLOSEDFORM_C(0.0), t6 * cf_sqrt(M_c) * cf_sqrt(N_c));
-    const real_t t20 = y * beyond_c;
-    const real_t t21 = y * ahead_c;
-    const real_t t22 = r * beyond_c;
-    const int at_B = r + cf_abs(t14) <= t2;
-    const real_t M_d = cf_max(t16, CLOSEDFORM_C(0.0));
-    const real_t N_d = cf_max(t15, CLOSEDFORM_C(0.0));
-    const real_t ahead_d = cf_rarely(single, no_link_c, CLOSEDFORM_C(1.0), t1 * M_d + t10 * N_d);
-    const real_t t23 = ahead_d * r;
+    const real_t t21 = y * beyond_c;
+    const real_t t22 = y * ahead_c;
+    const real_t t23 = r * beyond_c;
+    const int at_B = r + cf_abs(t15) <= t2;
+    const real_t M_d = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t N_d = cf_max(t16, CLOSEDFORM_C(0.0));
+    const real_t ahead_d = cf_rarely(single, no_link_c, CLOSEDFORM_C(1.0), t1 * M_d + t11 * N_d);
+    const real_t t24 = ahead_d * r;
     const real_t beyond_d = cf_rarely(single, no_link_c, CLOSEDFORM_C(0.0), t6 * cf_sqrt(M_d) * cf_sqrt(N_d));
-    const real_t t24 = t14 * beyond_d;
-    const real_t t25 = t14 * ahead_d;
-    const real_t t26 = r * beyond_d;
-    const int t27 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
-    const real_t t28 = cf_status(single, invalid, unreachable, t27);
-    const real_t opposite[8] = { z, t19 - t20, t23 - t24, t23 + t24, t19 + t20, z };
-    const real_t adjacent[8] = { -x_2, t21 + t22, t25 + t26, t25 - t26, t21 - t22, x_2 };
+    const real_t t25 = t15 * beyond_d;
+    const real_t t26 = t15 * ahead_d;
+    const real_t t27 = r * beyond_d;
+    const int t28 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
+    const real_t t29 = cf_status(single, invalid, unreachable, t28);
+    const real_t opposite[8] = { z, t20 - t21, t24 - t25, t24 + t25, t20 + t21, z };
+    const real_t adjacent[8] = { -x_2, t22 + t23, t26 + t27, t26 - t27, t22 - t23, x_2 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -895,54 +896,54 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
         angles[4] = cf_atan2(opposite[4], adjacent[4]);
         angles[5] = cf_atan2(opposite[5], adjacent[5]);
     }
-    const real_t t29 = cf_rarely(single, on_axis, CLOSEDFORM_C(0.0), angles[0]);
-    const real_t t30 = cf_wrap_cut(t29) + t18;
-    const real_t t31 = cf_rarely(single, at_A, CLOSEDFORM_C(0.0), angles[1]);
-    const real_t t32 = cf_wrap_cut(t31) + t18;
-    const real_t t33 = cf_rarely(single, at_B, CLOSEDFORM_C(0.0), angles[2]);
-    const real_t t34 = cf_wrap_cut(t33) + t18;
-    const real_t t35 = cf_rarely(single, at_B, CLOSEDFORM_C(0.0), angles[3]);
-    const real_t t36 = cf_wrap_cut(t35) + t18;
-    const real_t t37 = cf_rarely(single, at_A, CLOSEDFORM_C(0.0), angles[4]);
-    const real_t t38 = cf_wrap_cut(t37) + t18;
-    const real_t t39 = cf_rarely(single, on_axis, CLOSEDFORM_C(0.0), angles[5]);
-    const real_t t40 = cf_wrap_cut(-t39) + t18;
-    const real_t t41 = cf_wrap_cut(-t37) + t18;
-    const real_t t42 = cf_wrap_cut(-t35) + t18;
-    const real_t t43 = cf_wrap_cut(-t33) + t18;
-    const real_t t44 = cf_wrap_cut(-t31) + t18;
-    q[0] = t30;
-    q[1] = t32;
-    q[2] = t34;
-    q[3] = t30;
-    q[4] = t32;
-    q[5] = t36;
-    q[6] = t30;
-    q[7] = t38;
-    q[8] = t34;
-    q[9] = t30;
-    q[10] = t38;
-    q[11] = t36;
-    q[12] = t40;
-    q[13] = t41;
-    q[14] = t42;
-    q[15] = t40;
-    q[16] = t41;
-    q[17] = t43;
-    q[18] = t40;
-    q[19] = t44;
-    q[20] = t42;
-    q[21] = t40;
-    q[22] = t44;
-    q[23] = t43;
-    status[0] = t28;
-    status[1] = t28;
-    status[2] = t28;
-    status[3] = t28;
-    status[4] = t28;
-    status[5] = t28;
-    status[6] = t28;
-    status[7] = t28;
+    const real_t t30 = cf_rarely(single, on_axis, CLOSEDFORM_C(0.0), angles[0]);
+    const real_t t31 = cf_wrap_cut(t30) + t19;
+    const real_t t32 = cf_rarely(single, at_A, CLOSEDFORM_C(0.0), angles[1]);
+    const real_t t33 = cf_wrap_cut(t32) + t19;
+    const real_t t34 = cf_rarely(single, at_B, CLOSEDFORM_C(0.0), angles[2]);
+    const real_t t35 = cf_wrap_cut(t34) + t19;
+    const real_t t36 = cf_rarely(single, at_B, CLOSEDFORM_C(0.0), angles[3]);
+    const real_t t37 = cf_wrap_cut(t36) + t19;
+    const real_t t38 = cf_rarely(single, at_A, CLOSEDFORM_C(0.0), angles[4]);
+    const real_t t39 = cf_wrap_cut(t38) + t19;
+    const real_t t40 = cf_rarely(single, on_axis, CLOSEDFORM_C(0.0), angles[5]);
+    const real_t t41 = cf_wrap_cut(-t40) + t19;
+    const real_t t42 = cf_wrap_cut(-t38) + t19;
+    const real_t t43 = cf_wrap_cut(-t36) + t19;
+    const real_t t44 = cf_wrap_cut(-t34) + t19;
+    const real_t t45 = cf_wrap_cut(-t32) + t19;
+    q[0] = t31;
+    q[1] = t33;
+    q[2] = t35;
+    q[3] = t31;
+    q[4] = t33;
+    q[5] = t37;
+    q[6] = t31;
+    q[7] = t39;
+    q[8] = t35;
+    q[9] = t31;
+    q[10] = t39;
+    q[11] = t37;
+    q[12] = t41;
+    q[13] = t42;
+    q[14] = t43;
+    q[15] = t41;
+    q[16] = t42;
+    q[17] = t44;
+    q[18] = t41;
+    q[19] = t45;
+    q[20] = t43;
+    q[21] = t41;
+    q[22] = t45;
+    q[23] = t44;
+    status[0] = t29;
+    status[1] = t29;
+    status[2] = t29;
+    status[3] = t29;
+    status[4] = t29;
+    status[5] = t29;
+    status[6] = t29;
+    status[7] = t29;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1049,14 +1050,15 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     const real_t t7 = t4 * t4;
     const real_t r2 = x * x + z * z;
     const real_t square_c = r2 + y * y;
-    const real_t t8 = L1 - L2;
-    const real_t t9 = CLOSEDFORM_FEASIBILITY * (t4 * CLOSEDFORM_C(2.0) * cf_abs(t8));
-    const real_t t10 = t8 * t8;
-    const int t11 = (t6 <= t7 - square_c) & (-t9 <= square_c - t10);
-    const real_t t12 = y - L0;
-    const real_t square_d = r2 + t12 * t12;
-    const int t13 = t11 & (t6 <= t7 - square_d) & (-t9 <= square_d - t10);
-    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= L2) & t3)) | (!t13);
+    const real_t t8 = L1 / CLOSEDFORM_C(8796093022208.0) + L2 / CLOSEDFORM_C(8796093022208.0);
+    const real_t t9 = L1 - L2;
+    const real_t t10 = CLOSEDFORM_FEASIBILITY * (t4 * (t8 + CLOSEDFORM_C(2.0) * cf_abs(t9)));
+    const real_t t11 = t9 * t9;
+    const int t12 = (t6 <= t7 - square_c) & (-t10 <= square_c - t11);
+    const real_t t13 = y - L0;
+    const real_t square_d = r2 + t13 * t13;
+    const int t14 = t12 & (t6 <= t7 - square_d) & (-t10 <= square_d - t11);
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= L2) & t3)) | (!t14);
     inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 

@@ -13,8 +13,8 @@
  *   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
  *   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
  *   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
- *   ik: 56 compare and select, 34 add, 6 atan2, 33 multiply, 5 sqrt
- *   workspace_contains: 21 compare and select, 11 add, 13 multiply
+ *   ik: 56 compare and select, 36 add, 6 atan2, 2 divide, 33 multiply, 5 sqrt
+ *   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
  *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

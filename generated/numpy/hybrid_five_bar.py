@@ -12,8 +12,8 @@
 #   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
 #   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
 #   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
-#   ik: 56 compare and select, 34 add, 6 atan2, 33 multiply, 5 sqrt
-#   workspace_contains: 21 compare and select, 11 add, 13 multiply
+#   ik: 56 compare and select, 36 add, 6 atan2, 2 divide, 33 multiply, 5 sqrt
+#   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 #   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
 """Five-bar linkage on a revolute.
 
@@ -656,85 +656,86 @@ def _ik(x, y, z, L0, L1, L2):
     square_c = r2 + y * y
     t10 = t9 - square_c
     t11 = L1 - L2
-    t12 = _runtime.FEASIBILITY * (t1 * 2.0 * np.abs(t11))
-    t13 = t11 * t11
-    t14 = square_c - t13
-    t15 = y - L0
-    square_d = r2 + t15 * t15
-    t16 = t9 - square_d
-    t17 = square_d - t13
-    t18 = (-t8 <= t10) & (-t12 <= t14) & (-t8 <= t16) & (-t12 <= t17)
-    unreachable = np.logical_not(t18)
-    t19 = _runtime.poison(invalid | unreachable)
-    t20 = _runtime.wrap_cut(t3) + t19
+    t12 = L1 / 8796093022208.0 + L2 / 8796093022208.0 + 2.0 * np.abs(t11)
+    t13 = -(_runtime.FEASIBILITY * (t1 * t12))
+    t14 = t11 * t11
+    t15 = square_c - t14
+    t16 = y - L0
+    square_d = r2 + t16 * t16
+    t17 = t9 - square_d
+    t18 = square_d - t14
+    t19 = (-t8 <= t10) & (t13 <= t15) & (-t8 <= t17) & (t13 <= t18)
+    unreachable = np.logical_not(t19)
+    t20 = _runtime.poison(invalid | unreachable)
+    t21 = _runtime.wrap_cut(t3) + t20
     at_A = r + np.abs(y) <= t2
     no_link_c = L1 * L2 <= t9 * _runtime.VANISHING
-    M_c = np.maximum(t14, 0.0)
+    M_c = np.maximum(t15, 0.0)
     N_c = np.maximum(t10, 0.0)
     ahead_c = _runtime.select(no_link_c, 1.0, t1 * M_c + N_c * t11)
-    t21 = ahead_c * r
+    t22 = ahead_c * r
     beyond_c = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(M_c) * np.sqrt(N_c))
-    t22 = y * beyond_c
-    t23 = y * ahead_c
-    t24 = r * beyond_c
-    t25 = _runtime.select(at_A, 0.0, np.arctan2(t21 - t22, t23 + t24))
-    t26 = _runtime.wrap_cut(t25) + t19
-    at_B = r + np.abs(t15) <= t2
-    M_d = np.maximum(t17, 0.0)
-    N_d = np.maximum(t16, 0.0)
+    t23 = y * beyond_c
+    t24 = y * ahead_c
+    t25 = r * beyond_c
+    t26 = _runtime.select(at_A, 0.0, np.arctan2(t22 - t23, t24 + t25))
+    t27 = _runtime.wrap_cut(t26) + t20
+    at_B = r + np.abs(t16) <= t2
+    M_d = np.maximum(t18, 0.0)
+    N_d = np.maximum(t17, 0.0)
     ahead_d = _runtime.select(no_link_c, 1.0, t1 * M_d + t11 * N_d)
-    t27 = ahead_d * r
+    t28 = ahead_d * r
     beyond_d = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(M_d) * np.sqrt(N_d))
-    t28 = t15 * beyond_d
-    t29 = t15 * ahead_d
-    t30 = r * beyond_d
-    t31 = _runtime.select(at_B, 0.0, np.arctan2(t27 - t28, t29 + t30))
-    t32 = _runtime.wrap_cut(t31) + t19
-    t33 = _runtime.select(at_B, 0.0, np.arctan2(t27 + t28, t29 - t30))
-    t34 = _runtime.wrap_cut(t33) + t19
-    t35 = _runtime.select(at_A, 0.0, np.arctan2(t21 + t22, t23 - t24))
-    t36 = _runtime.wrap_cut(t35) + t19
-    t37 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
-    t38 = _runtime.wrap_cut(-t37) + t19
-    t39 = _runtime.wrap_cut(-t35) + t19
-    t40 = _runtime.wrap_cut(-t33) + t19
-    t41 = _runtime.wrap_cut(-t31) + t19
-    t42 = _runtime.wrap_cut(-t25) + t19
-    t43 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
-    t44 = _runtime.status(invalid, unreachable, t43)
+    t29 = t16 * beyond_d
+    t30 = t16 * ahead_d
+    t31 = r * beyond_d
+    t32 = _runtime.select(at_B, 0.0, np.arctan2(t28 - t29, t30 + t31))
+    t33 = _runtime.wrap_cut(t32) + t20
+    t34 = _runtime.select(at_B, 0.0, np.arctan2(t28 + t29, t30 - t31))
+    t35 = _runtime.wrap_cut(t34) + t20
+    t36 = _runtime.select(at_A, 0.0, np.arctan2(t22 + t23, t24 - t25))
+    t37 = _runtime.wrap_cut(t36) + t20
+    t38 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
+    t39 = _runtime.wrap_cut(-t38) + t20
+    t40 = _runtime.wrap_cut(-t36) + t20
+    t41 = _runtime.wrap_cut(-t34) + t20
+    t42 = _runtime.wrap_cut(-t32) + t20
+    t43 = _runtime.wrap_cut(-t26) + t20
+    t44 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
+    t45 = _runtime.status(invalid, unreachable, t44)
     return (
-        t20,
-        t26,
-        t32,
-        t20,
-        t26,
-        t34,
-        t20,
-        t36,
-        t32,
-        t20,
-        t36,
-        t34,
-        t38,
+        t21,
+        t27,
+        t33,
+        t21,
+        t27,
+        t35,
+        t21,
+        t37,
+        t33,
+        t21,
+        t37,
+        t35,
         t39,
         t40,
-        t38,
+        t41,
         t39,
-        t41,
-        t38,
-        t42,
         t40,
-        t38,
         t42,
+        t39,
+        t43,
         t41,
-        t44,
-        t44,
-        t44,
-        t44,
-        t44,
-        t44,
-        t44,
-        t44,
+        t39,
+        t43,
+        t42,
+        t45,
+        t45,
+        t45,
+        t45,
+        t45,
+        t45,
+        t45,
+        t45,
     )
 
 
@@ -779,15 +780,16 @@ def _workspace_contains(x, y, z, L0, L1, L2):
     r2 = x * x + z * z
     square_c = r2 + y * y
     t7 = L1 - L2
-    t8 = _runtime.FEASIBILITY * (t4 * 2.0 * np.abs(t7))
-    t9 = t7 * t7
-    t10 = (-t5 <= t6 - square_c) & (-t8 <= square_c - t9)
-    t11 = y - L0
-    square_d = r2 + t11 * t11
-    t12 = t10 & (-t5 <= t6 - square_d) & (-t8 <= square_d - t9)
-    t13 = np.logical_not(np.logical_not(t3) | np.logical_not(t12))
+    t8 = L1 / 8796093022208.0 + L2 / 8796093022208.0 + 2.0 * np.abs(t7)
+    t9 = -(_runtime.FEASIBILITY * (t4 * t8))
+    t10 = t7 * t7
+    t11 = (-t5 <= t6 - square_c) & (t9 <= square_c - t10)
+    t12 = y - L0
+    square_d = r2 + t12 * t12
+    t13 = t11 & (-t5 <= t6 - square_d) & (t9 <= square_d - t10)
+    t14 = np.logical_not(np.logical_not(t3) | np.logical_not(t13))
     return (
-        t13,
+        t14,
     )
 
 

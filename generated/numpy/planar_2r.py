@@ -10,7 +10,7 @@
 #   determinant: 2 multiply, 1 sincos
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
 #   singularities: 1 sincos
-#   ik: 31 compare and select, 16 add, 3 atan2, 23 multiply, 2 sqrt
+#   ik: 31 compare and select, 18 add, 3 atan2, 2 divide, 23 multiply, 2 sqrt
 #   ik_pose: 61 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
 #   workspace_radii: 1 compare and select, 2 add
 """Planar 2R arm.
@@ -321,19 +321,20 @@ def _ik(px, py, l1, l2):
     t15 = t14 & (0.0 <= l2) & (np.isfinite(px) & np.isfinite(py))
     invalid = np.logical_not(t15)
     t16 = _runtime.FEASIBILITY * (t1 * (l1 * 2.0 + t7))
-    t17 = _runtime.FEASIBILITY * (t1 * 2.0 * np.abs(t3))
-    unreachable = np.logical_not((-t16 <= t5) & (-t17 <= t4))
-    t18 = _runtime.poison(invalid | unreachable)
-    t19 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(t9, t8))
-    t20 = _runtime.select(at_base, 0.0, np.arctan2(t6 + t10, t11 - t12))
-    t21 = _runtime.status(invalid, unreachable, no_link | at_base)
+    t17 = l1 / 8796093022208.0 + l2 / 8796093022208.0 + 2.0 * np.abs(t3)
+    t18 = (-t16 <= t5) & (-(_runtime.FEASIBILITY * (t1 * t17)) <= t4)
+    unreachable = np.logical_not(t18)
+    t19 = _runtime.poison(invalid | unreachable)
+    t20 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(t9, t8))
+    t21 = _runtime.select(at_base, 0.0, np.arctan2(t6 + t10, t11 - t12))
+    t22 = _runtime.status(invalid, unreachable, no_link | at_base)
     return (
-        _runtime.wrap_cut(t13) + t18,
-        t19 + t18,
-        _runtime.wrap_cut(t20) + t18,
-        _runtime.wrap_cut(-t19) + t18,
-        t21,
-        t21,
+        _runtime.wrap_cut(t13) + t19,
+        t20 + t19,
+        _runtime.wrap_cut(t21) + t19,
+        _runtime.wrap_cut(-t20) + t19,
+        t22,
+        t22,
     )
 
 

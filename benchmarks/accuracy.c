@@ -30,6 +30,7 @@ void JOIN(atan2_, EVALUATE)(const real_t *y, const real_t *x, real_t *angle)
 
 #else
 
+#include <float.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -119,8 +119,10 @@ def test_batch_and_single_call_agree(robot, real, build):
     header = " ".join((C / f"{robot}.h").read_text().split())
     fields = len(re.findall(r"real_t \w+; /\*", header))
     params = np.linspace(3, 2, fields).astype(real)
-    # A long chain of steps enlarges what a fused multiplication rounds differently.
-    few_ulps = (64 if robot.startswith("h6ar") else 16) * np.finfo(real).eps
+    # A long chain of steps enlarges what a fused multiplication rounds differently, without bound
+    # where the virtual arm of the H6AR is folded.
+    long_chain = robot.startswith("h6ar")
+    few_ulps = (128 if long_chain else 16) * np.finfo(real).eps
 
     functions = re.findall(rf"void ({robot}_\w+)\(([^()]*)\);", header)
     known: dict[str, np.ndarray] = {}
@@ -135,11 +137,13 @@ def test_batch_and_single_call_agree(robot, real, build):
             library[name](pointer(params), *map(pointer, rows))
         inverse = name.endswith(("_ik", "_ik_pose"))
         for one, many in zip(single, batch, strict=True):
-            if not inverse or many.dtype == np.uint8:
+            if many.dtype == np.uint8 or not (inverse or long_chain):
                 np.testing.assert_allclose(one.T, many, few_ulps, few_ulps, err_msg=name)
                 continue
-            # Close to a boundary an angle is ill-conditioned, and close to pi it may be -pi.
-            apart = np.abs(np.exp(1j * one.T) - np.exp(1j * many))
+            if inverse:  # ill-conditioned at a boundary, and close to pi it may be -pi
+                apart = np.abs(np.exp(1j * one.T) - np.exp(1j * many))
+            else:
+                apart = np.abs(one.T - many) / (1 + np.abs(many))
             np.testing.assert_array_equal(np.isnan(one.T), np.isnan(many), name)
             assert np.nanmax(apart) < np.sqrt(few_ulps), name
             assert np.nanquantile(apart, 0.98) < few_ulps, name

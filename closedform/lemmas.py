@@ -15,6 +15,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import sympy as sp
+from sympy import Rational
 
 from closedform.functions import Program, Statement, choose
 
@@ -361,26 +362,42 @@ def two_sines(
     """``u sin x + v sin y = p`` for vectors of the plane, and cosines that are not negative.
 
     The part of the equation across u gives sin y; what is left along u gives sin x, so that an
-    error of y does no harm where u and v are nearly parallel.  Where they are parallel a
-    combination of the sines is free; the convention is y = 0.  The directions of u and v are known
-    to a few units in the last place, so that a multiple of the usual tolerance counts as parallel.
-    Cosines are kept from zero, so that their sign can be read from the answer.  ``scale`` is the
-    natural scale of p, which decides how far the equation may be missed.
+    error of y does no harm where u and v are nearly parallel.  There sin y is not known to many
+    digits, and one is taken that leaves u no more than its length.  Where they are parallel a
+    combination of the sines is free; the convention is that both are equally large, which exists
+    whenever any answer does.  The directions of u and v are known to a few units in the last
+    place, so that a multiple of the usual tolerance counts as parallel.  Cosines are kept from
+    zero, so that their sign can be read from the answer.  ``scale`` is the natural scale of p,
+    which decides how far the equation may be missed.
     """
     x, y = unknowns
-    area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
+    size = sp.sqrt(u[0] ** 2 + u[1] ** 2)
+    size = size if size.is_Symbol else program.let("size_u", size, nonnegative=True)
+    area = program.let("area_uv", (u[0] * v[1] - u[1] * v[0]) / size)
     sigma = program.let("sigma_uv", sp.Piecewise((1, area >= 0), (-1, True)))
     start = len(program.body)
-    size = program.let("size_u", sp.sqrt(u[0] ** 2 + u[1] ** 2), nonnegative=True)
-    other = program.let("size_v", sp.sqrt(v[0] ** 2 + v[1] ** 2), nonnegative=True)
-    uv = program.let("uv", sigma * (u[0] * v[1] - u[1] * v[0]))
-    up = program.let("up", sigma * (u[0] * p[1] - u[1] * p[0]))
+    aside = program.let("v_across_u", sigma * (u[0] * v[1] - u[1] * v[0]) / size)
+    lean = program.let("v_along_u", (u[0] * v[0] + u[1] * v[1]) / size)
+    ahead = program.let("p_along_u", (u[0] * p[0] + u[1] * p[1]) / size)
     parallel = program.vanishes(
-        "parallel", uv, 64 * size * other, "both vectors are parallel", free
+        "parallel", aside, 64 * sp.Abs(lean), "both vectors are parallel", free
     )
-    cy, sy = _from_sine(program, y, up, uv, size * scale, parallel)
-    along = program.let("along", ((p[0] - sy * v[0]) * u[0] + (p[1] - sy * v[1]) * u[1]) / size)
-    cx, sx = _from_sine(program, x, along, size, scale, sp.false)
+    whole = program.let("whole_y", choose(parallel, size + sp.Abs(lean), aside))
+    with_v = sp.Piecewise((ahead, lean >= 0), (-ahead, True))
+    across = program.let("p_across_u", sigma * (u[0] * p[1] - u[1] * p[0]) / size)
+    program.bound("room_across", aside - sp.Abs(across), scale, "a sine is at most 1")
+    part = choose(parallel, with_v, across)
+    sine = program.let("sine_y", part / whole)
+    rest = program.let("rest", ahead - sine * lean)
+    left = program.let("left_along", size - sp.Abs(rest))
+    play = scale * (1 + sp.Abs(lean) / (aside + Rational(1, 10**9) * size))
+    kept = program.bound("kept_along", left, play, "a sine is at most 1")
+    lacking = program.let("missing_along", kept - left)
+    eased = lean * lacking / (lean**2 + aside**2)
+    sine = program.let("eased", sine + sp.Piecewise((eased, rest >= 0), (-eased, True)))
+    cy, sy = _from_sine(program, y, whole * sine, whole, scale)
+    along = program.let("along_u", ahead - sy * lean)
+    cx, sx = _from_sine(program, x, along, size, scale)
     return Lemma(
         "two sines",
         r"u\sin x + v\sin y = p,\ \cos x \ge 0,\ \cos y \ge 0 \;\Rightarrow\; "
@@ -396,7 +413,7 @@ def two_sines(
 
 
 def _from_sine(
-    program: Program, x: sp.Symbol, part: sp.Expr, whole: sp.Expr, scale: sp.Expr, flag: sp.Basic
+    program: Program, x: sp.Symbol, part: sp.Expr, whole: sp.Expr, scale: sp.Expr
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""
     below, above = (
@@ -407,10 +424,8 @@ def _from_sine(
         )
     )
     total = program.let(f"total_{x.name}", below + above)
-    cosine = program.let(
-        f"c_{x.name}", choose(flag, 1, 2 * sp.sqrt(below) * sp.sqrt(above) / total)
-    )
-    return cosine, program.let(f"s_{x.name}", choose(flag, 0, (above - below) / total))
+    cosine = program.let(f"c_{x.name}", 2 * sp.sqrt(below) * sp.sqrt(above) / total)
+    return cosine, program.let(f"s_{x.name}", (above - below) / total)
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ def prove_reduction(
             for missed in _cases(known[name] - stated):
                 require(missed, (), f"{where}: what {name} stands for")
         equations += [substitute(e, known) for e in lemma.equations]
-    graph = dict(reduction.joints)
+    graph = {joint: substitute(e, known) for joint, e in reduction.joints.items()}
     system = sp.Matrix([substitute(e, graph) for e in inverse.equations])
     combined = reduction.combination * sp.Matrix(equations)
     for difference in _cases(sp.ImmutableMatrix(system - combined)):

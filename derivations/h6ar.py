@@ -18,6 +18,7 @@ from closedform.derivations.h6ar_mechanism import (
     declare,
     design,
     extended,
+    free_turn,
     half_gap,
     half_sums,
     in_space,
@@ -281,7 +282,7 @@ outward = reach(m, posture.upper, posture.fore, along, across)[0]
 
 with_wrist = straight(along, across, posture.upper, posture.fore)
 without = straight(m.L2, m.a3, posture.upper, posture.fore)
-spread = sp.Matrix([mean[0], mean[1]]).jacobian([alpha, beta]).det()
+area = sp.Matrix([mean[0], mean[1]]).jacobian([alpha, beta]).det()
 d.step(
     "Jacobian by the chain rule",
     "The task depends on the joints through theta1, the averages, yaw, roll and pitch.  The outer "
@@ -289,7 +290,7 @@ d.step(
     {"J": outer[:3, :3]},
     equal=[
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
-        (spread, -m.L1 * without * cos(alpha) * cos(beta)),
+        (area, -m.L1 * without * cos(alpha) * cos(beta)),
         (by_half[:, 1:5].det(), Rational(1, 4)),
     ],
 )
@@ -354,16 +355,56 @@ d.function(
 p = Program()
 length, base = wrist_given(p, m, cos(psi))
 middle = solve_mid_plane(p, m, q, length, base)
-(cA, sA), (cB, sB) = middle.posture.upper, middle.posture.fore
-ahead = p.let("ahead", m.d * sin(psi) / cos(psi))
-above = p.let("higher", m.d * sin(phi) / cos(phi))
-u = (p.let("u1", -m.L1 * sA), p.let("u2", m.L1 * cA))
-v = (p.let("v1", m.L2 * cB - m.a3 * sB), p.let("v2", m.L2 * sB + m.a3 * cB))
-half = two_sines(p, (alpha, beta), u, v, (ahead, above), m.d, free=(theta3R, theta3L))
+upper, fore = middle.posture.upper, middle.posture.fore
+bend = (upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
+bend = Pair(*(p.let(f"{f}_elbow", e) for f, e in zip("cs", bend, strict=True)))
+gap = p.let("ahead", m.d * sin(psi) / cos(psi)), p.let("higher", m.d * sin(phi) / cos(phi))
+second = p.let("fore_arm", sqrt(m.L2**2 + m.a3**2), nonnegative=True)
+# seen from the upper arm, whose sine multiplies (0, L1)
+seen = (
+    p.let("p_1", upper.c * gap[0] + upper.s * gap[1]),
+    p.let("p_2", upper.c * gap[1] - upper.s * gap[0]),
+)
+v = p.let("v_1", m.L2 * bend.c - m.a3 * bend.s), p.let("v_2", m.L2 * bend.s + m.a3 * bend.c)
+free = free_turn(p, m, bend, second)
+turns, upper_turns = [], []
+for sine in ("alpha", "beta"):
+    # by Cramer's rule sin(alpha) = (p x v) / (u x v) and sin(beta) = (u x p) / (u x v)
+    aligned = v[0] * seen[0] + v[1] * seen[1]
+    part, rate = {
+        "alpha": (v[0] * seen[1] - v[1] * seen[0], -aligned),
+        "beta": (m.L1 * seen[0], (m.L1 - free.drawn) * seen[1]),
+    }[sine]
+    whole = p.let(f"whole_{sine}", m.L1 * v[0])
+    part = p.let(f"part_{sine}", part)
+    to_whole, to_part = (sp.Piecewise((1, e >= 0), (-1, True)) for e in (whole, part))
+    room = to_whole * whole - to_part * part
+    slope = -to_whole * free.drawn * v[1] - to_part * rate
+    turn = p.let(f"turn_{sine}", free.easing(sine, room, slope, "a sine is at most 1"))
+    leant = p.let(f"lean_{sine}", turn + free.swing(turn) / m.L1)
+    more = p.let(f"elbow_{sine}", turn - leant)
+    v = (
+        p.let(f"v_1_{sine}", v[0] - more * v[1]),
+        p.let(f"v_2_{sine}", v[1] + more * v[0]),
+    )
+    seen = (
+        p.let(f"p_1_{sine}", seen[0] + leant * seen[1]),
+        p.let(f"p_2_{sine}", seen[1] - leant * seen[0]),
+    )
+    turns.append(turn)
+    upper_turns.append(leant)
+scale = m.d + sp.Abs(gap[0]) + sp.Abs(gap[1])
+half = two_sines(p, (alpha, beta), (sp.S.Zero, m.L1), v, seen, scale, free=(theta3R, theta3L))
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
-joints = {theta1: theta1, theta2R: halves[theta2R], theta3R: halves[theta3R]}
-joints |= {theta2L: halves[theta2L], theta3L: halves[theta3L], theta: theta}
+turned_halves = {
+    theta2A: theta2A + atan2(sum(upper_turns), sp.S.One),
+    theta23A: theta23A + atan2(sum(turns), sp.S.One),
+}
+joints = {s: s for s in (theta1, theta)} | {
+    s: halves[s].xreplace(turned_halves) for s in (theta2R, theta3R, theta2L, theta3L)
+}
+from_upper = sp.Matrix([[cos(theta2A), -sin(theta2A)], [sin(theta2A), cos(theta2A)]])
 sides = branches(WAIST, ELBOW)
 d.branches = sides.labels
 d.function(
@@ -375,6 +416,16 @@ d.function(
     branches=sides,
     result="Solutions",
     source="eqs. (11), (13) and (14), with the exact half differences",
+    notes=(
+        "UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist "
+        "axis than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.",
+        "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm "
+        "with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm "
+        "straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta), "
+        "or their difference where it is folded, is determined by yaw and roll, alpha and beta "
+        "being half the differences of the arms' angles; sines of equal size are returned.",
+        "INVALID: d, L1, or both L2 and a3 are zero.",
+    ),
 )
 targets, forward = tip_system(m, q, cos(psi))
 d.inverses.append(
@@ -385,7 +436,7 @@ d.inverses.append(
         (*forward, *(apart / m.d)),
         angles=(psi, phi, pitch),
         images="fk",
-        reduction=Reduction(lemmas, joints, sp.diag(MID_PLANE_ROWS, 1 / m.d, 1 / m.d)),
+        reduction=Reduction(lemmas, joints, sp.diag(MID_PLANE_ROWS, from_upper / m.d)),
     )
 )
 design(d, m, cos(psi))

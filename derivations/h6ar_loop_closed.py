@@ -12,6 +12,7 @@ from closedform.derivations.h6ar_mechanism import (
     declare,
     design,
     extended,
+    free_turn,
     half_gap,
     half_sums,
     in_space,
@@ -376,7 +377,7 @@ mid = solve_mid_plane(p, m, q, wrist, half_base)
 upper, fore = mid.posture.upper, mid.posture.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
 bend = (upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
-bend = tuple(p.let(f"{f}_elbow", e) for f, e in zip("cs", bend, strict=True))
+bend = Pair(*(p.let(f"{f}_elbow", e) for f, e in zip("cs", bend, strict=True)))
 (N, M), bent = elbow_squares(p, lengths, second, bend)
 side = p.let("sigma_right", sp.Piecewise((1, bent >= 0), (-1, True)))
 opposite = p.let("sigma_other", side * sigma_left)
@@ -387,26 +388,16 @@ shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pai
 gap = p.let("gap", shift.dot(shift))
 cross = p.let("twice", 2 * point.dot(shift))
 
-# Where the virtual arm with the wrist is straight, the rounding of the target decides how far it is
-# bent, and a real arm that is straight too may seem out of reach.  Among the postures that reach
-# the target alike, which differ by a turn of the virtual fore-arm, the one in reach is taken.  For
-# exact numbers the turn is zero: a bound that is kept is what it bounds.
-along, across = real("L_2W"), real("a_3W")
-tilt = p.let("tilt", along * bend[0] - across * bend[1])
-drawn = p.let("drawn", m.L1 + along * bend[1] + across * bend[0])
-size = p.let("size", m.L1 + second)
-nothing = Rational(1, 10**5)  # a turn that is free where tilt is zero: its square is below rounding
+free = free_turn(p, m, bend, second)
 ends, slopes, turns = {}, {}, []
 for name, sign in (("right", 1), ("left", -1)):
     r, h = (p.let(f"{c}_{name}_0", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
-    slope = p.let(f"slope_{name}", 2 * drawn * (h * upper.c - r * upper.s))
-    loose = sp.Abs(slope) * size / (sp.Abs(tilt) + nothing * size)
-    beyond_reach = p.let(f"N_{name}_0", N - sign * cross - gap)
-    kept = p.bound(f"slack_{name}", beyond_reach, size * m.d + loose, "nearer than full stretch")
-    turns.append((kept - beyond_reach) * slope / (slope**2 + (nothing * size**2) ** 2))
-    ends[name], slopes[name] = (r, h), slope
+    ends[name] = r, h
+    slopes[name] = 2 * free.drawn * (h * upper.c - r * upper.s)
+    room = N - sign * cross - gap
+    turns.append(free.easing(name, room, slopes[name], "nearer than full stretch"))
 turn = p.let("turn", sum(turns))
-swing = p.let("swing", -drawn * turn)
+swing = p.let("swing", free.swing(turn))
 arms = []
 for name, sigma, sign, unknowns in (
     ("right", side, 1, (theta2R, theta23R)),
@@ -455,7 +446,8 @@ d.function(
         "to the waist "
         "axis than L_theta, or an arm is out of reach.",
         "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder "
-        "(its upper arm is returned beside that of the virtual arm), or a link without length.",
+        "(its upper arm is returned beside that of the virtual arm).",
+        "INVALID: d, L1, or both L2 and a3 are zero.",
         "A straight right arm is returned bent by a few units in the last place, so that "
         "fk can read "
         "the side.",

@@ -6,6 +6,7 @@ arms' angles, right minus left.
 """
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import reduce
 from typing import NamedTuple
 
@@ -267,6 +268,12 @@ def solve_mid_plane(
 ) -> MidPlane:
     """Pitch, waist and virtual arm of a target, whose wrist has a known length."""
     given = (pair(psi), pair(phi), pair(pitch))
+    program.let("extent", m.d * m.L1 * (m.L2 + m.a3))
+    program.require(
+        [sp.Piecewise((0, real("extent") > 0), (1, True))],
+        1,
+        "the arms stand apart, and neither upper arms nor fore-arms are without length",
+    )
     nothing = Pair(sp.S.Zero, sp.S.Zero)
     known = Posture(nothing, nothing, nothing, *given, wrist, base)
     names = ("L_theta", "L_2W", "a_3W")
@@ -304,6 +311,48 @@ def tip_system(m: Dimensions, q: Joints, level: sp.Expr) -> tuple[tuple, tuple]:
     angles = (q.theta1, theta2A, theta23A, psi, phi, pitch)
     there = Posture(*map(pair, angles), wrist_length(m, level), m.d / level)
     return (sp.S.Zero, x, y, z), (sin(q.theta - pitch), *tip(m, there))
+
+
+@dataclass(frozen=True)
+class FreeTurn:
+    """The turn of the virtual fore-arm that its tip with the wrist does not feel.
+
+    Where the virtual arm with the wrist is straight, the rounding of the target decides how far it
+    is bent, and real arms that are at their own limit may seem beyond it.  Among the postures that
+    reach the target alike, which differ by a turn of the virtual fore-arm, one that exists is
+    taken.  For exact numbers the turn is zero: a bound that is kept is what it bounds.
+    """
+
+    program: Program
+    size: sp.Expr
+    """Length of a stretched arm."""
+    scale: sp.Expr
+    """Natural scale of the areas that must not be negative."""
+    tilt: sp.Symbol
+    drawn: sp.Symbol
+
+    def swing(self, turn: sp.Expr) -> sp.Expr:
+        """How far the elbow goes aside, beyond what it does as the arm turns as a whole."""
+        return -self.drawn * turn
+
+    def easing(self, name: str, room: sp.Expr, slope: sp.Expr, meaning: str) -> sp.Expr:
+        """The turn that makes up for what an area ``room`` lacks, and grows by ``slope`` of it."""
+        # a turn that is free where tilt is zero: its square is below rounding
+        nothing = Rational(1, 10**5) * self.size
+        room = self.program.let(f"room_{name}", room)
+        slope = self.program.let(f"slope_{name}", slope)
+        loose = sp.Abs(slope) * self.size / (sp.Abs(self.tilt) + nothing)
+        kept = self.program.bound(f"kept_{name}", room, self.scale + loose, meaning)
+        return (kept - room) * slope / (slope**2 + (nothing * self.size) ** 2)
+
+
+def free_turn(program: Program, m: Dimensions, bend: Pair, second: sp.Symbol) -> FreeTurn:
+    """The free turn of a virtual arm from the angle of its elbow and the length of a fore-arm."""
+    along, across = real("L_2W"), real("a_3W")
+    size = program.let("size", m.L1 + second)
+    tilt = program.let("tilt", along * bend.c - across * bend.s)
+    drawn = program.let("drawn", m.L1 + along * bend.s + across * bend.c)
+    return FreeTurn(program, size, size * m.d, tilt, drawn)
 
 
 MID_PLANE_ROWS = sp.Matrix(

@@ -277,6 +277,37 @@ def test_statuses(model) -> None:
         assert (model.ik(x, P._replace(**{P._fields[k]: -0.1})).status == INVALID).all()
 
 
+@pytest.mark.parametrize("zero", [{"d": 0.0}, {"L1": 0.0}, {"L2": 0.0, "a3": 0.0}])
+def test_an_arm_that_is_none_is_invalid(model, zero: dict) -> None:
+    """Without d yaw and roll mean nothing; without a link an arm does not reach a plane."""
+    for x in ([0.75, 0.1, 0.6, 0.1, 0.1, 0.2], [0.75, 0.1, 0.6, 0.0, 0.0, 0.2]):
+        solutions = model.ik(x, P._replace(**zero))
+        assert (solutions.status == INVALID).all() and np.isnan(solutions.q).all()
+    for name in ("a3", "d1", "gs", "loff", "lp", "L2"):
+        assert (model.ik(x, P._replace(**{name: 0.0})).status != INVALID).all()
+
+
+def test_averages_of_a_straight_arm(published) -> None:
+    """Only one combination of the half differences counts; it may need both sines."""
+    q, rng = postures(400, 15), np.random.default_rng(16)
+    wide = P._replace(al=1.0)  # so that the tips may be far apart
+    upper, alpha, beta = rng.uniform(-1.5, 1.5, (3, 400))
+    bend = STRAIGHT + rng.choice((0, np.pi), 400)
+    q[:, 1], q[:, 3] = upper + alpha, upper - alpha
+    q[:, 2], q[:, 4] = bend + beta - alpha, bend - beta + alpha
+    x = published.fk(q, wide)
+    assert np.isfinite(x).all()
+    solutions, status = published.ik(x, wide)
+    found = np.isin(status, (OK, SINGULAR))
+    assert found.any(-1).all() and (status == SINGULAR).any(-1).mean() > 0.9
+    off = published.fk(solutions, wide) - x[:, None]
+    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    assert np.abs(off[found]).max() < 2e-12
+    # the reach of the gap: more than the upper arms alone can make up
+    gap = np.linalg.norm(P.d * np.tan(x[:, 3:5]), axis=1)
+    assert (gap > P.L1 * 1.01).any()
+
+
 def test_the_wrist_limit(model) -> None:
     limit = model.largest_yaw(0.0, 0.0)
     np.testing.assert_allclose(limit, np.arccos(P.d / (P.al + P.gs)), rtol=1e-14)

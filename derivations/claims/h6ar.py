@@ -225,6 +225,27 @@ def wrist(d: Derivation, r: Robot) -> None:
         where="3.3 Equivalent serial mechanism",
     )
     claim = partial(d.claim, where="3.4 Wrist")
+
+    def third(upper: sp.Expr, fore: sp.Expr) -> list[sp.Expr]:
+        first = denavit_hartenberg(0, sp.pi / 2, m.d1, r.theta1)
+        second = denavit_hartenberg(m.L1, 0, sp.S.Zero, upper)
+        frame = first * second * denavit_hartenberg(m.a3, sp.pi / 2, 0, fore - upper)
+        return list(frame[:3, :3])
+
+    virtual, right_arm = third(r.A, r.B), third(r.A + r.alpha, r.B + r.beta)
+    claim(
+        "frames of the virtual arm",
+        "“the frames $(X, Y, Z)_{3V}$ and $(X, Y, Z)_{4V}$ have the same orientation as the frames "
+        "$(X, Y, Z)_3$ and $(X, Y, Z)_4$”",
+        Every(
+            {
+                "fore-arms that are parallel": Identity(
+                    virtual, [e.subs(r.beta, 0) for e in right_arm]
+                ),
+                "any posture": Identity(virtual, right_arm),
+            }
+        ),
+    )
     for k, (label, text) in enumerate(
         (
             (

@@ -2152,6 +2152,16 @@ const cf_function cf_functions[] = {
       "x: shape (..., 6): x, y, z, psi, phi, pitch.\n"
       "Returns q: shape (..., 4, 6).\n"
       "Branches: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.\n"
+      "UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the\n"
+      "    waist axis than L_theta, the virtual arm is out of reach, or its tips cannot\n"
+      "    be so far apart.\n"
+      "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the\n"
+      "    virtual arm with the wrist on its shoulder (its upper arm is returned\n"
+      "    horizontal), or the virtual arm straight or folded without the wrist: then\n"
+      "    only the sum of L1 sin(alpha) and f sin(beta), or their difference where it\n"
+      "    is folded, is determined by yaw and roll, alpha and beta being half the\n"
+      "    differences of the arms' angles; sines of equal size are returned.\n"
+      "INVALID: d, L1, or both L2 and a3 are zero.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_ik_in, 2, h6ar_ik_out,
@@ -2290,8 +2300,8 @@ const cf_function cf_functions[] = {
       "UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer\n"
       "    to the waist axis than L_theta, or an arm is out of reach.\n"
       "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its\n"
-      "    shoulder (its upper arm is returned beside that of the virtual arm), or a\n"
-      "    link without length.\n"
+      "    shoulder (its upper arm is returned beside that of the virtual arm).\n"
+      "INVALID: d, L1, or both L2 and a3 are zero.\n"
       "A straight right arm is returned bent by a few units in the last place, so that\n"
       "    fk can read the side.\n"
       ,

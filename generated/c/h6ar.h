@@ -11,7 +11,7 @@
  *   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
  *   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
  *   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
- *   ik: 190 add, 213 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
+ *   ik: 344 compare and select, 364 add, 26 atan2, 79 divide, 381 multiply, 3 sincos, 33 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -142,6 +142,14 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
  * x: shape (..., 6): x, y, z, psi, phi, pitch.
  * Returns q: shape (..., 4, 6).
  * Branches: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.
+ * UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist axis
+ *     than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.
+ * SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm
+ *     with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm
+ *     straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),
+ *     or their difference where it is folded, is determined by yaw and roll, alpha and beta
+ *     being half the differences of the arms' angles; sines of equal size are returned.
+ * INVALID: d, L1, or both L2 and a3 are zero.
  */
 void h6ar_ik(const h6ar_params *params, const real_t x[6],
     real_t q[24], uint8_t status[4]);

@@ -11,7 +11,7 @@
  *   jacobian: 208 add, 54 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
  *   determinant: 86 add, 54 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
  *   singularities: 91 add, 54 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
- *   ik: 315 compare and select, 366 add, 28 atan2, 78 divide, 436 multiply, 3 sincos, 41 sqrt
+ *   ik: 320 compare and select, 367 add, 28 atan2, 78 divide, 438 multiply, 3 sincos, 41 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -163,7 +163,8 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  * UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
  *     axis than L_theta, or an arm is out of reach.
  * SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
- *     upper arm is returned beside that of the virtual arm), or a link without length.
+ *     upper arm is returned beside that of the virtual arm).
+ * INVALID: d, L1, or both L2 and a3 are zero.
  * A straight right arm is returned bent by a few units in the last place, so that fk can read
  *     the side.
  */

@@ -10,7 +10,7 @@
 #   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 190 add, 213 compare and select, 18 atan2, 44 divide, 227 multiply, 3 sincos, 40 sqrt
+#   ik: 344 compare and select, 364 add, 26 atan2, 79 divide, 381 multiply, 3 sincos, 33 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -816,378 +816,597 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
     t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
     t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    invalid = np.logical_not(t18 & (0.0 <= loff) & (0.0 <= lp) & t19)
-    t20 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t21 = (-_runtime.FEASIBILITY <= c_phi) & (t20 <= t5)
-    t22 = -(_runtime.FEASIBILITY * t1)
-    t23 = t21 & (t20 <= t4) & (t22 <= t10) & (t22 <= t12)
+    t20 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t21 = t18 & (0.0 <= loff) & (0.0 <= lp) & t19 & (np.abs(t20) <= _runtime.ROTATION)
+    invalid = np.logical_not(t21)
+    t22 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t23 = (-_runtime.FEASIBILITY <= c_phi) & (t22 <= t5)
+    t24 = -(_runtime.FEASIBILITY * t1)
+    t25 = t23 & (t22 <= t4) & (t24 <= t10) & (t24 <= t12)
     L_2W = L2 + c_psi * t7
     a_3W = a3 + c_phi * t3 + s_phi * t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t24 = L1 + fore
-    t25 = -(_runtime.FEASIBILITY * t24)
-    t26 = z - d1
-    t27 = t26 * t26
+    t26 = L1 + fore
+    t27 = -(_runtime.FEASIBILITY * t26)
+    t28 = z - d1
+    t29 = t28 * t28
     total = below + above
-    t28 = (below - above) / total
-    t29 = y * t28
+    t30 = (below - above) / total
+    t31 = y * t30
     s_turn = 2.0 * t11 * t13 / total
-    t30 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -((t29 - t30) / h))
-    t31 = x * t28
-    t32 = y * s_turn
-    s1 = _runtime.select(nowhere, 0.0, (t31 + t32) / h)
+    t32 = x * s_turn
+    c1 = _runtime.select(nowhere, 1.0, -((t31 - t32) / h))
+    t33 = x * t30
+    t34 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, (t33 + t34) / h)
     outward = x * c1 + y * s1
-    reach = np.sqrt(t27 + outward * outward)
-    t33 = t24 - reach
-    t34 = L1 - fore
-    t35 = reach + t34
-    t36 = reach - t34
-    t37 = t23 & (t25 <= t33) & (t25 <= t35) & (t25 <= t36)
-    t38 = _runtime.VANISHING * t24
-    folded = reach <= t38
-    s_sight = _runtime.select(folded, 0.0, t26 / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t24 * t24)
-    t39 = folded | short
-    A = np.maximum(t33, 0.0)
-    C = np.maximum(t36, 0.0)
-    t40 = A * C
-    S = t24 + reach
-    B = np.maximum(t35, 0.0)
-    t41 = S * B
-    at_base = t40 + t41
-    c_base = _runtime.select(t39, 1.0, -((t40 - t41) / at_base))
-    t42 = s_sight * c_base
+    reach = np.sqrt(t29 + outward * outward)
+    t35 = t26 - reach
+    t36 = L1 - fore
+    t37 = reach + t36
+    t38 = reach - t36
+    t39 = t25 & (t27 <= t35) & (t27 <= t37) & (t27 <= t38)
+    size = L1 + np.sqrt(L2 * L2 + a3 * a3)
+    t40 = d * size
+    t41 = _runtime.VANISHING * t26
+    folded = reach <= t41
+    s_sight = _runtime.select(folded, 0.0, t28 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t26 * t26)
+    t42 = folded | short
+    A = np.maximum(t35, 0.0)
+    C = np.maximum(t38, 0.0)
+    t43 = A * C
+    S = t26 + reach
+    B = np.maximum(t37, 0.0)
+    t44 = S * B
+    at_base = t43 + t44
+    c_base = _runtime.select(t42, 1.0, -((t43 - t44) / at_base))
+    t45 = s_sight * c_base
     c_sight = _runtime.select(folded, 1.0, outward / reach)
     rB = np.sqrt(B)
     rC = np.sqrt(C)
-    t43 = rB * rC
+    t46 = rB * rC
     rS = np.sqrt(S)
     rA = np.sqrt(A)
-    t44 = rS * rA
-    area_front_elbow_down = 2.0 * t43 * t44
-    s_base_front_elbow_down = _runtime.select(t39, 0.0, area_front_elbow_down / at_base)
-    t45 = c_sight * s_base_front_elbow_down
-    stheta2A = t42 + t45
-    t46 = L1 * stheta2A
-    t47 = c_sight * c_base
-    t48 = s_sight * s_base_front_elbow_down
-    ctheta2A = t47 - t48
-    u2 = L1 * ctheta2A
-    size_u = np.sqrt(t46 * t46 + u2 * u2)
-    t49 = -(_runtime.FEASIBILITY * (d * size_u))
-    bare = fore <= t38
+    t47 = rS * rA
+    area_front_elbow_down = 2.0 * t46 * t47
+    s_base_front_elbow_down = _runtime.select(t42, 0.0, area_front_elbow_down / at_base)
+    t48 = c_sight * s_base_front_elbow_down
+    stheta2A = t45 + t48
+    t49 = c_sight * c_base
+    t50 = s_sight * s_base_front_elbow_down
+    ctheta2A = t49 - t50
+    bare = fore <= t41
     c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    t50 = A * S
-    t51 = C * B
-    at_elbow = t50 + t51
-    c_bend = _runtime.select(short, 1.0, -((t50 - t51) / at_elbow))
-    t52 = c_lag * c_bend
+    t51 = A * S
+    t52 = C * B
+    at_elbow = t51 + t52
+    c_bend = _runtime.select(short, 1.0, -((t51 - t52) / at_elbow))
+    t53 = c_lag * c_bend
     s_lag = _runtime.select(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down = _runtime.select(short, 0.0, area_front_elbow_down / at_elbow)
-    t53 = s_lag * s_bend_front_elbow_down
-    c_relative = t52 + t53
-    t54 = s_lag * c_bend
-    t55 = c_lag * s_bend_front_elbow_down
-    s_relative = t54 - t55
-    stheta23A = stheta2A * c_relative + ctheta2A * s_relative
+    t54 = s_lag * s_bend_front_elbow_down
+    c_relative = t53 + t54
+    t55 = s_lag * c_bend
+    t56 = c_lag * s_bend_front_elbow_down
+    s_relative = t55 - t56
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
-    v2 = L2 * stheta23A + a3 * ctheta23A
-    v1 = L2 * ctheta23A - a3 * stheta23A
-    t56 = t46 * v2 + u2 * v1
-    sigma_uv = _runtime.select(0.0 <= -t56, 1.0, -1.0)
+    stheta23A = stheta2A * c_relative + ctheta2A * s_relative
+    t57 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t58 = L2 * t57 - a3 * c_elbow
+    drawn = L1 - L_2W * t57 + a_3W * c_elbow
+    v_1 = L2 * c_elbow + a3 * t57
+    whole_alpha = L1 * v_1
+    t59 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
     ahead = d * s_psi / c_psi
     higher = d * s_phi / c_phi
-    t57 = sigma_uv * (ahead * u2 + higher * t46)
-    t58 = t56 * sigma_uv
-    t59 = t57 - t58
-    t60 = -(t58 + t57)
-    t61 = -(d * _runtime.FEASIBILITY)
-    t62 = _runtime.VANISHING * (64.0 * size_u * np.sqrt(v1 * v1 + v2 * v2))
-    parallel = -t58 <= t62
-    t63 = d * 16.0
-    t64 = _runtime.VANISHING * (_runtime.VANISHING * (t63 * size_u))
-    below_beta = np.maximum(t59, t64)
-    above_beta = np.maximum(t60, t64)
+    p_1 = ahead * ctheta2A + higher * stheta2A
+    t60 = ahead * stheta2A - higher * ctheta2A
+    part_alpha = t58 * p_1 - v_1 * t60
+    t61 = _runtime.select(0.0 <= part_alpha, 1.0, -1.0)
+    slope_alpha = t58 * drawn * t59 + t61 * (v_1 * p_1 + t58 * t60)
+    t62 = size / 100000.0
+    t63 = t62 + np.abs(L_2W * c_elbow + a_3W * t57)
+    t64 = _runtime.FEASIBILITY * (t40 + size * np.abs(slope_alpha) / t63)
+    t65 = part_alpha * t61 - whole_alpha * t59
+    t66 = size * size * size * size / 10000000000.0
+    turn_alpha = slope_alpha * (t65 + np.maximum(-t65, 0.0)) / (t66 + slope_alpha * slope_alpha)
+    lean_alpha = turn_alpha - drawn * turn_alpha / L1
+    elbow_alpha = turn_alpha - lean_alpha
+    t67 = t58 - v_1 * elbow_alpha
+    v_1_alpha = v_1 + t58 * elbow_alpha
+    whole_beta = L1 * v_1_alpha
+    t68 = _runtime.select(0.0 <= whole_beta, 1.0, -1.0)
+    t69 = t60 + p_1 * lean_alpha
+    p_1_alpha = p_1 - t60 * lean_alpha
+    part_beta = L1 * p_1_alpha
+    t70 = _runtime.select(0.0 <= part_beta, 1.0, -1.0)
+    slope_beta = drawn * t67 * t68 + t69 * t70 * (L1 - drawn)
+    t71 = _runtime.FEASIBILITY * (t40 + size * np.abs(slope_beta) / t63)
+    t72 = part_beta * t70 - whole_beta * t68
+    t73 = np.abs(ahead)
+    t74 = np.abs(higher)
+    t75 = d + t73 + t74
+    t76 = -(_runtime.FEASIBILITY * t75)
+    turn_beta = slope_beta * (t72 + np.maximum(-t72, 0.0)) / (t66 + slope_beta * slope_beta)
+    lean_beta = turn_beta - drawn * turn_beta / L1
+    elbow_beta = turn_beta - lean_beta
+    v_1_beta = v_1_alpha + t67 * elbow_beta
+    sigma_uv = _runtime.select(0.0 <= -v_1_beta, 1.0, -1.0)
+    t77 = v_1_beta * sigma_uv
+    t78 = sigma_uv * (p_1_alpha - t69 * lean_beta)
+    t79 = t39 & (-t64 <= -t65) & (-t71 <= -t72) & (t76 <= -(t77 + np.abs(t78)))
+    t80 = t67 - v_1_alpha * elbow_beta
+    t81 = np.abs(t80)
+    t82 = L1 / 1000000000.0
+    t83 = _runtime.FEASIBILITY * (t75 * (1.0 + t81 / (t82 - t77)))
+    t84 = t69 + p_1_alpha * lean_beta
+    parallel = -t77 <= _runtime.VANISHING * (64.0 * t81)
+    t85 = _runtime.select(parallel, _runtime.select(0.0 <= -t80, -t84, t84), -t78)
+    whole_y = _runtime.select(parallel, L1 + t81, -t77)
+    sine_y = t85 / whole_y
+    t86 = t84 - t80 * sine_y
+    left_along = L1 - np.abs(t86)
+    t87 = t80 * (left_along - np.maximum(left_along, 0.0))
+    t88 = t87 / (t77 * t77 + t80 * t80)
+    eased = sine_y + _runtime.select(0.0 <= -t86, t88, -t88)
+    t89 = whole_y * eased
+    t90 = whole_y - t89
+    t91 = whole_y + t89
+    t92 = t79 & (-t83 <= left_along) & (t76 <= t90) & (t76 <= t91)
+    t93 = _runtime.VANISHING * (d * 16.0 + t73 * 16.0 + t74 * 16.0)
+    t94 = _runtime.VANISHING * t93
+    below_beta = np.maximum(t90, t94)
+    above_beta = np.maximum(t91, t94)
     total_beta = below_beta + above_beta
-    t65 = _runtime.select(parallel, 0.0, (below_beta - above_beta) / total_beta)
-    t66 = t46 * (ahead + v1 * t65) - u2 * (higher + v2 * t65)
-    t67 = t66 / size_u
-    t68 = size_u + t67
-    t69 = t37 & (t49 <= t59) & (t49 <= t60) & (t61 <= t68)
-    t70 = size_u - t67
-    unreachable = np.logical_not(t69 & (t61 <= t70))
-    t71 = _runtime.poison(invalid | unreachable)
-    t72 = _runtime.select(folded, 0.0, np.arctan2(t26, outward))
-    t73 = _runtime.select(t39, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
-    t74 = t72 + t73
-    t75 = _runtime.VANISHING * (_runtime.VANISHING * t63)
-    below_alpha = np.maximum(t68, t75)
-    above_alpha = np.maximum(t70, t75)
+    t95 = (below_beta - above_beta) / total_beta
+    t96 = t84 + t80 * t95
+    t97 = L1 + t96
+    t98 = L1 - t96
+    unreachable = np.logical_not(t92 & (t76 <= t97) & (t76 <= t98))
+    t99 = _runtime.poison(invalid | unreachable)
+    t100 = np.arctan2(lean_alpha + lean_beta, 1.0)
+    below_alpha = np.maximum(t97, t94)
+    above_alpha = np.maximum(t98, t94)
     total_alpha = below_alpha + above_alpha
-    t76 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t77 = np.arctan2((below_alpha - above_alpha) / total_alpha, t76 / total_alpha)
-    t78 = _runtime.wrap_cut(_runtime.wrap(t74 - t77)) + t71
-    t79 = np.arctan2(s_lag, c_lag)
-    t80 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t44, t43))
-    t81 = t79 - t80
-    t82 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    c_beta = _runtime.select(parallel, 1.0, t82 / total_beta)
-    t83 = t77 - np.arctan2(t65, c_beta)
-    t84 = _runtime.wrap_up(_runtime.wrap(t81 + t83)) + t71
-    t85 = _runtime.wrap_cut(_runtime.wrap(t74 + t77)) + t71
-    t86 = _runtime.wrap_up(_runtime.wrap(t81 - t83)) + t71
-    t87 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    stheta2A_front_elbow_down = t42 - t45
-    t88 = L1 * stheta2A_front_elbow_down
-    ctheta2A_front_elbow_down = t47 + t48
-    u2_front_elbow_down = L1 * ctheta2A_front_elbow_down
-    t89 = t88 * t88 + u2_front_elbow_down * u2_front_elbow_down
-    size_u_front_elbow_down = np.sqrt(t89)
-    t90 = _runtime.FEASIBILITY * (d * size_u_front_elbow_down)
-    c_relative_front_elbow_down = t52 - t53
-    t91 = stheta2A_front_elbow_down * c_relative_front_elbow_down
-    s_relative_front_elbow_down = t54 + t55
-    t92 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
-    stheta23A_front_elbow_down = t91 + t92
-    t93 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
-    t94 = stheta2A_front_elbow_down * s_relative_front_elbow_down
-    ctheta23A_front_elbow_down = t93 - t94
-    v2_front_elbow_down = L2 * stheta23A_front_elbow_down + a3 * ctheta23A_front_elbow_down
-    v1_front_elbow_down = L2 * ctheta23A_front_elbow_down - a3 * stheta23A_front_elbow_down
-    t95 = t88 * v2_front_elbow_down + u2_front_elbow_down * v1_front_elbow_down
-    sigma_uv_front_elbow_down = _runtime.select(0.0 <= -t95, 1.0, -1.0)
-    t96 = sigma_uv_front_elbow_down * (ahead * u2_front_elbow_down + higher * t88)
-    t97 = t95 * sigma_uv_front_elbow_down
-    t98 = t96 - t97
-    t99 = -(t97 + t96)
-    t100 = v1_front_elbow_down * v1_front_elbow_down + v2_front_elbow_down * v2_front_elbow_down
-    t101 = 64.0 * size_u_front_elbow_down * np.sqrt(t100)
-    parallel_front_elbow_down = -t97 <= _runtime.VANISHING * t101
-    t102 = _runtime.VANISHING * (t63 * size_u_front_elbow_down)
-    t103 = _runtime.VANISHING * t102
-    below_beta_front_elbow_down = np.maximum(t98, t103)
-    above_beta_front_elbow_down = np.maximum(t99, t103)
-    t104 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t101 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t102 = np.arctan2((below_alpha - above_alpha) / total_alpha, t101 / total_alpha)
+    t103 = t100 - t102
+    t104 = _runtime.select(folded, 0.0, np.arctan2(t28, outward))
+    t105 = _runtime.select(t42, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
+    t106 = t104 + t105
+    t107 = _runtime.wrap(_runtime.wrap(t103 + t106)) + t99
+    t108 = np.arctan2(s_lag, c_lag)
+    t109 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t47, t46))
+    t110 = t109 - np.arctan2(turn_alpha + turn_beta, 1.0)
+    t111 = t108 - t110
+    t112 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t113 = np.arctan2(t95, t112 / total_beta)
+    t114 = _runtime.wrap(_runtime.wrap(-(t103 - t111 + t113)))
+    t115 = t100 + t102
+    t116 = _runtime.wrap(_runtime.wrap(t106 + t115)) + t99
+    t117 = _runtime.wrap(_runtime.wrap(t111 + t113 - t115))
+    t118 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    stheta2A_front_elbow_down = t45 - t48
+    ctheta2A_front_elbow_down = t49 + t50
+    c_relative_front_elbow_down = t53 - t54
+    t119 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
+    s_relative_front_elbow_down = t55 + t56
+    t120 = stheta2A_front_elbow_down * s_relative_front_elbow_down
+    ctheta23A_front_elbow_down = t119 - t120
+    t121 = stheta2A_front_elbow_down * ctheta23A_front_elbow_down
+    t122 = stheta2A_front_elbow_down * c_relative_front_elbow_down
+    t123 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
+    stheta23A_front_elbow_down = t122 + t123
+    t124 = ctheta2A_front_elbow_down * stheta23A_front_elbow_down
+    t125 = t121 - t124
+    t126 = ctheta2A_front_elbow_down * ctheta23A_front_elbow_down
+    t127 = stheta2A_front_elbow_down * stheta23A_front_elbow_down
+    c_elbow_front_elbow_down = t126 + t127
+    t128 = L2 * t125 - a3 * c_elbow_front_elbow_down
+    drawn_front_elbow_down = L1 - L_2W * t125 + a_3W * c_elbow_front_elbow_down
+    v_1_front_elbow_down = L2 * c_elbow_front_elbow_down + a3 * t125
+    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
+    t129 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + higher * stheta2A_front_elbow_down
+    t130 = ahead * stheta2A_front_elbow_down - higher * ctheta2A_front_elbow_down
+    part_alpha_front_elbow_down = t128 * p_1_front_elbow_down - v_1_front_elbow_down * t130
+    t131 = _runtime.select(0.0 <= part_alpha_front_elbow_down, 1.0, -1.0)
+    t132 = v_1_front_elbow_down * p_1_front_elbow_down + t128 * t130
+    slope_alpha_front_elbow_down = t128 * drawn_front_elbow_down * t129 + t131 * t132
+    tilt_front_elbow_down = L_2W * c_elbow_front_elbow_down + a_3W * t125
+    t133 = t62 + np.abs(tilt_front_elbow_down)
+    t134 = size * np.abs(slope_alpha_front_elbow_down) / t133
+    t135 = part_alpha_front_elbow_down * t131 - whole_alpha_front_elbow_down * t129
+    t136 = -(_runtime.FEASIBILITY * (t40 + t134)) <= -t135
+    t137 = slope_alpha_front_elbow_down * (t135 + np.maximum(-t135, 0.0))
+    t138 = slope_alpha_front_elbow_down * slope_alpha_front_elbow_down
+    turn_alpha_front_elbow_down = t137 / (t66 + t138)
+    t139 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = turn_alpha_front_elbow_down - t139 / L1
+    elbow_alpha_front_elbow_down = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
+    t140 = v_1_front_elbow_down * elbow_alpha_front_elbow_down
+    t141 = t128 - t140
+    v_1_alpha_front_elbow_down = v_1_front_elbow_down + t128 * elbow_alpha_front_elbow_down
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t142 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
+    t143 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t144 = t130 + t143
+    p_1_alpha_front_elbow_down = p_1_front_elbow_down - t130 * lean_alpha_front_elbow_down
+    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
+    t145 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
+    slope_beta_front_elbow_down = drawn_front_elbow_down * t141 * t142 + t144 * t145 * (L1 - drawn_front_elbow_down)
+    t146 = size * np.abs(slope_beta_front_elbow_down) / t133
+    t147 = part_beta_front_elbow_down * t145 - whole_beta_front_elbow_down * t142
+    t148 = -(_runtime.FEASIBILITY * (t40 + t146)) <= -t147
+    t149 = slope_beta_front_elbow_down * (t147 + np.maximum(-t147, 0.0))
+    t150 = slope_beta_front_elbow_down * slope_beta_front_elbow_down
+    turn_beta_front_elbow_down = t149 / (t66 + t150)
+    t151 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = turn_beta_front_elbow_down - t151 / L1
+    elbow_beta_front_elbow_down = turn_beta_front_elbow_down - lean_beta_front_elbow_down
+    v_1_beta_front_elbow_down = v_1_alpha_front_elbow_down + t141 * elbow_beta_front_elbow_down
+    sigma_uv_front_elbow_down = _runtime.select(0.0 <= -v_1_beta_front_elbow_down, 1.0, -1.0)
+    t152 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    p_1_beta_front_elbow_down = p_1_alpha_front_elbow_down - t144 * lean_beta_front_elbow_down
+    t153 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t154 = t39 & t136 & t148 & (t76 <= -(t152 + np.abs(t153)))
+    t155 = v_1_alpha_front_elbow_down * elbow_beta_front_elbow_down
+    t156 = t141 - t155
+    t157 = np.abs(t156)
+    t158 = _runtime.FEASIBILITY * (t75 * (1.0 + t157 / (t82 - t152)))
+    t159 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t160 = t144 + t159
+    parallel_front_elbow_down = -t152 <= _runtime.VANISHING * (64.0 * t157)
+    t161 = _runtime.select(parallel_front_elbow_down, _runtime.select(0.0 <= -t156, -t160, t160), -t153)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t157, -t152)
+    sine_y_front_elbow_down = t161 / whole_y_front_elbow_down
+    t162 = t160 - t156 * sine_y_front_elbow_down
+    left_along_front_elbow_down = L1 - np.abs(t162)
+    t163 = t154 & (-t158 <= left_along_front_elbow_down)
+    t164 = left_along_front_elbow_down - np.maximum(left_along_front_elbow_down, 0.0)
+    t165 = t156 * t164 / (t152 * t152 + t156 * t156)
+    eased_front_elbow_down = sine_y_front_elbow_down + _runtime.select(0.0 <= -t162, t165, -t165)
+    t166 = whole_y_front_elbow_down * eased_front_elbow_down
+    t167 = whole_y_front_elbow_down - t166
+    t168 = whole_y_front_elbow_down + t166
+    below_beta_front_elbow_down = np.maximum(t167, t94)
+    above_beta_front_elbow_down = np.maximum(t168, t94)
+    t169 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t105 = _runtime.select(parallel_front_elbow_down, 0.0, t104 / total_beta_front_elbow_down)
-    t106 = u2_front_elbow_down * (higher + v2_front_elbow_down * t105)
-    t107 = t88 * (ahead + v1_front_elbow_down * t105) - t106
-    t108 = t107 / size_u_front_elbow_down
-    t109 = size_u_front_elbow_down + t108
-    t110 = t37 & (-t90 <= t98) & (-t90 <= t99) & (t61 <= t109)
-    t111 = size_u_front_elbow_down - t108
-    unreachable_2 = np.logical_not(t110 & (t61 <= t111))
-    t112 = _runtime.poison(invalid | unreachable_2)
-    t113 = t72 - t73
-    below_alpha_front_elbow_down = np.maximum(t109, t75)
-    above_alpha_front_elbow_down = np.maximum(t111, t75)
-    t114 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t170 = t169 / total_beta_front_elbow_down
+    t171 = t160 + t156 * t170
+    t172 = L1 + t171
+    t173 = t163 & (t76 <= t167) & (t76 <= t168) & (t76 <= t172)
+    t174 = L1 - t171
+    unreachable_2 = np.logical_not(t173 & (t76 <= t174))
+    t175 = _runtime.poison(invalid | unreachable_2)
+    t176 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t177 = np.arctan2(t176, 1.0)
+    below_alpha_front_elbow_down = np.maximum(t172, t94)
+    above_alpha_front_elbow_down = np.maximum(t174, t94)
+    t178 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t115 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
-    t116 = np.arctan2(t114 / total_alpha_front_elbow_down, t115 / total_alpha_front_elbow_down)
-    t117 = _runtime.wrap_cut(_runtime.wrap(t113 - t116))
-    t118 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    c_beta_front_elbow_down = _runtime.select(parallel_front_elbow_down, 1.0, t118 / total_beta_front_elbow_down)
-    t119 = t116 - np.arctan2(t105, c_beta_front_elbow_down)
-    t120 = t79 + t80
-    t121 = _runtime.wrap(_runtime.wrap(t119 + t120)) + t112
-    t122 = _runtime.wrap_cut(_runtime.wrap(t113 + t116))
-    t123 = _runtime.wrap(_runtime.wrap(t120 - t119)) + t112
-    t124 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
-    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t29 + t30) / h))
-    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t31 - t32) / h)
+    t179 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t180 = np.arctan2(t178 / total_alpha_front_elbow_down, t179 / total_alpha_front_elbow_down)
+    t181 = t177 - t180
+    t182 = t104 - t105
+    t183 = _runtime.wrap_up(_runtime.wrap(t181 + t182)) + t175
+    t184 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t185 = np.arctan2(t184, 1.0) + (t108 + t109)
+    t186 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t187 = np.arctan2(t170, t186 / total_beta_front_elbow_down)
+    t188 = _runtime.wrap(_runtime.wrap(-(t181 - t185 + t187)))
+    t189 = t177 + t180
+    t190 = _runtime.wrap_up(_runtime.wrap(t182 + t189)) + t175
+    t191 = _runtime.wrap(_runtime.wrap(t185 + t187 - t189))
+    t192 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
+    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t31 + t32) / h))
+    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t33 - t34) / h)
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
-    t125 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t27 + t125)
-    t126 = t24 - reach_rear_elbow_up
-    t127 = reach_rear_elbow_up + t34
-    t128 = reach_rear_elbow_up - t34
-    t129 = t23 & (t25 <= t126) & (t25 <= t127) & (t25 <= t128)
-    folded_rear_elbow_up = reach_rear_elbow_up <= t38
-    s_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 0.0, t26 / reach_rear_elbow_up)
-    t130 = folded_rear_elbow_up | short
-    A_rear_elbow_up = np.maximum(t126, 0.0)
-    C_rear_elbow_up = np.maximum(t128, 0.0)
-    t131 = A_rear_elbow_up * C_rear_elbow_up
-    S_rear_elbow_up = t24 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t127, 0.0)
-    t132 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t131 + t132
-    c_base_rear_elbow_up = _runtime.select(t130, 1.0, -((t131 - t132) / at_base_rear_elbow_up))
-    t133 = s_sight_rear_elbow_up * c_base_rear_elbow_up
+    t193 = outward_rear_elbow_up * outward_rear_elbow_up
+    reach_rear_elbow_up = np.sqrt(t29 + t193)
+    t194 = t26 - reach_rear_elbow_up
+    t195 = reach_rear_elbow_up + t36
+    t196 = reach_rear_elbow_up - t36
+    t197 = t25 & (t27 <= t194) & (t27 <= t195) & (t27 <= t196)
+    folded_rear_elbow_up = reach_rear_elbow_up <= t41
+    s_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 0.0, t28 / reach_rear_elbow_up)
+    t198 = folded_rear_elbow_up | short
+    A_rear_elbow_up = np.maximum(t194, 0.0)
+    C_rear_elbow_up = np.maximum(t196, 0.0)
+    t199 = A_rear_elbow_up * C_rear_elbow_up
+    S_rear_elbow_up = t26 + reach_rear_elbow_up
+    B_rear_elbow_up = np.maximum(t195, 0.0)
+    t200 = S_rear_elbow_up * B_rear_elbow_up
+    at_base_rear_elbow_up = t199 + t200
+    c_base_rear_elbow_up = _runtime.select(t198, 1.0, -((t199 - t200) / at_base_rear_elbow_up))
+    t201 = s_sight_rear_elbow_up * c_base_rear_elbow_up
     c_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
     rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
     rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t134 = rB_rear_elbow_up * rC_rear_elbow_up
+    t202 = rB_rear_elbow_up * rC_rear_elbow_up
     rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
     rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t135 = rS_rear_elbow_up * rA_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t134 * t135
-    s_base_rear_elbow_up = _runtime.select(t130, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t136 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t133 - t136
-    t137 = L1 * stheta2A_rear_elbow_up
-    t138 = c_sight_rear_elbow_up * c_base_rear_elbow_up
-    t139 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t138 + t139
-    u2_rear_elbow_up = L1 * ctheta2A_rear_elbow_up
-    t140 = t137 * t137 + u2_rear_elbow_up * u2_rear_elbow_up
-    size_u_rear_elbow_up = np.sqrt(t140)
-    t141 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_up)
-    t142 = A_rear_elbow_up * S_rear_elbow_up
-    t143 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t142 + t143
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t142 - t143) / at_elbow_rear_elbow_up))
-    t144 = c_lag * c_bend_rear_elbow_up
+    t203 = rS_rear_elbow_up * rA_rear_elbow_up
+    area_rear_elbow_up = 2.0 * t202 * t203
+    s_base_rear_elbow_up = _runtime.select(t198, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
+    t204 = c_sight_rear_elbow_up * s_base_rear_elbow_up
+    stheta2A_rear_elbow_up = t201 - t204
+    t205 = c_sight_rear_elbow_up * c_base_rear_elbow_up
+    t206 = s_sight_rear_elbow_up * s_base_rear_elbow_up
+    ctheta2A_rear_elbow_up = t205 + t206
+    t207 = A_rear_elbow_up * S_rear_elbow_up
+    t208 = C_rear_elbow_up * B_rear_elbow_up
+    at_elbow_rear_elbow_up = t207 + t208
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t207 - t208) / at_elbow_rear_elbow_up))
+    t209 = c_lag * c_bend_rear_elbow_up
     s_bend_rear_elbow_up = _runtime.select(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t145 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t144 - t145
-    t146 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t147 = s_lag * c_bend_rear_elbow_up
-    t148 = c_lag * s_bend_rear_elbow_up
-    s_relative_rear_elbow_up = t147 + t148
-    t149 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    stheta23A_rear_elbow_up = t146 + t149
-    t150 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t151 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    ctheta23A_rear_elbow_up = t150 - t151
-    v2_rear_elbow_up = L2 * stheta23A_rear_elbow_up + a3 * ctheta23A_rear_elbow_up
-    v1_rear_elbow_up = L2 * ctheta23A_rear_elbow_up - a3 * stheta23A_rear_elbow_up
-    t152 = t137 * v2_rear_elbow_up + u2_rear_elbow_up * v1_rear_elbow_up
-    sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -t152, 1.0, -1.0)
-    t153 = sigma_uv_rear_elbow_up * (ahead * u2_rear_elbow_up + higher * t137)
-    t154 = t152 * sigma_uv_rear_elbow_up
-    t155 = t153 - t154
-    t156 = -(t154 + t153)
-    t157 = v1_rear_elbow_up * v1_rear_elbow_up + v2_rear_elbow_up * v2_rear_elbow_up
-    t158 = _runtime.VANISHING * (64.0 * size_u_rear_elbow_up * np.sqrt(t157))
-    parallel_rear_elbow_up = -t154 <= t158
-    t159 = _runtime.VANISHING * (t63 * size_u_rear_elbow_up)
-    t160 = _runtime.VANISHING * t159
-    below_beta_rear_elbow_up = np.maximum(t155, t160)
-    above_beta_rear_elbow_up = np.maximum(t156, t160)
-    t161 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t210 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t209 - t210
+    t211 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t212 = s_lag * c_bend_rear_elbow_up
+    t213 = c_lag * s_bend_rear_elbow_up
+    s_relative_rear_elbow_up = t212 + t213
+    t214 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    ctheta23A_rear_elbow_up = t211 - t214
+    t215 = stheta2A_rear_elbow_up * ctheta23A_rear_elbow_up
+    t216 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t217 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    stheta23A_rear_elbow_up = t216 + t217
+    t218 = ctheta2A_rear_elbow_up * stheta23A_rear_elbow_up
+    t219 = t215 - t218
+    t220 = ctheta2A_rear_elbow_up * ctheta23A_rear_elbow_up
+    t221 = stheta2A_rear_elbow_up * stheta23A_rear_elbow_up
+    c_elbow_rear_elbow_up = t220 + t221
+    t222 = L2 * t219 - a3 * c_elbow_rear_elbow_up
+    drawn_rear_elbow_up = L1 - L_2W * t219 + a_3W * c_elbow_rear_elbow_up
+    v_1_rear_elbow_up = L2 * c_elbow_rear_elbow_up + a3 * t219
+    whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
+    t223 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
+    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up + higher * stheta2A_rear_elbow_up
+    t224 = ahead * stheta2A_rear_elbow_up - higher * ctheta2A_rear_elbow_up
+    part_alpha_rear_elbow_up = t222 * p_1_rear_elbow_up - v_1_rear_elbow_up * t224
+    t225 = _runtime.select(0.0 <= part_alpha_rear_elbow_up, 1.0, -1.0)
+    t226 = v_1_rear_elbow_up * p_1_rear_elbow_up + t222 * t224
+    slope_alpha_rear_elbow_up = t222 * drawn_rear_elbow_up * t223 + t225 * t226
+    t227 = np.abs(L_2W * c_elbow_rear_elbow_up + a_3W * t219)
+    t228 = t62 + t227
+    t229 = size * np.abs(slope_alpha_rear_elbow_up) / t228
+    t230 = part_alpha_rear_elbow_up * t225 - whole_alpha_rear_elbow_up * t223
+    t231 = -(_runtime.FEASIBILITY * (t40 + t229)) <= -t230
+    t232 = slope_alpha_rear_elbow_up * (t230 + np.maximum(-t230, 0.0))
+    t233 = slope_alpha_rear_elbow_up * slope_alpha_rear_elbow_up
+    turn_alpha_rear_elbow_up = t232 / (t66 + t233)
+    t234 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = turn_alpha_rear_elbow_up - t234 / L1
+    elbow_alpha_rear_elbow_up = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
+    t235 = v_1_rear_elbow_up * elbow_alpha_rear_elbow_up
+    t236 = t222 - t235
+    v_1_alpha_rear_elbow_up = v_1_rear_elbow_up + t222 * elbow_alpha_rear_elbow_up
+    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
+    t237 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
+    t238 = t224 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    p_1_alpha_rear_elbow_up = p_1_rear_elbow_up - t224 * lean_alpha_rear_elbow_up
+    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
+    t239 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
+    slope_beta_rear_elbow_up = drawn_rear_elbow_up * t236 * t237 + t238 * t239 * (L1 - drawn_rear_elbow_up)
+    t240 = size * np.abs(slope_beta_rear_elbow_up) / t228
+    t241 = part_beta_rear_elbow_up * t239 - whole_beta_rear_elbow_up * t237
+    t242 = -(_runtime.FEASIBILITY * (t40 + t240)) <= -t241
+    t243 = slope_beta_rear_elbow_up * (t241 + np.maximum(-t241, 0.0))
+    t244 = slope_beta_rear_elbow_up * slope_beta_rear_elbow_up
+    turn_beta_rear_elbow_up = t243 / (t66 + t244)
+    t245 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
+    lean_beta_rear_elbow_up = turn_beta_rear_elbow_up - t245 / L1
+    elbow_beta_rear_elbow_up = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
+    v_1_beta_rear_elbow_up = v_1_alpha_rear_elbow_up + t236 * elbow_beta_rear_elbow_up
+    sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -v_1_beta_rear_elbow_up, 1.0, -1.0)
+    t246 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    p_1_beta_rear_elbow_up = p_1_alpha_rear_elbow_up - t238 * lean_beta_rear_elbow_up
+    t247 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t248 = t197 & t231 & t242 & (t76 <= -(t246 + np.abs(t247)))
+    t249 = v_1_alpha_rear_elbow_up * elbow_beta_rear_elbow_up
+    t250 = t236 - t249
+    t251 = np.abs(t250)
+    t252 = _runtime.FEASIBILITY * (t75 * (1.0 + t251 / (t82 - t246)))
+    t253 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t254 = t238 + t253
+    parallel_rear_elbow_up = -t246 <= _runtime.VANISHING * (64.0 * t251)
+    t255 = _runtime.select(parallel_rear_elbow_up, _runtime.select(0.0 <= -t250, -t254, t254), -t247)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t251, -t246)
+    sine_y_rear_elbow_up = t255 / whole_y_rear_elbow_up
+    t256 = t254 - t250 * sine_y_rear_elbow_up
+    left_along_rear_elbow_up = L1 - np.abs(t256)
+    t257 = left_along_rear_elbow_up - np.maximum(left_along_rear_elbow_up, 0.0)
+    t258 = t250 * t257 / (t246 * t246 + t250 * t250)
+    eased_rear_elbow_up = sine_y_rear_elbow_up + _runtime.select(0.0 <= -t256, t258, -t258)
+    t259 = whole_y_rear_elbow_up * eased_rear_elbow_up
+    t260 = whole_y_rear_elbow_up - t259
+    t261 = t248 & (-t252 <= left_along_rear_elbow_up) & (t76 <= t260)
+    t262 = whole_y_rear_elbow_up + t259
+    below_beta_rear_elbow_up = np.maximum(t260, t94)
+    above_beta_rear_elbow_up = np.maximum(t262, t94)
+    t263 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t162 = _runtime.select(parallel_rear_elbow_up, 0.0, t161 / total_beta_rear_elbow_up)
-    t163 = u2_rear_elbow_up * (higher + v2_rear_elbow_up * t162)
-    t164 = t137 * (ahead + v1_rear_elbow_up * t162) - t163
-    t165 = t164 / size_u_rear_elbow_up
-    t166 = size_u_rear_elbow_up + t165
-    t167 = t129 & (-t141 <= t155) & (-t141 <= t156) & (t61 <= t166)
-    t168 = size_u_rear_elbow_up - t165
-    unreachable_3 = np.logical_not(t167 & (t61 <= t168))
-    t169 = _runtime.poison(invalid | unreachable_3)
-    t170 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t26, outward_rear_elbow_up))
-    t171 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
-    t172 = _runtime.select(t130, 0.0, 2.0 * t171)
-    t173 = t170 - t172
-    below_alpha_rear_elbow_up = np.maximum(t166, t75)
-    above_alpha_rear_elbow_up = np.maximum(t168, t75)
-    t174 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t264 = t263 / total_beta_rear_elbow_up
+    t265 = t254 + t250 * t264
+    t266 = L1 + t265
+    t267 = L1 - t265
+    t268 = t261 & (t76 <= t262) & (t76 <= t266) & (t76 <= t267)
+    unreachable_3 = np.logical_not(t268)
+    t269 = _runtime.poison(invalid | unreachable_3)
+    t270 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t271 = np.arctan2(t270, 1.0)
+    t272 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t28, outward_rear_elbow_up))
+    t273 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
+    t274 = _runtime.select(t198, 0.0, 2.0 * t273)
+    t275 = t271 + (t272 - t274)
+    below_alpha_rear_elbow_up = np.maximum(t266, t94)
+    above_alpha_rear_elbow_up = np.maximum(t267, t94)
+    t276 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t175 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    t176 = np.arctan2(t174 / total_alpha_rear_elbow_up, t175 / total_alpha_rear_elbow_up)
-    t177 = _runtime.wrap_cut(_runtime.wrap(t173 - t176))
-    t178 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    c_beta_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, 1.0, t178 / total_beta_rear_elbow_up)
-    t179 = t176 - np.arctan2(t162, c_beta_rear_elbow_up)
-    t180 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t135, t134))
-    t181 = t79 + t180
-    t182 = _runtime.wrap(_runtime.wrap(t179 + t181)) + t169
-    t183 = _runtime.wrap_cut(_runtime.wrap(t173 + t176))
-    t184 = _runtime.wrap(_runtime.wrap(t181 - t179)) + t169
-    stheta2A_rear_elbow_down = t133 + t136
-    t185 = L1 * stheta2A_rear_elbow_down
-    ctheta2A_rear_elbow_down = t138 - t139
-    u2_rear_elbow_down = L1 * ctheta2A_rear_elbow_down
-    t186 = t185 * t185 + u2_rear_elbow_down * u2_rear_elbow_down
-    size_u_rear_elbow_down = np.sqrt(t186)
-    t187 = _runtime.FEASIBILITY * (d * size_u_rear_elbow_down)
-    c_relative_rear_elbow_down = t144 + t145
-    t188 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    s_relative_rear_elbow_down = t147 - t148
-    t189 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    stheta23A_rear_elbow_down = t188 + t189
-    t190 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    t191 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    ctheta23A_rear_elbow_down = t190 - t191
-    v2_rear_elbow_down = L2 * stheta23A_rear_elbow_down + a3 * ctheta23A_rear_elbow_down
-    v1_rear_elbow_down = L2 * ctheta23A_rear_elbow_down - a3 * stheta23A_rear_elbow_down
-    t192 = t185 * v2_rear_elbow_down + u2_rear_elbow_down * v1_rear_elbow_down
-    sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -t192, 1.0, -1.0)
-    t193 = sigma_uv_rear_elbow_down * (ahead * u2_rear_elbow_down + higher * t185)
-    t194 = t192 * sigma_uv_rear_elbow_down
-    t195 = t193 - t194
-    t196 = -(t194 + t193)
-    t197 = v1_rear_elbow_down * v1_rear_elbow_down + v2_rear_elbow_down * v2_rear_elbow_down
-    t198 = 64.0 * size_u_rear_elbow_down * np.sqrt(t197)
-    parallel_rear_elbow_down = -t194 <= _runtime.VANISHING * t198
-    t199 = _runtime.VANISHING * (t63 * size_u_rear_elbow_down)
-    t200 = _runtime.VANISHING * t199
-    below_beta_rear_elbow_down = np.maximum(t195, t200)
-    above_beta_rear_elbow_down = np.maximum(t196, t200)
-    t201 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t277 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t278 = np.arctan2(t276 / total_alpha_rear_elbow_up, t277 / total_alpha_rear_elbow_up)
+    t279 = _runtime.wrap_up(_runtime.wrap(t275 - t278)) + t269
+    t280 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t203, t202))
+    t281 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t282 = t108 - t271 + (t280 + np.arctan2(t281, 1.0))
+    t283 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t284 = np.arctan2(t264, t283 / total_beta_rear_elbow_up)
+    t285 = t278 - t284
+    t286 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t282 + t285)))
+    t287 = _runtime.wrap_up(_runtime.wrap(t275 + t278)) + t269
+    t288 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t282 - t285)))
+    stheta2A_rear_elbow_down = t201 + t204
+    ctheta2A_rear_elbow_down = t205 - t206
+    c_relative_rear_elbow_down = t209 + t210
+    t289 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    s_relative_rear_elbow_down = t212 - t213
+    t290 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    ctheta23A_rear_elbow_down = t289 - t290
+    t291 = stheta2A_rear_elbow_down * ctheta23A_rear_elbow_down
+    t292 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    t293 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    stheta23A_rear_elbow_down = t292 + t293
+    t294 = ctheta2A_rear_elbow_down * stheta23A_rear_elbow_down
+    t295 = t291 - t294
+    t296 = ctheta2A_rear_elbow_down * ctheta23A_rear_elbow_down
+    t297 = stheta2A_rear_elbow_down * stheta23A_rear_elbow_down
+    c_elbow_rear_elbow_down = t296 + t297
+    t298 = L2 * t295 - a3 * c_elbow_rear_elbow_down
+    drawn_rear_elbow_down = L1 - L_2W * t295 + a_3W * c_elbow_rear_elbow_down
+    v_1_rear_elbow_down = L2 * c_elbow_rear_elbow_down + a3 * t295
+    whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
+    t299 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
+    p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
+    t300 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
+    part_alpha_rear_elbow_down = t298 * p_1_rear_elbow_down - v_1_rear_elbow_down * t300
+    t301 = _runtime.select(0.0 <= part_alpha_rear_elbow_down, 1.0, -1.0)
+    t302 = v_1_rear_elbow_down * p_1_rear_elbow_down + t298 * t300
+    slope_alpha_rear_elbow_down = t298 * drawn_rear_elbow_down * t299 + t301 * t302
+    t303 = np.abs(L_2W * c_elbow_rear_elbow_down + a_3W * t295)
+    t304 = t62 + t303
+    t305 = size * np.abs(slope_alpha_rear_elbow_down) / t304
+    t306 = part_alpha_rear_elbow_down * t301 - whole_alpha_rear_elbow_down * t299
+    t307 = -(_runtime.FEASIBILITY * (t40 + t305)) <= -t306
+    t308 = slope_alpha_rear_elbow_down * (t306 + np.maximum(-t306, 0.0))
+    t309 = slope_alpha_rear_elbow_down * slope_alpha_rear_elbow_down
+    turn_alpha_rear_elbow_down = t308 / (t66 + t309)
+    t310 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
+    lean_alpha_rear_elbow_down = turn_alpha_rear_elbow_down - t310 / L1
+    elbow_alpha_rear_elbow_down = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
+    t311 = v_1_rear_elbow_down * elbow_alpha_rear_elbow_down
+    t312 = t298 - t311
+    v_1_alpha_rear_elbow_down = v_1_rear_elbow_down + t298 * elbow_alpha_rear_elbow_down
+    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
+    t313 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
+    t314 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t315 = t300 + t314
+    p_1_alpha_rear_elbow_down = p_1_rear_elbow_down - t300 * lean_alpha_rear_elbow_down
+    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
+    t316 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
+    slope_beta_rear_elbow_down = drawn_rear_elbow_down * t312 * t313 + t315 * t316 * (L1 - drawn_rear_elbow_down)
+    t317 = size * np.abs(slope_beta_rear_elbow_down) / t304
+    t318 = part_beta_rear_elbow_down * t316 - whole_beta_rear_elbow_down * t313
+    t319 = -(_runtime.FEASIBILITY * (t40 + t317)) <= -t318
+    t320 = slope_beta_rear_elbow_down * (t318 + np.maximum(-t318, 0.0))
+    t321 = slope_beta_rear_elbow_down * slope_beta_rear_elbow_down
+    turn_beta_rear_elbow_down = t320 / (t66 + t321)
+    t322 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
+    lean_beta_rear_elbow_down = turn_beta_rear_elbow_down - t322 / L1
+    elbow_beta_rear_elbow_down = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
+    v_1_beta_rear_elbow_down = v_1_alpha_rear_elbow_down + t312 * elbow_beta_rear_elbow_down
+    sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -v_1_beta_rear_elbow_down, 1.0, -1.0)
+    t323 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    p_1_beta_rear_elbow_down = p_1_alpha_rear_elbow_down - t315 * lean_beta_rear_elbow_down
+    t324 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t325 = t197 & t307 & t319 & (t76 <= -(t323 + np.abs(t324)))
+    t326 = v_1_alpha_rear_elbow_down * elbow_beta_rear_elbow_down
+    t327 = t312 - t326
+    t328 = np.abs(t327)
+    t329 = _runtime.FEASIBILITY * (t75 * (1.0 + t328 / (t82 - t323)))
+    t330 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t331 = t315 + t330
+    parallel_rear_elbow_down = -t323 <= _runtime.VANISHING * (64.0 * t328)
+    t332 = _runtime.select(parallel_rear_elbow_down, _runtime.select(0.0 <= -t327, -t331, t331), -t324)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t328, -t323)
+    sine_y_rear_elbow_down = t332 / whole_y_rear_elbow_down
+    t333 = t331 - t327 * sine_y_rear_elbow_down
+    left_along_rear_elbow_down = L1 - np.abs(t333)
+    t334 = left_along_rear_elbow_down - np.maximum(left_along_rear_elbow_down, 0.0)
+    t335 = t327 * t334 / (t323 * t323 + t327 * t327)
+    eased_rear_elbow_down = sine_y_rear_elbow_down + _runtime.select(0.0 <= -t333, t335, -t335)
+    t336 = whole_y_rear_elbow_down * eased_rear_elbow_down
+    t337 = whole_y_rear_elbow_down - t336
+    t338 = t325 & (-t329 <= left_along_rear_elbow_down) & (t76 <= t337)
+    t339 = whole_y_rear_elbow_down + t336
+    below_beta_rear_elbow_down = np.maximum(t337, t94)
+    above_beta_rear_elbow_down = np.maximum(t339, t94)
+    t340 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t202 = _runtime.select(parallel_rear_elbow_down, 0.0, t201 / total_beta_rear_elbow_down)
-    t203 = u2_rear_elbow_down * (higher + v2_rear_elbow_down * t202)
-    t204 = t185 * (ahead + v1_rear_elbow_down * t202) - t203
-    t205 = t204 / size_u_rear_elbow_down
-    t206 = size_u_rear_elbow_down + t205
-    t207 = t129 & (-t187 <= t195) & (-t187 <= t196) & (t61 <= t206)
-    t208 = size_u_rear_elbow_down - t205
-    unreachable_4 = np.logical_not(t207 & (t61 <= t208))
-    t209 = _runtime.poison(invalid | unreachable_4)
-    t210 = t170 + t172
-    below_alpha_rear_elbow_down = np.maximum(t206, t75)
-    above_alpha_rear_elbow_down = np.maximum(t208, t75)
-    t211 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t341 = t340 / total_beta_rear_elbow_down
+    t342 = t331 + t327 * t341
+    t343 = L1 + t342
+    t344 = L1 - t342
+    t345 = t338 & (t76 <= t339) & (t76 <= t343) & (t76 <= t344)
+    unreachable_4 = np.logical_not(t345)
+    t346 = _runtime.poison(invalid | unreachable_4)
+    t347 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t348 = np.arctan2(t347, 1.0)
+    below_alpha_rear_elbow_down = np.maximum(t343, t94)
+    above_alpha_rear_elbow_down = np.maximum(t344, t94)
+    t349 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t212 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    t213 = np.arctan2(t211 / total_alpha_rear_elbow_down, t212 / total_alpha_rear_elbow_down)
-    t214 = _runtime.wrap_cut(_runtime.wrap(t210 - t213))
-    t215 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    c_beta_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, 1.0, t215 / total_beta_rear_elbow_down)
-    t216 = t213 - np.arctan2(t202, c_beta_rear_elbow_down)
-    t217 = t79 - t180
-    t218 = _runtime.wrap_up(_runtime.wrap(t216 + t217)) + t209
-    t219 = _runtime.wrap_cut(_runtime.wrap(t210 + t213))
-    t220 = _runtime.wrap_up(_runtime.wrap(t217 - t216)) + t209
-    t221 = nowhere | folded | short
-    t222 = _runtime.status(invalid, unreachable, t221 | parallel)
-    t223 = _runtime.status(invalid, unreachable_2, t221 | parallel_front_elbow_down)
-    t224 = nowhere | folded_rear_elbow_up | short
-    t225 = _runtime.status(invalid, unreachable_3, t224 | parallel_rear_elbow_up)
-    t226 = _runtime.status(invalid, unreachable_4, t224 | parallel_rear_elbow_down)
+    t350 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t351 = np.arctan2(t349 / total_alpha_rear_elbow_down, t350 / total_alpha_rear_elbow_down)
+    t352 = t348 - t351
+    t353 = t272 + t274
+    t354 = _runtime.wrap(_runtime.wrap(t352 + t353)) + t346
+    t355 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t356 = np.arctan2(t355, 1.0) + (t108 - t280)
+    t357 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t358 = np.arctan2(t341, t357 / total_beta_rear_elbow_down)
+    t359 = _runtime.wrap(_runtime.wrap(-(t352 - t356 + t358)))
+    t360 = t348 + t351
+    t361 = _runtime.wrap(_runtime.wrap(t353 + t360)) + t346
+    t362 = _runtime.wrap(_runtime.wrap(t356 + t358 - t360))
+    t363 = nowhere | folded | short
+    t364 = _runtime.status(invalid, unreachable, t363 | parallel)
+    t365 = _runtime.status(invalid, unreachable_2, t363 | parallel_front_elbow_down)
+    t366 = nowhere | folded_rear_elbow_up | short
+    t367 = _runtime.status(invalid, unreachable_3, t366 | parallel_rear_elbow_up)
+    t368 = _runtime.status(invalid, unreachable_4, t366 | parallel_rear_elbow_down)
     return (
-        t15 + t71,
-        t78,
-        t84,
-        t85,
-        t86,
-        t87 + t71,
-        t15 + t112,
-        t117 + t112,
-        t121,
-        t122 + t112,
-        t123,
-        t87 + t112,
-        t124 + t169,
-        t177 + t169,
-        t182,
-        t183 + t169,
-        t184,
-        t87 + t169,
-        t124 + t209,
-        t214 + t209,
-        t218,
-        t219 + t209,
-        t220,
-        t87 + t209,
-        t222,
-        t223,
-        t225,
-        t226,
+        t15 + t99,
+        t107,
+        _runtime.wrap_cut(t114) + t99,
+        t116,
+        _runtime.wrap_cut(t117) + t99,
+        t118 + t99,
+        t15 + t175,
+        t183,
+        _runtime.wrap_cut(t188) + t175,
+        t190,
+        _runtime.wrap_cut(t191) + t175,
+        t118 + t175,
+        t192 + t269,
+        t279,
+        t286 + t269,
+        t287,
+        t288 + t269,
+        t118 + t269,
+        t192 + t346,
+        t354,
+        _runtime.wrap_cut(t359) + t346,
+        t361,
+        _runtime.wrap_cut(t362) + t346,
+        t118 + t346,
+        t364,
+        t365,
+        t367,
+        t368,
     )
 
 
@@ -1208,6 +1427,15 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
     x: shape (..., 6): x, y, z, psi, phi, pitch.
     Returns q: shape (..., 4, 6).
     Branches: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.
+    UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist axis
+        than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.
+    SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm
+        with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual
+        arm straight or folded without the wrist: then only the sum of L1 sin(alpha) and f
+        sin(beta), or their difference where it is folded, is determined by yaw and roll, alpha
+        and beta being half the differences of the arms' angles; sines of equal size are
+        returned.
+    INVALID: d, L1, or both L2 and a3 are zero.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return _runtime.Solutions(*result)

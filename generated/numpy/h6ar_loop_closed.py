@@ -10,7 +10,7 @@
 #   jacobian: 208 add, 54 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
 #   determinant: 86 add, 54 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
 #   singularities: 91 add, 54 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
-#   ik: 315 compare and select, 366 add, 28 atan2, 78 divide, 436 multiply, 3 sincos, 41 sqrt
+#   ik: 320 compare and select, 367 add, 28 atan2, 78 divide, 438 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -1173,694 +1173,696 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
     t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
     t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    invalid = np.logical_not(t19 & (0.0 <= loff) & (0.0 <= lp) & t20)
-    t21 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t22 = (-_runtime.FEASIBILITY <= c_phi) & (t21 <= t6)
-    t23 = -(_runtime.FEASIBILITY * t1)
-    t24 = t22 & (t21 <= t5) & (t23 <= t11) & (t23 <= t13)
+    t21 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t22 = t19 & (0.0 <= loff) & (0.0 <= lp) & t20 & (np.abs(t21) <= _runtime.ROTATION)
+    invalid = np.logical_not(t22)
+    t23 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t6)
+    t25 = -(_runtime.FEASIBILITY * t1)
+    t26 = t24 & (t23 <= t5) & (t25 <= t11) & (t25 <= t13)
     L_2W = L2 + c_psi * t8
     a_3W = a3 + c_phi * t3 + s_phi * t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t25 = L1 + fore
-    t26 = -(_runtime.FEASIBILITY * t25)
-    t27 = z - d1
-    t28 = t27 * t27
+    t27 = L1 + fore
+    t28 = -(_runtime.FEASIBILITY * t27)
+    t29 = z - d1
+    t30 = t29 * t29
     total = below + above
-    t29 = (below - above) / total
-    t30 = y * t29
+    t31 = (below - above) / total
+    t32 = y * t31
     s_turn = 2.0 * t12 * t14 / total
-    t31 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -((t30 - t31) / h))
-    t32 = x * t29
-    t33 = y * s_turn
-    s1 = _runtime.select(nowhere, 0.0, (t32 + t33) / h)
+    t33 = x * s_turn
+    c1 = _runtime.select(nowhere, 1.0, -((t32 - t33) / h))
+    t34 = x * t31
+    t35 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, (t34 + t35) / h)
     outward = x * c1 + y * s1
-    reach = np.sqrt(t28 + outward * outward)
-    t34 = t25 - reach
-    t35 = L1 - fore
-    t36 = reach + t35
-    t37 = reach - t35
-    t38 = t24 & (t26 <= t34) & (t26 <= t36) & (t26 <= t37)
+    reach = np.sqrt(t30 + outward * outward)
+    t36 = t27 - reach
+    t37 = L1 - fore
+    t38 = reach + t37
+    t39 = reach - t37
+    t40 = t26 & (t28 <= t36) & (t28 <= t38) & (t28 <= t39)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    t39 = d * size
-    t40 = _runtime.VANISHING * t25
-    folded = reach <= t40
-    s_sight = _runtime.select(folded, 0.0, t27 / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t25 * t25)
-    t41 = folded | short
-    A = np.maximum(t34, 0.0)
-    C = np.maximum(t37, 0.0)
-    t42 = A * C
-    S = t25 + reach
-    B = np.maximum(t36, 0.0)
-    t43 = S * B
-    at_base = t42 + t43
-    c_base = _runtime.select(t41, 1.0, -((t42 - t43) / at_base))
-    t44 = s_sight * c_base
+    t41 = d * size
+    t42 = _runtime.VANISHING * t27
+    folded = reach <= t42
+    s_sight = _runtime.select(folded, 0.0, t29 / reach)
+    short = L1 * fore <= _runtime.VANISHING * (t27 * t27)
+    t43 = folded | short
+    A = np.maximum(t36, 0.0)
+    C = np.maximum(t39, 0.0)
+    t44 = A * C
+    S = t27 + reach
+    B = np.maximum(t38, 0.0)
+    t45 = S * B
+    at_base = t44 + t45
+    c_base = _runtime.select(t43, 1.0, -((t44 - t45) / at_base))
+    t46 = s_sight * c_base
     c_sight = _runtime.select(folded, 1.0, outward / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = _runtime.select(t41, 0.0, area_front_elbow_down_alike / at_base)
-    t45 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t44 + t45
-    t46 = c_sight * c_base
-    t47 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t46 - t47
-    bare = fore <= t40
+    s_base_front_elbow_down_alike = _runtime.select(t43, 0.0, area_front_elbow_down_alike / at_base)
+    t47 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t46 + t47
+    t48 = c_sight * c_base
+    t49 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t48 - t49
+    bare = fore <= t42
     c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    t48 = A * S
-    t49 = C * B
-    at_elbow = t48 + t49
-    c_bend = _runtime.select(short, 1.0, -((t48 - t49) / at_elbow))
-    t50 = c_lag * c_bend
+    t50 = A * S
+    t51 = C * B
+    at_elbow = t50 + t51
+    c_bend = _runtime.select(short, 1.0, -((t50 - t51) / at_elbow))
+    t52 = c_lag * c_bend
     s_lag = _runtime.select(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t51 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t50 + t51
-    t52 = s_lag * c_bend
-    t53 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t52 - t53
+    t53 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t52 + t53
+    t54 = s_lag * c_bend
+    t55 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t54 - t55
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    t54 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t56 = stheta2A * ctheta23A - ctheta2A * stheta23A
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    drawn = L1 - L_2W * t54 + a_3W * c_elbow
-    t55 = 2.0 * drawn
+    drawn = L1 - L_2W * t56 + a_3W * c_elbow
+    t57 = 2.0 * drawn
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t56 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t57 = d * t56
-    h_right_0 = point_21 - t57
-    point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
-    t58 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t58 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
     t59 = d * t58
-    r_right_0 = point_11 - t59
-    slope_right = t55 * (ctheta2A * h_right_0 - stheta2A * r_right_0)
-    t60 = size / 100000.0
-    t61 = t60 + np.abs(L_2W * c_elbow + a_3W * t54)
-    t62 = _runtime.FEASIBILITY * (t39 + size * np.abs(slope_right) / t61)
-    t63 = L1 * 2.0
-    t64 = L2 * t54 - a3 * c_elbow
-    t65 = 0.0 <= -t64
-    t66 = L2 * c_elbow + a3 * t54
-    large = fore_arm + _runtime.select(t65, -t64, t64)
-    small = t66 * t66 / large
-    gap = t59 * t59 + t57 * t57
-    t67 = t63 * _runtime.select(t65, small, large) - gap
-    t68 = 2.0 * point_11 * t59 + 2.0 * point_21 * t57
-    N_right_0 = t67 + t68
-    h_left_0 = point_21 + t57
-    r_left_0 = point_11 + t59
-    slope_left = t55 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
-    t69 = _runtime.FEASIBILITY * (t39 + size * np.abs(slope_left) / t61)
-    N_left_0 = t67 - t68
-    t70 = t38 & (-t62 <= N_right_0) & (-t69 <= N_left_0)
-    t71 = -(_runtime.FEASIBILITY * t39)
-    t72 = slope_left * (N_left_0 - np.maximum(N_left_0, 0.0))
-    t73 = size * size
-    t74 = t73 * t73 / 10000000000.0
-    t75 = slope_right * (N_right_0 - np.maximum(N_right_0, 0.0))
-    t76 = t72 / (t74 + slope_left * slope_left) + t75 / (t74 + slope_right * slope_right)
-    t77 = t68 - slope_right * t76
-    t78 = t67 + t77
-    swing = drawn * t76
-    t79 = ctheta2A * swing
-    h_right = h_right_0 + t79 - r_right_0 * t76
-    t80 = stheta2A * swing
-    r_right = r_right_0 + h_right_0 * t76 - t80
-    t81 = h_right * h_right + r_right * r_right
-    t82 = gap * gap
-    t83 = L1 - fore_arm
-    t84 = t83 * t83
-    t85 = gap + t63 * _runtime.select(t65, large, small)
-    t86 = _runtime.select(t73 * t81 < t82, t84 - t81, t77 - t85)
-    t87 = t68 + slope_left * t76
-    t88 = t67 - t87
-    t89 = t70 & (t71 <= t78) & (t71 <= -t86) & (t71 <= t88)
-    h_left = h_left_0 + t79 - r_left_0 * t76
-    r_left = r_left_0 - t80 + h_left_0 * t76
-    t90 = h_left * h_left + r_left * r_left
-    t91 = _runtime.select(t73 * t90 < t82, t90 - t84, t85 + t87)
-    unreachable = np.logical_not(t89 & (t71 <= t91))
-    t92 = _runtime.poison(invalid | unreachable)
-    t93 = t16 + t92
-    t94 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.sqrt(t81) <= t94
-    t95 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t73
-    t96 = 2.0 * fore_arm
-    t97 = _runtime.VANISHING * (_runtime.VANISHING * (t39 * 16.0))
-    M_right = np.maximum(-t86, t97)
-    N_right = np.maximum(t78, t97)
+    h_right_0 = point_21 - t59
+    point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
+    t60 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t61 = d * t60
+    r_right_0 = point_11 - t61
+    slope_right = t57 * (ctheta2A * h_right_0 - stheta2A * r_right_0)
+    t62 = size / 100000.0
+    t63 = t62 + np.abs(L_2W * c_elbow + a_3W * t56)
+    t64 = _runtime.FEASIBILITY * (t41 + size * np.abs(slope_right) / t63)
+    t65 = L1 * 2.0
+    t66 = L2 * t56 - a3 * c_elbow
+    t67 = 0.0 <= -t66
+    t68 = L2 * c_elbow + a3 * t56
+    large = fore_arm + _runtime.select(t67, -t66, t66)
+    small = t68 * t68 / large
+    gap = t61 * t61 + t59 * t59
+    t69 = t65 * _runtime.select(t67, small, large) - gap
+    t70 = 2.0 * point_11 * t61 + 2.0 * point_21 * t59
+    room_right = t69 + t70
+    h_left_0 = point_21 + t59
+    r_left_0 = point_11 + t61
+    slope_left = t57 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    t71 = _runtime.FEASIBILITY * (t41 + size * np.abs(slope_left) / t63)
+    room_left = t69 - t70
+    t72 = t40 & (-t64 <= room_right) & (-t71 <= room_left)
+    t73 = -(_runtime.FEASIBILITY * t41)
+    t74 = slope_left * (room_left - np.maximum(room_left, 0.0))
+    t75 = size * size
+    t76 = t75 * t75 / 10000000000.0
+    t77 = slope_right * (room_right - np.maximum(room_right, 0.0))
+    t78 = t74 / (t76 + slope_left * slope_left) + t77 / (t76 + slope_right * slope_right)
+    t79 = t70 - slope_right * t78
+    t80 = t69 + t79
+    swing = drawn * t78
+    t81 = ctheta2A * swing
+    h_right = h_right_0 + t81 - r_right_0 * t78
+    t82 = stheta2A * swing
+    r_right = r_right_0 + h_right_0 * t78 - t82
+    t83 = h_right * h_right + r_right * r_right
+    t84 = gap * gap
+    t85 = L1 - fore_arm
+    t86 = t85 * t85
+    t87 = gap + t65 * _runtime.select(t67, large, small)
+    t88 = _runtime.select(t75 * t83 < t84, t86 - t83, t79 - t87)
+    t89 = t70 + slope_left * t78
+    t90 = t69 - t89
+    t91 = t72 & (t73 <= t80) & (t73 <= -t88) & (t73 <= t90)
+    h_left = h_left_0 + t81 - r_left_0 * t78
+    r_left = r_left_0 - t82 + h_left_0 * t78
+    t92 = h_left * h_left + r_left * r_left
+    t93 = _runtime.select(t75 * t92 < t84, t92 - t86, t87 + t89)
+    unreachable = np.logical_not(t91 & (t73 <= t93))
+    t94 = _runtime.poison(invalid | unreachable)
+    t95 = t16 + t94
+    t96 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.sqrt(t83) <= t96
+    t97 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t75
+    t98 = 2.0 * fore_arm
+    t99 = _runtime.VANISHING * (_runtime.VANISHING * (t41 * 16.0))
+    M_right = np.maximum(-t88, t99)
+    N_right = np.maximum(t80, t99)
     whole_right = M_right + N_right
-    ahead_1_right = _runtime.select(short_right, size, t83 + t96 * M_right / whole_right)
-    t98 = 2.0 * _runtime.select(0.0 <= -t66, 1.0, -1.0)
+    ahead_1_right = _runtime.select(short_right, size, t85 + t98 * M_right / whole_right)
+    t100 = 2.0 * _runtime.select(0.0 <= -t68, 1.0, -1.0)
     rN_right = np.sqrt(N_right)
     rM_right = np.sqrt(M_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t98 * rN_right * rM_right / whole_right)
-    t99 = fore_arm * s_bend_right
-    t100 = np.arctan2(h_right * ahead_1_right - r_right * t99, r_right * ahead_1_right + h_right * t99)
-    t101 = _runtime.wrap_cut(_runtime.select(folded_right, t95, t100))
-    t102 = t101 + t92
+    s_bend_right = _runtime.select(short_right, 0.0, t100 * rN_right * rM_right / whole_right)
+    t101 = fore_arm * s_bend_right
+    t102 = np.arctan2(h_right * ahead_1_right - r_right * t101, r_right * ahead_1_right + h_right * t101)
+    t103 = _runtime.wrap_cut(_runtime.select(folded_right, t97, t102))
+    t104 = t103 + t94
     bare_right = fore_arm <= _runtime.VANISHING * size
     s_lag_right = _runtime.select(bare_right, 0.0, L2 / fore_arm)
     c_lag_right = _runtime.select(bare_right, 1.0, a3 / fore_arm)
-    t103 = np.arctan2(s_lag_right, c_lag_right)
-    t104 = _runtime.select(short_right, 0.0, t98 * np.arctan2(rN_right, rM_right))
-    t105 = _runtime.wrap_cut(_runtime.wrap(t103 + t104))
-    t106 = t105 + t92
-    folded_left = np.sqrt(t90) <= t94
-    M_left = np.maximum(t91, 0.0)
-    N_left = np.maximum(t88, 0.0)
+    t105 = np.arctan2(s_lag_right, c_lag_right)
+    t106 = _runtime.select(short_right, 0.0, t100 * np.arctan2(rN_right, rM_right))
+    t107 = _runtime.wrap_cut(_runtime.wrap(t105 + t106))
+    t108 = t107 + t94
+    folded_left = np.sqrt(t92) <= t96
+    M_left = np.maximum(t93, 0.0)
+    N_left = np.maximum(t90, 0.0)
     whole_left = M_left + N_left
-    ahead_1_left = _runtime.select(short_right, size, t83 + t96 * M_left / whole_left)
-    t107 = h_left * ahead_1_left
+    ahead_1_left = _runtime.select(short_right, size, t85 + t98 * M_left / whole_left)
+    t109 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t98 * rN_left * rM_left / whole_left)
-    t108 = fore_arm * s_bend_left
-    t109 = r_left * t108
-    t110 = r_left * ahead_1_left
-    t111 = h_left * t108
-    t112 = _runtime.select(folded_left, t95, np.arctan2(t107 - t109, t110 + t111))
-    t113 = _runtime.select(short_right, 0.0, t98 * np.arctan2(rN_left, rM_left))
-    t114 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    t115 = t114 + t92
-    t116 = _runtime.select(folded_left, t95, np.arctan2(t107 + t109, t110 - t111))
-    stheta2A_front_elbow_down_alike = t44 - t45
-    ctheta2A_front_elbow_down_alike = t46 + t47
-    c_relative_front_elbow_down_alike = t50 - t51
-    t117 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t52 + t53
-    t118 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t117 - t118
-    t119 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t120 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t121 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t120 + t121
-    t122 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t123 = t119 - t122
-    t124 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t125 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t124 + t125
-    drawn_front_elbow_down_alike = L1 - L_2W * t123 + a_3W * c_elbow_front_elbow_down_alike
-    t126 = 2.0 * drawn_front_elbow_down_alike
-    t127 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t127 + a3 * stheta23A_front_elbow_down_alike
-    t128 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t129 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t130 = d * (t128 + t129)
-    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t130
-    t131 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t132 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t132 + a3 * ctheta23A_front_elbow_down_alike
-    t133 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t134 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t135 = d * (t133 - t134)
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t135
-    t136 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    slope_right_front_elbow_down_alike = t126 * (t131 - t136)
-    t137 = size * np.abs(slope_right_front_elbow_down_alike)
-    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t123
-    t138 = t60 + np.abs(tilt_front_elbow_down_alike)
-    t139 = -(_runtime.FEASIBILITY * (t39 + t137 / t138))
-    t140 = L2 * t123 - a3 * c_elbow_front_elbow_down_alike
-    t141 = 0.0 <= -t140
-    t142 = L2 * c_elbow_front_elbow_down_alike + a3 * t123
-    large_front_elbow_down_alike = fore_arm + _runtime.select(t141, -t140, t140)
-    small_front_elbow_down_alike = t142 * t142 / large_front_elbow_down_alike
-    t143 = _runtime.select(t141, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    gap_front_elbow_down_alike = t135 * t135 + t130 * t130
-    t144 = t63 * t143 - gap_front_elbow_down_alike
-    t145 = 2.0 * point_11_front_elbow_down_alike * t135 + 2.0 * point_21_front_elbow_down_alike * t130
-    N_right_0_front_elbow_down_alike = t144 + t145
-    t146 = t38 & (t139 <= N_right_0_front_elbow_down_alike)
-    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t130
-    t147 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t135
-    t148 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    slope_left_front_elbow_down_alike = t126 * (t147 - t148)
-    t149 = size * np.abs(slope_left_front_elbow_down_alike)
-    t150 = -(_runtime.FEASIBILITY * (t39 + t149 / t138))
-    N_left_0_front_elbow_down_alike = t144 - t145
-    t151 = t146 & (t150 <= N_left_0_front_elbow_down_alike)
-    slack_left_front_elbow_down_alike = np.maximum(N_left_0_front_elbow_down_alike, 0.0)
-    t152 = N_left_0_front_elbow_down_alike - slack_left_front_elbow_down_alike
-    t153 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t154 = slope_left_front_elbow_down_alike * t152 / (t74 + t153)
-    slack_right_front_elbow_down_alike = np.maximum(N_right_0_front_elbow_down_alike, 0.0)
-    t155 = N_right_0_front_elbow_down_alike - slack_right_front_elbow_down_alike
-    t156 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
-    t157 = slope_right_front_elbow_down_alike * t155 / (t74 + t156)
-    t158 = t154 + t157
-    t159 = t145 - slope_right_front_elbow_down_alike * t158
-    t160 = t144 + t159
-    swing_front_elbow_down_alike = drawn_front_elbow_down_alike * t158
-    t161 = ctheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
-    h_right_front_elbow_down_alike = h_right_0_front_elbow_down_alike + t161 - r_right_0_front_elbow_down_alike * t158
-    t162 = h_right_front_elbow_down_alike * h_right_front_elbow_down_alike
-    t163 = r_right_0_front_elbow_down_alike + h_right_0_front_elbow_down_alike * t158
-    t164 = stheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
-    r_right_front_elbow_down_alike = t163 - t164
-    t165 = r_right_front_elbow_down_alike * r_right_front_elbow_down_alike
-    t166 = t162 + t165
-    t167 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t168 = _runtime.select(t141, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    t169 = gap_front_elbow_down_alike + t63 * t168
-    t170 = _runtime.select(t73 * t166 < t167, t84 - t166, t159 - t169)
-    t171 = t145 + slope_left_front_elbow_down_alike * t158
-    t172 = t144 - t171
-    t173 = t151 & (t71 <= t160) & (t71 <= -t170) & (t71 <= t172)
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike + t161 - r_left_0_front_elbow_down_alike * t158
-    t174 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t164 + h_left_0_front_elbow_down_alike * t158
-    t175 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t176 = t174 + t175
-    t177 = _runtime.select(t73 * t176 < t167, t176 - t84, t169 + t171)
-    unreachable_2 = np.logical_not(t173 & (t71 <= t177))
-    t178 = _runtime.poison(invalid | unreachable_2)
-    t179 = t16 + t178
-    folded_right_front_elbow_down_alike = np.sqrt(t166) <= t94
-    t180 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(-t170, t97)
-    N_right_front_elbow_down_alike = np.maximum(t160, t97)
+    s_bend_left = _runtime.select(short_right, 0.0, t100 * rN_left * rM_left / whole_left)
+    t110 = fore_arm * s_bend_left
+    t111 = r_left * t110
+    t112 = r_left * ahead_1_left
+    t113 = h_left * t110
+    t114 = _runtime.select(folded_left, t97, np.arctan2(t109 - t111, t112 + t113))
+    t115 = _runtime.select(short_right, 0.0, t100 * np.arctan2(rN_left, rM_left))
+    t116 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t117 = t116 + t94
+    t118 = _runtime.select(folded_left, t97, np.arctan2(t109 + t111, t112 - t113))
+    stheta2A_front_elbow_down_alike = t46 - t47
+    ctheta2A_front_elbow_down_alike = t48 + t49
+    c_relative_front_elbow_down_alike = t52 - t53
+    t119 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t54 + t55
+    t120 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t119 - t120
+    t121 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t122 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t123 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t122 + t123
+    t124 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t125 = t121 - t124
+    t126 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t127 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t126 + t127
+    drawn_front_elbow_down_alike = L1 - L_2W * t125 + a_3W * c_elbow_front_elbow_down_alike
+    t128 = 2.0 * drawn_front_elbow_down_alike
+    t129 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t129 + a3 * stheta23A_front_elbow_down_alike
+    t130 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t131 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t132 = d * (t130 + t131)
+    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t132
+    t133 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t134 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t134 + a3 * ctheta23A_front_elbow_down_alike
+    t135 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t136 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t137 = d * (t135 - t136)
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t137
+    t138 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    slope_right_front_elbow_down_alike = t128 * (t133 - t138)
+    t139 = size * np.abs(slope_right_front_elbow_down_alike)
+    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t125
+    t140 = t62 + np.abs(tilt_front_elbow_down_alike)
+    t141 = -(_runtime.FEASIBILITY * (t41 + t139 / t140))
+    t142 = L2 * t125 - a3 * c_elbow_front_elbow_down_alike
+    t143 = 0.0 <= -t142
+    t144 = L2 * c_elbow_front_elbow_down_alike + a3 * t125
+    large_front_elbow_down_alike = fore_arm + _runtime.select(t143, -t142, t142)
+    small_front_elbow_down_alike = t144 * t144 / large_front_elbow_down_alike
+    t145 = _runtime.select(t143, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    gap_front_elbow_down_alike = t137 * t137 + t132 * t132
+    t146 = t65 * t145 - gap_front_elbow_down_alike
+    t147 = 2.0 * point_11_front_elbow_down_alike * t137 + 2.0 * point_21_front_elbow_down_alike * t132
+    room_right_front_elbow_down_alike = t146 + t147
+    t148 = t40 & (t141 <= room_right_front_elbow_down_alike)
+    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t132
+    t149 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t137
+    t150 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    slope_left_front_elbow_down_alike = t128 * (t149 - t150)
+    t151 = size * np.abs(slope_left_front_elbow_down_alike)
+    t152 = -(_runtime.FEASIBILITY * (t41 + t151 / t140))
+    room_left_front_elbow_down_alike = t146 - t147
+    t153 = t148 & (t152 <= room_left_front_elbow_down_alike)
+    kept_left_front_elbow_down_alike = np.maximum(room_left_front_elbow_down_alike, 0.0)
+    t154 = room_left_front_elbow_down_alike - kept_left_front_elbow_down_alike
+    t155 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t156 = slope_left_front_elbow_down_alike * t154 / (t76 + t155)
+    kept_right_front_elbow_down_alike = np.maximum(room_right_front_elbow_down_alike, 0.0)
+    t157 = room_right_front_elbow_down_alike - kept_right_front_elbow_down_alike
+    t158 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
+    t159 = slope_right_front_elbow_down_alike * t157 / (t76 + t158)
+    t160 = t156 + t159
+    t161 = t147 - slope_right_front_elbow_down_alike * t160
+    t162 = t146 + t161
+    swing_front_elbow_down_alike = drawn_front_elbow_down_alike * t160
+    t163 = ctheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
+    h_right_front_elbow_down_alike = h_right_0_front_elbow_down_alike + t163 - r_right_0_front_elbow_down_alike * t160
+    t164 = h_right_front_elbow_down_alike * h_right_front_elbow_down_alike
+    t165 = r_right_0_front_elbow_down_alike + h_right_0_front_elbow_down_alike * t160
+    t166 = stheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
+    r_right_front_elbow_down_alike = t165 - t166
+    t167 = r_right_front_elbow_down_alike * r_right_front_elbow_down_alike
+    t168 = t164 + t167
+    t169 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t170 = _runtime.select(t143, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    t171 = gap_front_elbow_down_alike + t65 * t170
+    t172 = _runtime.select(t75 * t168 < t169, t86 - t168, t161 - t171)
+    t173 = t147 + slope_left_front_elbow_down_alike * t160
+    t174 = t146 - t173
+    t175 = t153 & (t73 <= t162) & (t73 <= -t172) & (t73 <= t174)
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike + t163 - r_left_0_front_elbow_down_alike * t160
+    t176 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t166 + h_left_0_front_elbow_down_alike * t160
+    t177 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t178 = t176 + t177
+    t179 = _runtime.select(t75 * t178 < t169, t178 - t86, t171 + t173)
+    unreachable_2 = np.logical_not(t175 & (t73 <= t179))
+    t180 = _runtime.poison(invalid | unreachable_2)
+    t181 = t16 + t180
+    folded_right_front_elbow_down_alike = np.sqrt(t168) <= t96
+    t182 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    M_right_front_elbow_down_alike = np.maximum(-t172, t99)
+    N_right_front_elbow_down_alike = np.maximum(t162, t99)
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t181 = t96 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t83 + t181)
-    t182 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t183 = 2.0 * _runtime.select(0.0 <= -t142, 1.0, -1.0)
+    t183 = t98 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t85 + t183)
+    t184 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t185 = 2.0 * _runtime.select(0.0 <= -t144, 1.0, -1.0)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t184 = t183 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t184 / whole_right_front_elbow_down_alike)
-    t185 = fore_arm * s_bend_right_front_elbow_down_alike
-    t186 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t187 = np.arctan2(t182 - r_right_front_elbow_down_alike * t185, t186 + h_right_front_elbow_down_alike * t185)
-    t188 = _runtime.select(folded_right_front_elbow_down_alike, t180, t187)
-    t189 = _runtime.wrap_cut(t188) + t178
-    t190 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t191 = _runtime.select(short_right, 0.0, t183 * t190)
-    t192 = _runtime.wrap_cut(_runtime.wrap(t103 + t191))
-    t193 = t192 + t178
-    folded_left_front_elbow_down_alike = np.sqrt(t176) <= t94
-    M_left_front_elbow_down_alike = np.maximum(t177, 0.0)
-    N_left_front_elbow_down_alike = np.maximum(t172, 0.0)
+    t186 = t185 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t186 / whole_right_front_elbow_down_alike)
+    t187 = fore_arm * s_bend_right_front_elbow_down_alike
+    t188 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t189 = np.arctan2(t184 - r_right_front_elbow_down_alike * t187, t188 + h_right_front_elbow_down_alike * t187)
+    t190 = _runtime.select(folded_right_front_elbow_down_alike, t182, t189)
+    t191 = _runtime.wrap_cut(t190) + t180
+    t192 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t193 = _runtime.select(short_right, 0.0, t185 * t192)
+    t194 = _runtime.wrap_cut(_runtime.wrap(t105 + t193))
+    t195 = t194 + t180
+    folded_left_front_elbow_down_alike = np.sqrt(t178) <= t96
+    M_left_front_elbow_down_alike = np.maximum(t179, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t174, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t194 = t96 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t83 + t194)
-    t195 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t196 = t98 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t85 + t196)
+    t197 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t196 = t183 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t196 / whole_left_front_elbow_down_alike)
-    t197 = fore_arm * s_bend_left_front_elbow_down_alike
-    t198 = r_left_front_elbow_down_alike * t197
-    t199 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t200 = h_left_front_elbow_down_alike * t197
-    t201 = _runtime.select(folded_left_front_elbow_down_alike, t180, np.arctan2(t195 - t198, t199 + t200))
-    t202 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t203 = _runtime.select(short_right, 0.0, t183 * t202)
-    t204 = t114 + t178
-    t205 = _runtime.select(folded_left_front_elbow_down_alike, t180, np.arctan2(t195 + t198, t199 - t200))
-    t206 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
-    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t30 + t31) / h))
-    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t32 - t33) / h)
+    t198 = t185 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t198 / whole_left_front_elbow_down_alike)
+    t199 = fore_arm * s_bend_left_front_elbow_down_alike
+    t200 = r_left_front_elbow_down_alike * t199
+    t201 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t202 = h_left_front_elbow_down_alike * t199
+    t203 = _runtime.select(folded_left_front_elbow_down_alike, t182, np.arctan2(t197 - t200, t201 + t202))
+    t204 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t205 = _runtime.select(short_right, 0.0, t185 * t204)
+    t206 = t116 + t180
+    t207 = _runtime.select(folded_left_front_elbow_down_alike, t182, np.arctan2(t197 + t200, t201 - t202))
+    t208 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t32 + t33) / h))
+    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t34 - t35) / h)
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
-    t207 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t28 + t207)
-    t208 = t25 - reach_rear_elbow_up_alike
-    t209 = reach_rear_elbow_up_alike + t35
-    t210 = reach_rear_elbow_up_alike - t35
-    t211 = t24 & (t26 <= t208) & (t26 <= t209) & (t26 <= t210)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t40
-    s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t27 / reach_rear_elbow_up_alike)
-    t212 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t208, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t210, 0.0)
-    t213 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
-    S_rear_elbow_up_alike = t25 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t209, 0.0)
-    t214 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t213 + t214
-    t215 = -((t213 - t214) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = _runtime.select(t212, 1.0, t215)
-    t216 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t217 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t217)
-    t218 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t218 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t219 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = _runtime.select(t212, 0.0, t219)
-    t220 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t216 - t220
-    t221 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t222 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t221 + t222
-    t223 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t224 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t223 + t224
-    t225 = -((t223 - t224) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t225)
-    t226 = c_lag * c_bend_rear_elbow_up_alike
-    t227 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t227)
-    t228 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t226 - t228
-    t229 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t230 = s_lag * c_bend_rear_elbow_up_alike
-    t231 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t230 + t231
-    t232 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t229 - t232
-    t233 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t234 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t235 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t234 + t235
-    t236 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t237 = t233 - t236
-    t238 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t239 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t238 + t239
-    drawn_rear_elbow_up_alike = L1 - L_2W * t237 + a_3W * c_elbow_rear_elbow_up_alike
-    t240 = 2.0 * drawn_rear_elbow_up_alike
-    t241 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t241 + a3 * stheta23A_rear_elbow_up_alike
-    t242 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t243 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t242
-    t244 = d * t243
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t244
-    t245 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t246 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t246 + a3 * ctheta23A_rear_elbow_up_alike
-    t247 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t248 = t247 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t249 = d * t248
-    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t249
-    t250 = stheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    slope_right_rear_elbow_up_alike = t240 * (t245 - t250)
-    t251 = size * np.abs(slope_right_rear_elbow_up_alike)
-    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t237
-    t252 = t60 + np.abs(tilt_rear_elbow_up_alike)
-    t253 = -(_runtime.FEASIBILITY * (t39 + t251 / t252))
-    t254 = L2 * t237 - a3 * c_elbow_rear_elbow_up_alike
-    t255 = 0.0 <= -t254
-    t256 = L2 * c_elbow_rear_elbow_up_alike + a3 * t237
-    large_rear_elbow_up_alike = fore_arm + _runtime.select(t255, -t254, t254)
-    small_rear_elbow_up_alike = t256 * t256 / large_rear_elbow_up_alike
-    t257 = _runtime.select(t255, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    gap_rear_elbow_up_alike = t249 * t249 + t244 * t244
-    t258 = t63 * t257 - gap_rear_elbow_up_alike
-    t259 = 2.0 * point_11_rear_elbow_up_alike * t249 + 2.0 * point_21_rear_elbow_up_alike * t244
-    N_right_0_rear_elbow_up_alike = t258 + t259
-    t260 = t211 & (t253 <= N_right_0_rear_elbow_up_alike)
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t244
-    t261 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t249
-    t262 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    slope_left_rear_elbow_up_alike = t240 * (t261 - t262)
-    t263 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t264 = -(_runtime.FEASIBILITY * (t39 + t263 / t252))
-    N_left_0_rear_elbow_up_alike = t258 - t259
-    t265 = t260 & (t264 <= N_left_0_rear_elbow_up_alike)
-    slack_left_rear_elbow_up_alike = np.maximum(N_left_0_rear_elbow_up_alike, 0.0)
-    t266 = N_left_0_rear_elbow_up_alike - slack_left_rear_elbow_up_alike
-    t267 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t268 = slope_left_rear_elbow_up_alike * t266 / (t74 + t267)
-    slack_right_rear_elbow_up_alike = np.maximum(N_right_0_rear_elbow_up_alike, 0.0)
-    t269 = N_right_0_rear_elbow_up_alike - slack_right_rear_elbow_up_alike
-    t270 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
-    t271 = slope_right_rear_elbow_up_alike * t269 / (t74 + t270)
-    t272 = t268 + t271
-    t273 = t259 - slope_right_rear_elbow_up_alike * t272
-    t274 = t258 + t273
-    swing_rear_elbow_up_alike = drawn_rear_elbow_up_alike * t272
-    t275 = ctheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
-    h_right_rear_elbow_up_alike = h_right_0_rear_elbow_up_alike + t275 - r_right_0_rear_elbow_up_alike * t272
-    t276 = h_right_rear_elbow_up_alike * h_right_rear_elbow_up_alike
-    t277 = r_right_0_rear_elbow_up_alike + h_right_0_rear_elbow_up_alike * t272
-    t278 = stheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
-    r_right_rear_elbow_up_alike = t277 - t278
-    t279 = r_right_rear_elbow_up_alike * r_right_rear_elbow_up_alike
-    t280 = t276 + t279
-    t281 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t282 = _runtime.select(t255, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    t283 = gap_rear_elbow_up_alike + t63 * t282
-    t284 = _runtime.select(t73 * t280 < t281, t84 - t280, t273 - t283)
-    t285 = t259 + slope_left_rear_elbow_up_alike * t272
-    t286 = t258 - t285
-    t287 = t265 & (t71 <= t274) & (t71 <= -t284) & (t71 <= t286)
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike + t275 - r_left_0_rear_elbow_up_alike * t272
-    t288 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t278 + h_left_0_rear_elbow_up_alike * t272
-    t289 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t290 = t288 + t289
-    t291 = _runtime.select(t73 * t290 < t281, t290 - t84, t283 + t285)
-    unreachable_3 = np.logical_not(t287 & (t71 <= t291))
-    t292 = _runtime.poison(invalid | unreachable_3)
-    t293 = t206 + t292
-    folded_right_rear_elbow_up_alike = np.sqrt(t280) <= t94
-    t294 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(-t284, t97)
-    N_right_rear_elbow_up_alike = np.maximum(t274, t97)
+    t209 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t30 + t209)
+    t210 = t27 - reach_rear_elbow_up_alike
+    t211 = reach_rear_elbow_up_alike + t37
+    t212 = reach_rear_elbow_up_alike - t37
+    t213 = t26 & (t28 <= t210) & (t28 <= t211) & (t28 <= t212)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t42
+    s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t29 / reach_rear_elbow_up_alike)
+    t214 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t210, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t212, 0.0)
+    t215 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    S_rear_elbow_up_alike = t27 + reach_rear_elbow_up_alike
+    B_rear_elbow_up_alike = np.maximum(t211, 0.0)
+    t216 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t215 + t216
+    t217 = -((t215 - t216) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = _runtime.select(t214, 1.0, t217)
+    t218 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t219 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t219)
+    t220 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t220 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t221 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = _runtime.select(t214, 0.0, t221)
+    t222 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t218 - t222
+    t223 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t224 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t223 + t224
+    t225 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t226 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t225 + t226
+    t227 = -((t225 - t226) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t227)
+    t228 = c_lag * c_bend_rear_elbow_up_alike
+    t229 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t229)
+    t230 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t228 - t230
+    t231 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t232 = s_lag * c_bend_rear_elbow_up_alike
+    t233 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t232 + t233
+    t234 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t231 - t234
+    t235 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t236 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t237 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t236 + t237
+    t238 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t239 = t235 - t238
+    t240 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t241 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t240 + t241
+    drawn_rear_elbow_up_alike = L1 - L_2W * t239 + a_3W * c_elbow_rear_elbow_up_alike
+    t242 = 2.0 * drawn_rear_elbow_up_alike
+    t243 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t243 + a3 * stheta23A_rear_elbow_up_alike
+    t244 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t245 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t244
+    t246 = d * t245
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t246
+    t247 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t248 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t248 + a3 * ctheta23A_rear_elbow_up_alike
+    t249 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t250 = t249 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t251 = d * t250
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t251
+    t252 = stheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    slope_right_rear_elbow_up_alike = t242 * (t247 - t252)
+    t253 = size * np.abs(slope_right_rear_elbow_up_alike)
+    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t239
+    t254 = t62 + np.abs(tilt_rear_elbow_up_alike)
+    t255 = -(_runtime.FEASIBILITY * (t41 + t253 / t254))
+    t256 = L2 * t239 - a3 * c_elbow_rear_elbow_up_alike
+    t257 = 0.0 <= -t256
+    t258 = L2 * c_elbow_rear_elbow_up_alike + a3 * t239
+    large_rear_elbow_up_alike = fore_arm + _runtime.select(t257, -t256, t256)
+    small_rear_elbow_up_alike = t258 * t258 / large_rear_elbow_up_alike
+    t259 = _runtime.select(t257, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    gap_rear_elbow_up_alike = t251 * t251 + t246 * t246
+    t260 = t65 * t259 - gap_rear_elbow_up_alike
+    t261 = 2.0 * point_11_rear_elbow_up_alike * t251 + 2.0 * point_21_rear_elbow_up_alike * t246
+    room_right_rear_elbow_up_alike = t260 + t261
+    t262 = t213 & (t255 <= room_right_rear_elbow_up_alike)
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t246
+    t263 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t251
+    t264 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t242 * (t263 - t264)
+    t265 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t266 = -(_runtime.FEASIBILITY * (t41 + t265 / t254))
+    room_left_rear_elbow_up_alike = t260 - t261
+    t267 = t262 & (t266 <= room_left_rear_elbow_up_alike)
+    kept_left_rear_elbow_up_alike = np.maximum(room_left_rear_elbow_up_alike, 0.0)
+    t268 = room_left_rear_elbow_up_alike - kept_left_rear_elbow_up_alike
+    t269 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t270 = slope_left_rear_elbow_up_alike * t268 / (t76 + t269)
+    kept_right_rear_elbow_up_alike = np.maximum(room_right_rear_elbow_up_alike, 0.0)
+    t271 = room_right_rear_elbow_up_alike - kept_right_rear_elbow_up_alike
+    t272 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
+    t273 = slope_right_rear_elbow_up_alike * t271 / (t76 + t272)
+    t274 = t270 + t273
+    t275 = t261 - slope_right_rear_elbow_up_alike * t274
+    t276 = t260 + t275
+    swing_rear_elbow_up_alike = drawn_rear_elbow_up_alike * t274
+    t277 = ctheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
+    h_right_rear_elbow_up_alike = h_right_0_rear_elbow_up_alike + t277 - r_right_0_rear_elbow_up_alike * t274
+    t278 = h_right_rear_elbow_up_alike * h_right_rear_elbow_up_alike
+    t279 = r_right_0_rear_elbow_up_alike + h_right_0_rear_elbow_up_alike * t274
+    t280 = stheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
+    r_right_rear_elbow_up_alike = t279 - t280
+    t281 = r_right_rear_elbow_up_alike * r_right_rear_elbow_up_alike
+    t282 = t278 + t281
+    t283 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t284 = _runtime.select(t257, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    t285 = gap_rear_elbow_up_alike + t65 * t284
+    t286 = _runtime.select(t75 * t282 < t283, t86 - t282, t275 - t285)
+    t287 = t261 + slope_left_rear_elbow_up_alike * t274
+    t288 = t260 - t287
+    t289 = t267 & (t73 <= t276) & (t73 <= -t286) & (t73 <= t288)
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike + t277 - r_left_0_rear_elbow_up_alike * t274
+    t290 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t280 + h_left_0_rear_elbow_up_alike * t274
+    t291 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t292 = t290 + t291
+    t293 = _runtime.select(t75 * t292 < t283, t292 - t86, t285 + t287)
+    unreachable_3 = np.logical_not(t289 & (t73 <= t293))
+    t294 = _runtime.poison(invalid | unreachable_3)
+    t295 = t208 + t294
+    folded_right_rear_elbow_up_alike = np.sqrt(t282) <= t96
+    t296 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    M_right_rear_elbow_up_alike = np.maximum(-t286, t99)
+    N_right_rear_elbow_up_alike = np.maximum(t276, t99)
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t295 = t96 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t83 + t295)
-    t296 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t297 = 2.0 * _runtime.select(0.0 <= -t256, 1.0, -1.0)
+    t297 = t98 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t85 + t297)
+    t298 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t299 = 2.0 * _runtime.select(0.0 <= -t258, 1.0, -1.0)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t298 = t297 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t298 / whole_right_rear_elbow_up_alike)
-    t299 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t300 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t301 = np.arctan2(t296 - r_right_rear_elbow_up_alike * t299, t300 + h_right_rear_elbow_up_alike * t299)
-    t302 = _runtime.select(folded_right_rear_elbow_up_alike, t294, t301)
-    t303 = _runtime.wrap_cut(t302) + t292
-    t304 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t305 = _runtime.select(short_right, 0.0, t297 * t304)
-    t306 = _runtime.wrap_cut(_runtime.wrap(t103 + t305))
-    t307 = t306 + t292
-    folded_left_rear_elbow_up_alike = np.sqrt(t290) <= t94
-    M_left_rear_elbow_up_alike = np.maximum(t291, 0.0)
-    N_left_rear_elbow_up_alike = np.maximum(t286, 0.0)
+    t300 = t299 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t300 / whole_right_rear_elbow_up_alike)
+    t301 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t302 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t303 = np.arctan2(t298 - r_right_rear_elbow_up_alike * t301, t302 + h_right_rear_elbow_up_alike * t301)
+    t304 = _runtime.select(folded_right_rear_elbow_up_alike, t296, t303)
+    t305 = _runtime.wrap_cut(t304) + t294
+    t306 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t307 = _runtime.select(short_right, 0.0, t299 * t306)
+    t308 = _runtime.wrap_cut(_runtime.wrap(t105 + t307))
+    t309 = t308 + t294
+    folded_left_rear_elbow_up_alike = np.sqrt(t292) <= t96
+    M_left_rear_elbow_up_alike = np.maximum(t293, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t288, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t308 = t96 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t83 + t308)
-    t309 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t310 = t98 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t85 + t310)
+    t311 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t310 = t297 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t310 / whole_left_rear_elbow_up_alike)
-    t311 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t312 = r_left_rear_elbow_up_alike * t311
-    t313 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t314 = h_left_rear_elbow_up_alike * t311
-    t315 = _runtime.select(folded_left_rear_elbow_up_alike, t294, np.arctan2(t309 - t312, t313 + t314))
-    t316 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t317 = _runtime.select(short_right, 0.0, t297 * t316)
-    t318 = t114 + t292
-    t319 = _runtime.select(folded_left_rear_elbow_up_alike, t294, np.arctan2(t309 + t312, t313 - t314))
-    stheta2A_rear_elbow_down_alike = t216 + t220
-    ctheta2A_rear_elbow_down_alike = t221 - t222
-    c_relative_rear_elbow_down_alike = t226 + t228
-    t320 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t230 - t231
-    t321 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t320 - t321
-    t322 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t323 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t324 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t323 + t324
-    t325 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t326 = t322 - t325
-    t327 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t328 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t327 + t328
-    drawn_rear_elbow_down_alike = L1 - L_2W * t326 + a_3W * c_elbow_rear_elbow_down_alike
-    t329 = 2.0 * drawn_rear_elbow_down_alike
-    t330 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t330 + a3 * stheta23A_rear_elbow_down_alike
-    t331 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t332 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t331
-    t333 = d * t332
-    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t333
-    t334 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t335 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t335 + a3 * ctheta23A_rear_elbow_down_alike
-    t336 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t337 = t336 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t338 = d * t337
-    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t338
-    t339 = stheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    slope_right_rear_elbow_down_alike = t329 * (t334 - t339)
-    t340 = size * np.abs(slope_right_rear_elbow_down_alike)
-    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t326
-    t341 = t60 + np.abs(tilt_rear_elbow_down_alike)
-    t342 = -(_runtime.FEASIBILITY * (t39 + t340 / t341))
-    t343 = L2 * t326 - a3 * c_elbow_rear_elbow_down_alike
-    t344 = 0.0 <= -t343
-    t345 = L2 * c_elbow_rear_elbow_down_alike + a3 * t326
-    large_rear_elbow_down_alike = fore_arm + _runtime.select(t344, -t343, t343)
-    small_rear_elbow_down_alike = t345 * t345 / large_rear_elbow_down_alike
-    t346 = _runtime.select(t344, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    gap_rear_elbow_down_alike = t338 * t338 + t333 * t333
-    t347 = t63 * t346 - gap_rear_elbow_down_alike
-    t348 = 2.0 * point_11_rear_elbow_down_alike * t338 + 2.0 * point_21_rear_elbow_down_alike * t333
-    N_right_0_rear_elbow_down_alike = t347 + t348
-    t349 = t211 & (t342 <= N_right_0_rear_elbow_down_alike)
-    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t333
-    t350 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t338
-    t351 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t329 * (t350 - t351)
-    t352 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t353 = -(_runtime.FEASIBILITY * (t39 + t352 / t341))
-    N_left_0_rear_elbow_down_alike = t347 - t348
-    t354 = t349 & (t353 <= N_left_0_rear_elbow_down_alike)
-    slack_left_rear_elbow_down_alike = np.maximum(N_left_0_rear_elbow_down_alike, 0.0)
-    t355 = N_left_0_rear_elbow_down_alike - slack_left_rear_elbow_down_alike
-    t356 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t357 = slope_left_rear_elbow_down_alike * t355 / (t74 + t356)
-    slack_right_rear_elbow_down_alike = np.maximum(N_right_0_rear_elbow_down_alike, 0.0)
-    t358 = N_right_0_rear_elbow_down_alike - slack_right_rear_elbow_down_alike
-    t359 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
-    t360 = slope_right_rear_elbow_down_alike * t358 / (t74 + t359)
-    t361 = t357 + t360
-    t362 = t348 - slope_right_rear_elbow_down_alike * t361
-    t363 = t347 + t362
-    swing_rear_elbow_down_alike = drawn_rear_elbow_down_alike * t361
-    t364 = ctheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
-    h_right_rear_elbow_down_alike = h_right_0_rear_elbow_down_alike + t364 - r_right_0_rear_elbow_down_alike * t361
-    t365 = h_right_rear_elbow_down_alike * h_right_rear_elbow_down_alike
-    t366 = r_right_0_rear_elbow_down_alike + h_right_0_rear_elbow_down_alike * t361
-    t367 = stheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
-    r_right_rear_elbow_down_alike = t366 - t367
-    t368 = r_right_rear_elbow_down_alike * r_right_rear_elbow_down_alike
-    t369 = t365 + t368
-    t370 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t371 = _runtime.select(t344, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    t372 = gap_rear_elbow_down_alike + t63 * t371
-    t373 = _runtime.select(t73 * t369 < t370, t84 - t369, t362 - t372)
-    t374 = t348 + slope_left_rear_elbow_down_alike * t361
-    t375 = t347 - t374
-    t376 = t354 & (t71 <= t363) & (t71 <= -t373) & (t71 <= t375)
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike + t364 - r_left_0_rear_elbow_down_alike * t361
-    t377 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t367 + h_left_0_rear_elbow_down_alike * t361
-    t378 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t379 = t377 + t378
-    t380 = _runtime.select(t73 * t379 < t370, t379 - t84, t372 + t374)
-    unreachable_4 = np.logical_not(t376 & (t71 <= t380))
-    t381 = _runtime.poison(invalid | unreachable_4)
-    t382 = t206 + t381
-    folded_right_rear_elbow_down_alike = np.sqrt(t369) <= t94
-    t383 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(-t373, t97)
-    N_right_rear_elbow_down_alike = np.maximum(t363, t97)
+    t312 = t299 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t312 / whole_left_rear_elbow_up_alike)
+    t313 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t314 = r_left_rear_elbow_up_alike * t313
+    t315 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t316 = h_left_rear_elbow_up_alike * t313
+    t317 = _runtime.select(folded_left_rear_elbow_up_alike, t296, np.arctan2(t311 - t314, t315 + t316))
+    t318 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t319 = _runtime.select(short_right, 0.0, t299 * t318)
+    t320 = t116 + t294
+    t321 = _runtime.select(folded_left_rear_elbow_up_alike, t296, np.arctan2(t311 + t314, t315 - t316))
+    stheta2A_rear_elbow_down_alike = t218 + t222
+    ctheta2A_rear_elbow_down_alike = t223 - t224
+    c_relative_rear_elbow_down_alike = t228 + t230
+    t322 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t232 - t233
+    t323 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t322 - t323
+    t324 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t325 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    t326 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t325 + t326
+    t327 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t328 = t324 - t327
+    t329 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t330 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t329 + t330
+    drawn_rear_elbow_down_alike = L1 - L_2W * t328 + a_3W * c_elbow_rear_elbow_down_alike
+    t331 = 2.0 * drawn_rear_elbow_down_alike
+    t332 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t332 + a3 * stheta23A_rear_elbow_down_alike
+    t333 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t334 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t333
+    t335 = d * t334
+    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t335
+    t336 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t337 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t337 + a3 * ctheta23A_rear_elbow_down_alike
+    t338 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t339 = t338 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t340 = d * t339
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t340
+    t341 = stheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    slope_right_rear_elbow_down_alike = t331 * (t336 - t341)
+    t342 = size * np.abs(slope_right_rear_elbow_down_alike)
+    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t328
+    t343 = t62 + np.abs(tilt_rear_elbow_down_alike)
+    t344 = -(_runtime.FEASIBILITY * (t41 + t342 / t343))
+    t345 = L2 * t328 - a3 * c_elbow_rear_elbow_down_alike
+    t346 = 0.0 <= -t345
+    t347 = L2 * c_elbow_rear_elbow_down_alike + a3 * t328
+    large_rear_elbow_down_alike = fore_arm + _runtime.select(t346, -t345, t345)
+    small_rear_elbow_down_alike = t347 * t347 / large_rear_elbow_down_alike
+    t348 = _runtime.select(t346, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    gap_rear_elbow_down_alike = t340 * t340 + t335 * t335
+    t349 = t65 * t348 - gap_rear_elbow_down_alike
+    t350 = 2.0 * point_11_rear_elbow_down_alike * t340 + 2.0 * point_21_rear_elbow_down_alike * t335
+    room_right_rear_elbow_down_alike = t349 + t350
+    t351 = t213 & (t344 <= room_right_rear_elbow_down_alike)
+    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t335
+    t352 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t340
+    t353 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t331 * (t352 - t353)
+    t354 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t355 = -(_runtime.FEASIBILITY * (t41 + t354 / t343))
+    room_left_rear_elbow_down_alike = t349 - t350
+    t356 = t351 & (t355 <= room_left_rear_elbow_down_alike)
+    kept_left_rear_elbow_down_alike = np.maximum(room_left_rear_elbow_down_alike, 0.0)
+    t357 = room_left_rear_elbow_down_alike - kept_left_rear_elbow_down_alike
+    t358 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t359 = slope_left_rear_elbow_down_alike * t357 / (t76 + t358)
+    kept_right_rear_elbow_down_alike = np.maximum(room_right_rear_elbow_down_alike, 0.0)
+    t360 = room_right_rear_elbow_down_alike - kept_right_rear_elbow_down_alike
+    t361 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
+    t362 = slope_right_rear_elbow_down_alike * t360 / (t76 + t361)
+    t363 = t359 + t362
+    t364 = t350 - slope_right_rear_elbow_down_alike * t363
+    t365 = t349 + t364
+    swing_rear_elbow_down_alike = drawn_rear_elbow_down_alike * t363
+    t366 = ctheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
+    h_right_rear_elbow_down_alike = h_right_0_rear_elbow_down_alike + t366 - r_right_0_rear_elbow_down_alike * t363
+    t367 = h_right_rear_elbow_down_alike * h_right_rear_elbow_down_alike
+    t368 = r_right_0_rear_elbow_down_alike + h_right_0_rear_elbow_down_alike * t363
+    t369 = stheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
+    r_right_rear_elbow_down_alike = t368 - t369
+    t370 = r_right_rear_elbow_down_alike * r_right_rear_elbow_down_alike
+    t371 = t367 + t370
+    t372 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t373 = _runtime.select(t346, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    t374 = gap_rear_elbow_down_alike + t65 * t373
+    t375 = _runtime.select(t75 * t371 < t372, t86 - t371, t364 - t374)
+    t376 = t350 + slope_left_rear_elbow_down_alike * t363
+    t377 = t349 - t376
+    t378 = t356 & (t73 <= t365) & (t73 <= -t375) & (t73 <= t377)
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike + t366 - r_left_0_rear_elbow_down_alike * t363
+    t379 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t369 + h_left_0_rear_elbow_down_alike * t363
+    t380 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t381 = t379 + t380
+    t382 = _runtime.select(t75 * t381 < t372, t381 - t86, t374 + t376)
+    unreachable_4 = np.logical_not(t378 & (t73 <= t382))
+    t383 = _runtime.poison(invalid | unreachable_4)
+    t384 = t208 + t383
+    folded_right_rear_elbow_down_alike = np.sqrt(t371) <= t96
+    t385 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    M_right_rear_elbow_down_alike = np.maximum(-t375, t99)
+    N_right_rear_elbow_down_alike = np.maximum(t365, t99)
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t384 = t96 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t83 + t384)
-    t385 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t386 = 2.0 * _runtime.select(0.0 <= -t345, 1.0, -1.0)
+    t386 = t98 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t85 + t386)
+    t387 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t388 = 2.0 * _runtime.select(0.0 <= -t347, 1.0, -1.0)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t387 = t386 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t387 / whole_right_rear_elbow_down_alike)
-    t388 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t389 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t390 = np.arctan2(t385 - r_right_rear_elbow_down_alike * t388, t389 + h_right_rear_elbow_down_alike * t388)
-    t391 = _runtime.select(folded_right_rear_elbow_down_alike, t383, t390)
-    t392 = _runtime.wrap_cut(t391) + t381
-    t393 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t394 = _runtime.select(short_right, 0.0, t386 * t393)
-    t395 = _runtime.wrap_cut(_runtime.wrap(t103 + t394))
-    t396 = t395 + t381
-    folded_left_rear_elbow_down_alike = np.sqrt(t379) <= t94
-    M_left_rear_elbow_down_alike = np.maximum(t380, 0.0)
-    N_left_rear_elbow_down_alike = np.maximum(t375, 0.0)
+    t389 = t388 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t389 / whole_right_rear_elbow_down_alike)
+    t390 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t391 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t392 = np.arctan2(t387 - r_right_rear_elbow_down_alike * t390, t391 + h_right_rear_elbow_down_alike * t390)
+    t393 = _runtime.select(folded_right_rear_elbow_down_alike, t385, t392)
+    t394 = _runtime.wrap_cut(t393) + t383
+    t395 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t396 = _runtime.select(short_right, 0.0, t388 * t395)
+    t397 = _runtime.wrap_cut(_runtime.wrap(t105 + t396))
+    t398 = t397 + t383
+    folded_left_rear_elbow_down_alike = np.sqrt(t381) <= t96
+    M_left_rear_elbow_down_alike = np.maximum(t382, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t377, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t397 = t96 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t83 + t397)
-    t398 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t399 = t98 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t85 + t399)
+    t400 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t399 = t386 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t399 / whole_left_rear_elbow_down_alike)
-    t400 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t401 = r_left_rear_elbow_down_alike * t400
-    t402 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t403 = h_left_rear_elbow_down_alike * t400
-    t404 = _runtime.select(folded_left_rear_elbow_down_alike, t383, np.arctan2(t398 - t401, t402 + t403))
-    t405 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t406 = _runtime.select(short_right, 0.0, t386 * t405)
-    t407 = t114 + t381
-    t408 = _runtime.select(folded_left_rear_elbow_down_alike, t383, np.arctan2(t398 + t401, t402 - t403))
-    t409 = nowhere | folded | short
-    t410 = t409 | folded_right | short_right | folded_left
-    t411 = _runtime.status(invalid, unreachable, t410)
-    t412 = t409 | folded_right_front_elbow_down_alike | short_right
-    t413 = _runtime.status(invalid, unreachable_2, t412 | folded_left_front_elbow_down_alike)
-    t414 = nowhere | folded_rear_elbow_up_alike | short
-    t415 = t414 | folded_right_rear_elbow_up_alike | short_right
-    t416 = _runtime.status(invalid, unreachable_3, t415 | folded_left_rear_elbow_up_alike)
-    t417 = t414 | folded_right_rear_elbow_down_alike | short_right
-    t418 = _runtime.status(invalid, unreachable_4, t417 | folded_left_rear_elbow_down_alike)
+    t401 = t388 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t401 / whole_left_rear_elbow_down_alike)
+    t402 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t403 = r_left_rear_elbow_down_alike * t402
+    t404 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t405 = h_left_rear_elbow_down_alike * t402
+    t406 = _runtime.select(folded_left_rear_elbow_down_alike, t385, np.arctan2(t400 - t403, t404 + t405))
+    t407 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t408 = _runtime.select(short_right, 0.0, t388 * t407)
+    t409 = t116 + t383
+    t410 = _runtime.select(folded_left_rear_elbow_down_alike, t385, np.arctan2(t400 + t403, t404 - t405))
+    t411 = nowhere | folded | short
+    t412 = t411 | folded_right | short_right | folded_left
+    t413 = _runtime.status(invalid, unreachable, t412)
+    t414 = t411 | folded_right_front_elbow_down_alike | short_right
+    t415 = _runtime.status(invalid, unreachable_2, t414 | folded_left_front_elbow_down_alike)
+    t416 = nowhere | folded_rear_elbow_up_alike | short
+    t417 = t416 | folded_right_rear_elbow_up_alike | short_right
+    t418 = _runtime.status(invalid, unreachable_3, t417 | folded_left_rear_elbow_up_alike)
+    t419 = t416 | folded_right_rear_elbow_down_alike | short_right
+    t420 = _runtime.status(invalid, unreachable_4, t419 | folded_left_rear_elbow_down_alike)
     return (
-        t93,
-        t102,
-        t106,
-        _runtime.wrap_cut(t112) + t92,
-        _runtime.wrap(t103 + t113) + t92,
-        t115,
-        t93,
-        t102,
-        t106,
-        _runtime.wrap_cut(t116) + t92,
-        _runtime.wrap(t103 - t113) + t92,
-        t115,
-        t179,
-        t189,
-        t193,
-        _runtime.wrap_cut(t201) + t178,
-        _runtime.wrap(t103 + t203) + t178,
-        t204,
-        t179,
-        t189,
-        t193,
-        _runtime.wrap_cut(t205) + t178,
-        _runtime.wrap(t103 - t203) + t178,
-        t204,
-        t293,
-        t303,
-        t307,
-        _runtime.wrap_cut(t315) + t292,
-        _runtime.wrap(t103 + t317) + t292,
-        t318,
-        t293,
-        t303,
-        t307,
-        _runtime.wrap_cut(t319) + t292,
-        _runtime.wrap(t103 - t317) + t292,
-        t318,
-        t382,
-        t392,
-        t396,
-        _runtime.wrap_cut(t404) + t381,
-        _runtime.wrap(t103 + t406) + t381,
-        t407,
-        t382,
-        t392,
-        t396,
-        _runtime.wrap_cut(t408) + t381,
-        _runtime.wrap(t103 - t406) + t381,
-        t407,
-        t411,
-        t411,
+        t95,
+        t104,
+        t108,
+        _runtime.wrap_cut(t114) + t94,
+        _runtime.wrap(t105 + t115) + t94,
+        t117,
+        t95,
+        t104,
+        t108,
+        _runtime.wrap_cut(t118) + t94,
+        _runtime.wrap(t105 - t115) + t94,
+        t117,
+        t181,
+        t191,
+        t195,
+        _runtime.wrap_cut(t203) + t180,
+        _runtime.wrap(t105 + t205) + t180,
+        t206,
+        t181,
+        t191,
+        t195,
+        _runtime.wrap_cut(t207) + t180,
+        _runtime.wrap(t105 - t205) + t180,
+        t206,
+        t295,
+        t305,
+        t309,
+        _runtime.wrap_cut(t317) + t294,
+        _runtime.wrap(t105 + t319) + t294,
+        t320,
+        t295,
+        t305,
+        t309,
+        _runtime.wrap_cut(t321) + t294,
+        _runtime.wrap(t105 - t319) + t294,
+        t320,
+        t384,
+        t394,
+        t398,
+        _runtime.wrap_cut(t406) + t383,
+        _runtime.wrap(t105 + t408) + t383,
+        t409,
+        t384,
+        t394,
+        t398,
+        _runtime.wrap_cut(t410) + t383,
+        _runtime.wrap(t105 - t408) + t383,
+        t409,
         t413,
         t413,
-        t416,
-        t416,
+        t415,
+        t415,
         t418,
         t418,
+        t420,
+        t420,
     )
 
 
@@ -1886,7 +1888,8 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
     UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
         axis than L_theta, or an arm is out of reach.
     SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
-        upper arm is returned beside that of the virtual arm), or a link without length.
+        upper arm is returned beside that of the virtual arm).
+    INVALID: d, L1, or both L2 and a3 are zero.
     A straight right arm is returned bent by a few units in the last place, so that fk can read
         the side.
     """

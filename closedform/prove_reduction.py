@@ -12,7 +12,7 @@ import sympy as sp
 
 from closedform.algebra import normal
 from closedform.derivation import Derivation, Inverse, Reduction
-from closedform.functions import Bound, Function, Let, Program, substitute
+from closedform.functions import Bound, Function, Let, Program, Vanishes, substitute
 from closedform.prove_lemma import prove_lemma
 from closedform.require import ProofError, require
 
@@ -58,7 +58,10 @@ def prove_reduction(
 
 
 def _meanings(function: Function, reduction: Reduction) -> dict[sp.Basic, sp.Basic]:
-    """What the names of a program stand for, in inputs, parameters and unknowns of the lemmas."""
+    """What the names of a program stand for, in inputs, parameters and unknowns of the lemmas.
+
+    As everywhere in a proof of the generic case, flags are false.
+    """
     known: dict[sp.Basic, sp.Basic] = {}
     inside: set[int] = set()
     for lemma in reduction.lemmas:
@@ -66,7 +69,9 @@ def _meanings(function: Function, reduction: Reduction) -> dict[sp.Basic, sp.Bas
             known |= {cosine: sp.cos(unknown), sine: sp.sin(unknown)}
         inside |= {id(s) for s in lemma.body}
     for statement in function.body:
-        if isinstance(statement, (Let, Bound)) and id(statement) not in inside:
+        if isinstance(statement, Vanishes):
+            known[statement.symbol] = sp.false
+        elif isinstance(statement, (Let, Bound)) and id(statement) not in inside:
             known[statement.symbol] = substitute(statement.value, known)
     return known
 

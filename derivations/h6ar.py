@@ -50,7 +50,7 @@ from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform.derivation import Derivation, Inverse, Reduction
 from closedform.frames import homogeneous, rotation
-from closedform.functions import Program, branches, real
+from closedform.functions import Program, branches, choose, real
 from closedform.lemmas import two_sines
 
 d = Derivation(
@@ -359,15 +359,15 @@ upper, fore = middle.posture.upper, middle.posture.fore
 bend = (upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
 bend = Pair(*(p.let(f"{f}_elbow", e) for f, e in zip("cs", bend, strict=True)))
 gap = p.let("ahead", m.d * sin(psi) / cos(psi)), p.let("higher", m.d * sin(phi) / cos(phi))
-second = p.let("fore_arm", sqrt(m.L2**2 + m.a3**2), nonnegative=True)
+size = p.let("size", m.L1 + sqrt(m.L2**2 + m.a3**2))
 # seen from the upper arm, whose sine multiplies (0, L1)
 seen = (
     p.let("p_1", upper.c * gap[0] + upper.s * gap[1]),
     p.let("p_2", upper.c * gap[1] - upper.s * gap[0]),
 )
 v = p.let("v_1", m.L2 * bend.c - m.a3 * bend.s), p.let("v_2", m.L2 * bend.s + m.a3 * bend.c)
-free = free_turn(p, m, bend, second)
-turns, upper_turns = [], []
+free = free_turn(p, m, bend, size)
+turns, leans = [], []
 for sine in ("alpha", "beta"):
     # by Cramer's rule sin(alpha) = (p x v) / (u x v) and sin(beta) = (u x p) / (u x v)
     aligned = v[0] * seen[0] + v[1] * seen[1]
@@ -380,25 +380,23 @@ for sine in ("alpha", "beta"):
     to_whole, to_part = (sp.Piecewise((1, e >= 0), (-1, True)) for e in (whole, part))
     room = to_whole * whole - to_part * part
     slope = -to_whole * free.drawn * v[1] - to_part * rate
-    turn = p.let(f"turn_{sine}", free.easing(sine, room, slope, "a sine is at most 1"))
-    leant = p.let(f"lean_{sine}", turn + free.swing(turn) / m.L1)
-    more = p.let(f"elbow_{sine}", turn - leant)
-    v = (
-        p.let(f"v_1_{sine}", v[0] - more * v[1]),
-        p.let(f"v_2_{sine}", v[1] + more * v[0]),
-    )
-    seen = (
-        p.let(f"p_1_{sine}", seen[0] + leant * seen[1]),
-        p.let(f"p_2_{sine}", seen[1] - leant * seen[0]),
+    spent, turn = free.easing(sine, room, slope, "a sine is at most 1")
+    leant = p.let(f"lean_{sine}", choose(spent, turn + free.swing(turn) / m.L1, 0))
+    v, seen = (
+        tuple(
+            p.let(f"{name}_{k + 1}_{sine}", choose(spent, e[k] + by * e[1 - k], e[k]))
+            for k, by in ((0, -more), (1, more))
+        )
+        for name, e, more in (("v", v, turn - leant), ("p", seen, -leant))
     )
     turns.append(turn)
-    upper_turns.append(leant)
+    leans.append(leant)
 scale = m.d + sp.Abs(gap[0]) + sp.Abs(gap[1])
 half = two_sines(p, (alpha, beta), (sp.S.Zero, m.L1), v, seen, scale, free=(theta3R, theta3L))
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
 turned_halves = {
-    theta2A: theta2A + atan2(sum(upper_turns), sp.S.One),
+    theta2A: theta2A + atan2(sum(leans), sp.S.One),
     theta23A: theta23A + atan2(sum(turns), sp.S.One),
 }
 joints = {s: s for s in (theta1, theta)} | {

@@ -388,14 +388,20 @@ shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pai
 gap = p.let("gap", shift.dot(shift))
 cross = p.let("twice", 2 * point.dot(shift))
 
-free = free_turn(p, m, bend, second)
+# The direction of a virtual arm that is nearly folded, or ends close to the shoulder, is more than
+# joints in double precision tell: they then hold yaw and roll to less than twelve digits.
+size = p.let("size", m.L1 + second)
+square = p.let("square", M + (m.L1 - second) ** 2)
+p.vanishes("pole", M * square, 10**4 * gap * size**2, "the virtual arm is folded", (psi, phi))
+p.vanishes("at_shoulder", square, 10**4 * size**2, "the virtual arm has no length", (psi, phi))
+free = free_turn(p, m, bend, size)
 ends, slopes, turns = {}, {}, []
 for name, sign in (("right", 1), ("left", -1)):
     r, h = (p.let(f"{c}_{name}_0", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
     ends[name] = r, h
     slopes[name] = 2 * free.drawn * (h * upper.c - r * upper.s)
     room = N - sign * cross - gap
-    turns.append(free.easing(name, room, slopes[name], "nearer than full stretch"))
+    turns.append(free.easing(name, room, slopes[name], "nearer than full stretch")[1])
 turn = p.let("turn", sum(turns))
 swing = p.let("swing", free.swing(turn))
 arms = []

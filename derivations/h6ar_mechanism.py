@@ -15,7 +15,7 @@ from sympy import Rational, atan2, cos, pi, sin, sqrt
 
 from closedform.derivation import Derivation
 from closedform.frames import denavit_hartenberg, homogeneous, rotation
-from closedform.functions import Program, real
+from closedform.functions import Program, choose, real
 from closedform.lemmas import Lemma, linear_pair, sine_cosine
 from closedform.two_link import two_link_arm
 
@@ -320,7 +320,7 @@ class FreeTurn:
     Where the virtual arm with the wrist is straight, the rounding of the target decides how far it
     is bent, and real arms that are at their own limit may seem beyond it.  Among the postures that
     reach the target alike, which differ by a turn of the virtual fore-arm, one that exists is
-    taken.  For exact numbers the turn is zero: a bound that is kept is what it bounds.
+    taken.  For exact numbers the turn is zero.
     """
 
     program: Program
@@ -335,21 +335,29 @@ class FreeTurn:
         """How far the elbow goes aside, beyond what it does as the arm turns as a whole."""
         return -self.drawn * turn
 
-    def easing(self, name: str, room: sp.Expr, slope: sp.Expr, meaning: str) -> sp.Expr:
-        """The turn that makes up for what an area ``room`` lacks, and grows by ``slope`` of it."""
+    def easing(
+        self, name: str, room: sp.Expr, slope: sp.Expr, meaning: str
+    ) -> tuple[sp.Symbol, sp.Expr]:
+        """The turn that makes up for what an area ``room`` lacks, and grows by ``slope`` of it.
+
+        Returns a flag too, without which there is none.
+        """
         # a turn that is free where tilt is zero: its square is below rounding
         nothing = Rational(1, 10**5) * self.size
         room = self.program.let(f"room_{name}", room)
+        spent = self.program.vanishes(f"spent_{name}", room, self.scale, f"no room: {meaning}")
         slope = self.program.let(f"slope_{name}", slope)
         loose = sp.Abs(slope) * self.size / (sp.Abs(self.tilt) + nothing)
-        kept = self.program.bound(f"kept_{name}", room, self.scale + loose, meaning)
-        return (kept - room) * slope / (slope**2 + (nothing * self.size) ** 2)
+        scale = self.program.let(f"play_{name}", self.scale + choose(spent, loose, 0))
+        self.program.bound(f"kept_{name}", room, scale, meaning)
+        lack = sp.Abs(room) - room
+        turn = lack * slope / (slope**2 + (nothing * self.size) ** 2) / 2
+        return spent, self.program.let(f"turn_{name}", choose(spent, turn, 0))
 
 
-def free_turn(program: Program, m: Dimensions, bend: Pair, second: sp.Symbol) -> FreeTurn:
-    """The free turn of a virtual arm from the angle of its elbow and the length of a fore-arm."""
+def free_turn(program: Program, m: Dimensions, bend: Pair, size: sp.Symbol) -> FreeTurn:
+    """The free turn of a virtual arm from the angle of its elbow and its length when stretched."""
     along, across = real("L_2W"), real("a_3W")
-    size = program.let("size", m.L1 + second)
     tilt = program.let("tilt", along * bend.c - across * bend.s)
     drawn = program.let("drawn", m.L1 + along * bend.s + across * bend.c)
     return FreeTurn(program, size, size * m.d, tilt, drawn)

@@ -217,12 +217,14 @@ def reachable(
 
 
 def hardly_ever(condition: Node) -> bool:
-    """Whether a condition is made of the flags of free joints alone: true at singularities."""
+    """Whether a condition is made of flags alone: something is as good as zero."""
     if condition.op in ("or", "and"):
         return all(map(hardly_ever, condition.args))
-    return condition.op == "le" and any(
-        n.op == "tolerance" and n.payload == "vanishing" for n in reachable(condition.args[1:])
-    )
+    if condition.op != "le":
+        return False
+    products = ("product", "mul", "neg")
+    factors = reachable(condition.args[1:], operands=lambda n: n.args if n.op in products else ())
+    return any(n.op == "tolerance" and n.payload == "vanishing" for n in factors)
 
 
 def rebuild(

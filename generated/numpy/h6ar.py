@@ -10,7 +10,7 @@
 #   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 344 compare and select, 364 add, 26 atan2, 79 divide, 381 multiply, 3 sincos, 33 sqrt
+#   ik: 420 compare and select, 364 add, 26 atan2, 87 divide, 391 multiply, 3 sincos, 33 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -848,9 +848,10 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t39 = t25 & (t27 <= t35) & (t27 <= t37) & (t27 <= t38)
     size = L1 + np.sqrt(L2 * L2 + a3 * a3)
     t40 = d * size
+    ahead = d * s_psi / c_psi
     t41 = _runtime.VANISHING * t26
     folded = reach <= t41
-    s_sight = _runtime.select(folded, 0.0, t28 / reach)
+    c_sight = _runtime.select(folded, 1.0, outward / reach)
     short = L1 * fore <= _runtime.VANISHING * (t26 * t26)
     t42 = folded | short
     A = np.maximum(t35, 0.0)
@@ -861,8 +862,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t44 = S * B
     at_base = t43 + t44
     c_base = _runtime.select(t42, 1.0, -((t43 - t44) / at_base))
-    t45 = s_sight * c_base
-    c_sight = _runtime.select(folded, 1.0, outward / reach)
+    t45 = c_sight * c_base
+    s_sight = _runtime.select(folded, 0.0, t28 / reach)
     rB = np.sqrt(B)
     rC = np.sqrt(C)
     t46 = rB * rC
@@ -871,11 +872,13 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t47 = rS * rA
     area_front_elbow_down = 2.0 * t46 * t47
     s_base_front_elbow_down = _runtime.select(t42, 0.0, area_front_elbow_down / at_base)
-    t48 = c_sight * s_base_front_elbow_down
-    stheta2A = t45 + t48
-    t49 = c_sight * c_base
-    t50 = s_sight * s_base_front_elbow_down
-    ctheta2A = t49 - t50
+    t48 = s_sight * s_base_front_elbow_down
+    ctheta2A = t45 - t48
+    higher = d * s_phi / c_phi
+    t49 = s_sight * c_base
+    t50 = c_sight * s_base_front_elbow_down
+    stheta2A = t49 + t50
+    p_1 = ahead * ctheta2A + higher * stheta2A
     bare = fore <= t41
     c_lag = _runtime.select(bare, 1.0, a_3W / fore)
     t51 = A * S
@@ -895,518 +898,544 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t57 = stheta2A * ctheta23A - ctheta2A * stheta23A
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
     t58 = L2 * t57 - a3 * c_elbow
-    drawn = L1 - L_2W * t57 + a_3W * c_elbow
+    t59 = ahead * stheta2A - higher * ctheta2A
     v_1 = L2 * c_elbow + a3 * t57
+    part_alpha = p_1 * t58 - t59 * v_1
+    t60 = _runtime.select(0.0 <= part_alpha, 1.0, -1.0)
     whole_alpha = L1 * v_1
-    t59 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
-    ahead = d * s_psi / c_psi
-    higher = d * s_phi / c_phi
-    p_1 = ahead * ctheta2A + higher * stheta2A
-    t60 = ahead * stheta2A - higher * ctheta2A
-    part_alpha = t58 * p_1 - v_1 * t60
-    t61 = _runtime.select(0.0 <= part_alpha, 1.0, -1.0)
-    slope_alpha = t58 * drawn * t59 + t61 * (v_1 * p_1 + t58 * t60)
-    t62 = size / 100000.0
-    t63 = t62 + np.abs(L_2W * c_elbow + a_3W * t57)
-    t64 = _runtime.FEASIBILITY * (t40 + size * np.abs(slope_alpha) / t63)
-    t65 = part_alpha * t61 - whole_alpha * t59
-    t66 = size * size * size * size / 10000000000.0
-    turn_alpha = slope_alpha * (t65 + np.maximum(-t65, 0.0)) / (t66 + slope_alpha * slope_alpha)
-    lean_alpha = turn_alpha - drawn * turn_alpha / L1
-    elbow_alpha = turn_alpha - lean_alpha
-    t67 = t58 - v_1 * elbow_alpha
-    v_1_alpha = v_1 + t58 * elbow_alpha
-    whole_beta = L1 * v_1_alpha
-    t68 = _runtime.select(0.0 <= whole_beta, 1.0, -1.0)
-    t69 = t60 + p_1 * lean_alpha
-    p_1_alpha = p_1 - t60 * lean_alpha
+    t61 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
+    t62 = part_alpha * t60 - whole_alpha * t61
+    t63 = _runtime.VANISHING * t40
+    spent_alpha = -t62 <= t63
+    drawn = L1 - L_2W * t57 + a_3W * c_elbow
+    slope_alpha = t58 * t61 * drawn + t60 * (p_1 * v_1 + t58 * t59)
+    t64 = size / 100000.0
+    t65 = t64 + np.abs(L_2W * c_elbow + a_3W * t57)
+    t66 = _runtime.select(spent_alpha, size * np.abs(slope_alpha) / t65, 0.0)
+    t67 = -(_runtime.FEASIBILITY * (t40 + t66)) <= -t62
+    t68 = size * size * size * size / 10000000000.0
+    t69 = slope_alpha * (t62 + np.abs(t62)) / (2.0 * (t68 + slope_alpha * slope_alpha))
+    turn_alpha = _runtime.select(spent_alpha, t69, 0.0)
+    lean_alpha = _runtime.select(spent_alpha, turn_alpha - drawn * turn_alpha / L1, 0.0)
+    p_1_alpha = _runtime.select(spent_alpha, p_1 - t59 * lean_alpha, p_1)
     part_beta = L1 * p_1_alpha
     t70 = _runtime.select(0.0 <= part_beta, 1.0, -1.0)
-    slope_beta = drawn * t67 * t68 + t69 * t70 * (L1 - drawn)
-    t71 = _runtime.FEASIBILITY * (t40 + size * np.abs(slope_beta) / t63)
-    t72 = part_beta * t70 - whole_beta * t68
-    t73 = np.abs(ahead)
-    t74 = np.abs(higher)
-    t75 = d + t73 + t74
-    t76 = -(_runtime.FEASIBILITY * t75)
-    turn_beta = slope_beta * (t72 + np.maximum(-t72, 0.0)) / (t66 + slope_beta * slope_beta)
-    lean_beta = turn_beta - drawn * turn_beta / L1
-    elbow_beta = turn_beta - lean_beta
-    v_1_beta = v_1_alpha + t67 * elbow_beta
+    t71 = turn_alpha - lean_alpha
+    v_1_alpha = _runtime.select(spent_alpha, v_1 + t58 * t71, v_1)
+    whole_beta = L1 * v_1_alpha
+    t72 = _runtime.select(0.0 <= whole_beta, 1.0, -1.0)
+    t73 = part_beta * t70 - whole_beta * t72
+    spent_beta = -t73 <= t63
+    t74 = _runtime.select(spent_alpha, t58 - v_1 * t71, t58)
+    t75 = _runtime.select(spent_alpha, t59 + p_1 * lean_alpha, t59)
+    slope_beta = drawn * t72 * t74 + t70 * t75 * (L1 - drawn)
+    t76 = _runtime.select(spent_beta, size * np.abs(slope_beta) / t65, 0.0)
+    t77 = -(_runtime.FEASIBILITY * (t40 + t76)) <= -t73
+    t78 = np.abs(ahead)
+    t79 = np.abs(higher)
+    t80 = d + t78 + t79
+    t81 = -(_runtime.FEASIBILITY * t80)
+    t82 = slope_beta * (t73 + np.abs(t73)) / (2.0 * (t68 + slope_beta * slope_beta))
+    turn_beta = _runtime.select(spent_beta, t82, 0.0)
+    lean_beta = _runtime.select(spent_beta, turn_beta - drawn * turn_beta / L1, 0.0)
+    t83 = turn_beta - lean_beta
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha + t74 * t83, v_1_alpha)
     sigma_uv = _runtime.select(0.0 <= -v_1_beta, 1.0, -1.0)
-    t77 = v_1_beta * sigma_uv
-    t78 = sigma_uv * (p_1_alpha - t69 * lean_beta)
-    t79 = t39 & (-t64 <= -t65) & (-t71 <= -t72) & (t76 <= -(t77 + np.abs(t78)))
-    t80 = t67 - v_1_alpha * elbow_beta
-    t81 = np.abs(t80)
-    t82 = L1 / 1000000000.0
-    t83 = _runtime.FEASIBILITY * (t75 * (1.0 + t81 / (t82 - t77)))
-    t84 = t69 + p_1_alpha * lean_beta
-    parallel = -t77 <= _runtime.VANISHING * (64.0 * t81)
-    t85 = _runtime.select(parallel, _runtime.select(0.0 <= -t80, -t84, t84), -t78)
-    whole_y = _runtime.select(parallel, L1 + t81, -t77)
-    sine_y = t85 / whole_y
-    t86 = t84 - t80 * sine_y
-    left_along = L1 - np.abs(t86)
-    t87 = t80 * (left_along - np.maximum(left_along, 0.0))
-    t88 = t87 / (t77 * t77 + t80 * t80)
-    eased = sine_y + _runtime.select(0.0 <= -t86, t88, -t88)
-    t89 = whole_y * eased
-    t90 = whole_y - t89
-    t91 = whole_y + t89
-    t92 = t79 & (-t83 <= left_along) & (t76 <= t90) & (t76 <= t91)
-    t93 = _runtime.VANISHING * (d * 16.0 + t73 * 16.0 + t74 * 16.0)
-    t94 = _runtime.VANISHING * t93
-    below_beta = np.maximum(t90, t94)
-    above_beta = np.maximum(t91, t94)
+    t84 = v_1_beta * sigma_uv
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t75 * lean_beta, p_1_alpha)
+    t85 = sigma_uv * p_1_beta
+    t86 = t39 & t67 & t77 & (t81 <= -(t84 + np.abs(t85)))
+    t87 = _runtime.select(spent_beta, t75 + p_1_alpha * lean_beta, t75)
+    t88 = _runtime.select(spent_beta, t74 - v_1_alpha * t83, t74)
+    t89 = np.abs(t88)
+    parallel = -t84 <= _runtime.VANISHING * (64.0 * t89)
+    part_y = _runtime.select(parallel, _runtime.select(0.0 <= -t88, -t87, t87), -t85)
+    whole_y = _runtime.select(parallel, L1 + t89, -t84)
+    t90 = t87 - t88 * part_y / whole_y
+    left_along = L1 - np.abs(t90)
+    t91 = _runtime.VANISHING * t80
+    spent_along = left_along <= t91
+    t92 = L1 / 1000000000.0
+    t93 = _runtime.select(spent_along, t89 / (t92 - t84), 0.0)
+    t94 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t93)))
+    t95 = t88 * (left_along / 2.0 - np.abs(left_along) / 2.0)
+    t96 = t95 / (t84 * t84 + t88 * t88)
+    t97 = whole_y * _runtime.select(0.0 <= -t90, t96, -t96)
+    eased = _runtime.select(spent_along, part_y + t97, part_y)
+    t98 = whole_y - eased
+    t99 = whole_y + eased
+    t100 = t86 & (t94 <= left_along) & (t81 <= t98) & (t81 <= t99)
+    t101 = _runtime.VANISHING * (d * 16.0 + t78 * 16.0 + t79 * 16.0)
+    t102 = _runtime.VANISHING * t101
+    below_beta = np.maximum(t98, t102)
+    above_beta = np.maximum(t99, t102)
     total_beta = below_beta + above_beta
-    t95 = (below_beta - above_beta) / total_beta
-    t96 = t84 + t80 * t95
-    t97 = L1 + t96
-    t98 = L1 - t96
-    unreachable = np.logical_not(t92 & (t76 <= t97) & (t76 <= t98))
-    t99 = _runtime.poison(invalid | unreachable)
-    t100 = np.arctan2(lean_alpha + lean_beta, 1.0)
-    below_alpha = np.maximum(t97, t94)
-    above_alpha = np.maximum(t98, t94)
+    t103 = (below_beta - above_beta) / total_beta
+    t104 = t87 + t88 * t103
+    t105 = L1 + t104
+    t106 = L1 - t104
+    unreachable = np.logical_not(t100 & (t81 <= t105) & (t81 <= t106))
+    t107 = _runtime.poison(invalid | unreachable)
+    t108 = np.arctan2(lean_alpha + lean_beta, 1.0)
+    below_alpha = np.maximum(t105, t102)
+    above_alpha = np.maximum(t106, t102)
     total_alpha = below_alpha + above_alpha
-    t101 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t102 = np.arctan2((below_alpha - above_alpha) / total_alpha, t101 / total_alpha)
-    t103 = t100 - t102
-    t104 = _runtime.select(folded, 0.0, np.arctan2(t28, outward))
-    t105 = _runtime.select(t42, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
-    t106 = t104 + t105
-    t107 = _runtime.wrap(_runtime.wrap(t103 + t106)) + t99
-    t108 = np.arctan2(s_lag, c_lag)
-    t109 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t47, t46))
-    t110 = t109 - np.arctan2(turn_alpha + turn_beta, 1.0)
+    t109 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t110 = np.arctan2((below_alpha - above_alpha) / total_alpha, t109 / total_alpha)
     t111 = t108 - t110
-    t112 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    t113 = np.arctan2(t95, t112 / total_beta)
-    t114 = _runtime.wrap(_runtime.wrap(-(t103 - t111 + t113)))
-    t115 = t100 + t102
-    t116 = _runtime.wrap(_runtime.wrap(t106 + t115)) + t99
-    t117 = _runtime.wrap(_runtime.wrap(t111 + t113 - t115))
-    t118 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    stheta2A_front_elbow_down = t45 - t48
-    ctheta2A_front_elbow_down = t49 + t50
-    c_relative_front_elbow_down = t53 - t54
-    t119 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
-    s_relative_front_elbow_down = t55 + t56
-    t120 = stheta2A_front_elbow_down * s_relative_front_elbow_down
-    ctheta23A_front_elbow_down = t119 - t120
-    t121 = stheta2A_front_elbow_down * ctheta23A_front_elbow_down
-    t122 = stheta2A_front_elbow_down * c_relative_front_elbow_down
-    t123 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
-    stheta23A_front_elbow_down = t122 + t123
-    t124 = ctheta2A_front_elbow_down * stheta23A_front_elbow_down
-    t125 = t121 - t124
-    t126 = ctheta2A_front_elbow_down * ctheta23A_front_elbow_down
-    t127 = stheta2A_front_elbow_down * stheta23A_front_elbow_down
-    c_elbow_front_elbow_down = t126 + t127
-    t128 = L2 * t125 - a3 * c_elbow_front_elbow_down
-    drawn_front_elbow_down = L1 - L_2W * t125 + a_3W * c_elbow_front_elbow_down
-    v_1_front_elbow_down = L2 * c_elbow_front_elbow_down + a3 * t125
-    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t129 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
+    t112 = _runtime.select(folded, 0.0, np.arctan2(t28, outward))
+    t113 = _runtime.select(t42, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
+    t114 = t112 + t113
+    t115 = _runtime.wrap(_runtime.wrap(t111 + t114)) + t107
+    t116 = np.arctan2(s_lag, c_lag)
+    t117 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t47, t46))
+    t118 = t117 - np.arctan2(turn_alpha + turn_beta, 1.0)
+    t119 = t116 - t118
+    t120 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t121 = np.arctan2(t103, t120 / total_beta)
+    t122 = _runtime.wrap(_runtime.wrap(-(t111 - t119 + t121)))
+    t123 = t108 + t110
+    t124 = _runtime.wrap(_runtime.wrap(t114 + t123)) + t107
+    t125 = _runtime.wrap(_runtime.wrap(t119 + t121 - t123))
+    t126 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    ctheta2A_front_elbow_down = t45 + t48
+    stheta2A_front_elbow_down = t49 - t50
     p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + higher * stheta2A_front_elbow_down
-    t130 = ahead * stheta2A_front_elbow_down - higher * ctheta2A_front_elbow_down
-    part_alpha_front_elbow_down = t128 * p_1_front_elbow_down - v_1_front_elbow_down * t130
-    t131 = _runtime.select(0.0 <= part_alpha_front_elbow_down, 1.0, -1.0)
-    t132 = v_1_front_elbow_down * p_1_front_elbow_down + t128 * t130
-    slope_alpha_front_elbow_down = t128 * drawn_front_elbow_down * t129 + t131 * t132
-    tilt_front_elbow_down = L_2W * c_elbow_front_elbow_down + a_3W * t125
-    t133 = t62 + np.abs(tilt_front_elbow_down)
-    t134 = size * np.abs(slope_alpha_front_elbow_down) / t133
-    t135 = part_alpha_front_elbow_down * t131 - whole_alpha_front_elbow_down * t129
-    t136 = -(_runtime.FEASIBILITY * (t40 + t134)) <= -t135
-    t137 = slope_alpha_front_elbow_down * (t135 + np.maximum(-t135, 0.0))
-    t138 = slope_alpha_front_elbow_down * slope_alpha_front_elbow_down
-    turn_alpha_front_elbow_down = t137 / (t66 + t138)
-    t139 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = turn_alpha_front_elbow_down - t139 / L1
-    elbow_alpha_front_elbow_down = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
-    t140 = v_1_front_elbow_down * elbow_alpha_front_elbow_down
-    t141 = t128 - t140
-    v_1_alpha_front_elbow_down = v_1_front_elbow_down + t128 * elbow_alpha_front_elbow_down
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t142 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
-    t143 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    t144 = t130 + t143
-    p_1_alpha_front_elbow_down = p_1_front_elbow_down - t130 * lean_alpha_front_elbow_down
+    c_relative_front_elbow_down = t53 - t54
+    t127 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
+    s_relative_front_elbow_down = t55 + t56
+    t128 = stheta2A_front_elbow_down * s_relative_front_elbow_down
+    ctheta23A_front_elbow_down = t127 - t128
+    t129 = stheta2A_front_elbow_down * ctheta23A_front_elbow_down
+    t130 = stheta2A_front_elbow_down * c_relative_front_elbow_down
+    t131 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
+    stheta23A_front_elbow_down = t130 + t131
+    t132 = ctheta2A_front_elbow_down * stheta23A_front_elbow_down
+    t133 = t129 - t132
+    t134 = ctheta2A_front_elbow_down * ctheta23A_front_elbow_down
+    t135 = stheta2A_front_elbow_down * stheta23A_front_elbow_down
+    c_elbow_front_elbow_down = t134 + t135
+    t136 = L2 * t133 - a3 * c_elbow_front_elbow_down
+    t137 = ahead * stheta2A_front_elbow_down - higher * ctheta2A_front_elbow_down
+    v_1_front_elbow_down = L2 * c_elbow_front_elbow_down + a3 * t133
+    part_alpha_front_elbow_down = p_1_front_elbow_down * t136 - t137 * v_1_front_elbow_down
+    t138 = _runtime.select(0.0 <= part_alpha_front_elbow_down, 1.0, -1.0)
+    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
+    t139 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
+    t140 = part_alpha_front_elbow_down * t138 - whole_alpha_front_elbow_down * t139
+    spent_alpha_front_elbow_down = -t140 <= t63
+    drawn_front_elbow_down = L1 - L_2W * t133 + a_3W * c_elbow_front_elbow_down
+    t141 = p_1_front_elbow_down * v_1_front_elbow_down + t136 * t137
+    slope_alpha_front_elbow_down = t136 * t139 * drawn_front_elbow_down + t138 * t141
+    tilt_front_elbow_down = L_2W * c_elbow_front_elbow_down + a_3W * t133
+    t142 = t64 + np.abs(tilt_front_elbow_down)
+    t143 = size * np.abs(slope_alpha_front_elbow_down) / t142
+    t144 = _runtime.select(spent_alpha_front_elbow_down, t143, 0.0)
+    t145 = -(_runtime.FEASIBILITY * (t40 + t144)) <= -t140
+    t146 = slope_alpha_front_elbow_down * (t140 + np.abs(t140))
+    t147 = slope_alpha_front_elbow_down * slope_alpha_front_elbow_down
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t146 / (2.0 * (t68 + t147)), 0.0)
+    t148 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t148 / L1, 0.0)
+    t149 = p_1_front_elbow_down - t137 * lean_alpha_front_elbow_down
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t149, p_1_front_elbow_down)
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t145 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
-    slope_beta_front_elbow_down = drawn_front_elbow_down * t141 * t142 + t144 * t145 * (L1 - drawn_front_elbow_down)
-    t146 = size * np.abs(slope_beta_front_elbow_down) / t133
-    t147 = part_beta_front_elbow_down * t145 - whole_beta_front_elbow_down * t142
-    t148 = -(_runtime.FEASIBILITY * (t40 + t146)) <= -t147
-    t149 = slope_beta_front_elbow_down * (t147 + np.maximum(-t147, 0.0))
-    t150 = slope_beta_front_elbow_down * slope_beta_front_elbow_down
-    turn_beta_front_elbow_down = t149 / (t66 + t150)
-    t151 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = turn_beta_front_elbow_down - t151 / L1
-    elbow_beta_front_elbow_down = turn_beta_front_elbow_down - lean_beta_front_elbow_down
-    v_1_beta_front_elbow_down = v_1_alpha_front_elbow_down + t141 * elbow_beta_front_elbow_down
+    t150 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
+    t151 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, v_1_front_elbow_down + t136 * t151, v_1_front_elbow_down)
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t152 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
+    t153 = part_beta_front_elbow_down * t150 - whole_beta_front_elbow_down * t152
+    spent_beta_front_elbow_down = -t153 <= t63
+    t154 = _runtime.select(spent_alpha_front_elbow_down, t136 - v_1_front_elbow_down * t151, t136)
+    t155 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t156 = _runtime.select(spent_alpha_front_elbow_down, t137 + t155, t137)
+    slope_beta_front_elbow_down = drawn_front_elbow_down * t152 * t154 + t150 * t156 * (L1 - drawn_front_elbow_down)
+    t157 = size * np.abs(slope_beta_front_elbow_down) / t142
+    t158 = _runtime.select(spent_beta_front_elbow_down, t157, 0.0)
+    t159 = -(_runtime.FEASIBILITY * (t40 + t158)) <= -t153
+    t160 = slope_beta_front_elbow_down * (t153 + np.abs(t153))
+    t161 = slope_beta_front_elbow_down * slope_beta_front_elbow_down
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t160 / (2.0 * (t68 + t161)), 0.0)
+    t162 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t162 / L1, 0.0)
+    t163 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, v_1_alpha_front_elbow_down + t154 * t163, v_1_alpha_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.select(0.0 <= -v_1_beta_front_elbow_down, 1.0, -1.0)
-    t152 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    p_1_beta_front_elbow_down = p_1_alpha_front_elbow_down - t144 * lean_beta_front_elbow_down
-    t153 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    t154 = t39 & t136 & t148 & (t76 <= -(t152 + np.abs(t153)))
-    t155 = v_1_alpha_front_elbow_down * elbow_beta_front_elbow_down
-    t156 = t141 - t155
-    t157 = np.abs(t156)
-    t158 = _runtime.FEASIBILITY * (t75 * (1.0 + t157 / (t82 - t152)))
-    t159 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    t160 = t144 + t159
-    parallel_front_elbow_down = -t152 <= _runtime.VANISHING * (64.0 * t157)
-    t161 = _runtime.select(parallel_front_elbow_down, _runtime.select(0.0 <= -t156, -t160, t160), -t153)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t157, -t152)
-    sine_y_front_elbow_down = t161 / whole_y_front_elbow_down
-    t162 = t160 - t156 * sine_y_front_elbow_down
-    left_along_front_elbow_down = L1 - np.abs(t162)
-    t163 = t154 & (-t158 <= left_along_front_elbow_down)
-    t164 = left_along_front_elbow_down - np.maximum(left_along_front_elbow_down, 0.0)
-    t165 = t156 * t164 / (t152 * t152 + t156 * t156)
-    eased_front_elbow_down = sine_y_front_elbow_down + _runtime.select(0.0 <= -t162, t165, -t165)
-    t166 = whole_y_front_elbow_down * eased_front_elbow_down
-    t167 = whole_y_front_elbow_down - t166
-    t168 = whole_y_front_elbow_down + t166
-    below_beta_front_elbow_down = np.maximum(t167, t94)
-    above_beta_front_elbow_down = np.maximum(t168, t94)
-    t169 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t164 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t165 = p_1_alpha_front_elbow_down - t156 * lean_beta_front_elbow_down
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t165, p_1_alpha_front_elbow_down)
+    t166 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t167 = t39 & t145 & t159 & (t81 <= -(t164 + np.abs(t166)))
+    t168 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t169 = _runtime.select(spent_beta_front_elbow_down, t156 + t168, t156)
+    t170 = _runtime.select(spent_beta_front_elbow_down, t154 - v_1_alpha_front_elbow_down * t163, t154)
+    t171 = np.abs(t170)
+    parallel_front_elbow_down = -t164 <= _runtime.VANISHING * (64.0 * t171)
+    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, _runtime.select(0.0 <= -t170, -t169, t169), -t166)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t171, -t164)
+    t172 = t170 * part_y_front_elbow_down / whole_y_front_elbow_down
+    t173 = t169 - t172
+    left_along_front_elbow_down = L1 - np.abs(t173)
+    spent_along_front_elbow_down = left_along_front_elbow_down <= t91
+    t174 = _runtime.select(spent_along_front_elbow_down, t171 / (t92 - t164), 0.0)
+    t175 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t174)))
+    t176 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
+    t177 = t170 * t176 / (t164 * t164 + t170 * t170)
+    t178 = whole_y_front_elbow_down * _runtime.select(0.0 <= -t173, t177, -t177)
+    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, part_y_front_elbow_down + t178, part_y_front_elbow_down)
+    t179 = whole_y_front_elbow_down - eased_front_elbow_down
+    t180 = t167 & (t175 <= left_along_front_elbow_down) & (t81 <= t179)
+    t181 = whole_y_front_elbow_down + eased_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t179, t102)
+    above_beta_front_elbow_down = np.maximum(t181, t102)
+    t182 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t170 = t169 / total_beta_front_elbow_down
-    t171 = t160 + t156 * t170
-    t172 = L1 + t171
-    t173 = t163 & (t76 <= t167) & (t76 <= t168) & (t76 <= t172)
-    t174 = L1 - t171
-    unreachable_2 = np.logical_not(t173 & (t76 <= t174))
-    t175 = _runtime.poison(invalid | unreachable_2)
-    t176 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    t177 = np.arctan2(t176, 1.0)
-    below_alpha_front_elbow_down = np.maximum(t172, t94)
-    above_alpha_front_elbow_down = np.maximum(t174, t94)
-    t178 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t183 = t182 / total_beta_front_elbow_down
+    t184 = t169 + t170 * t183
+    t185 = L1 + t184
+    t186 = L1 - t184
+    t187 = t180 & (t81 <= t181) & (t81 <= t185) & (t81 <= t186)
+    unreachable_2 = np.logical_not(t187)
+    t188 = _runtime.poison(invalid | unreachable_2)
+    t189 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t190 = np.arctan2(t189, 1.0)
+    below_alpha_front_elbow_down = np.maximum(t185, t102)
+    above_alpha_front_elbow_down = np.maximum(t186, t102)
+    t191 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t179 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
-    t180 = np.arctan2(t178 / total_alpha_front_elbow_down, t179 / total_alpha_front_elbow_down)
-    t181 = t177 - t180
-    t182 = t104 - t105
-    t183 = _runtime.wrap_up(_runtime.wrap(t181 + t182)) + t175
-    t184 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    t185 = np.arctan2(t184, 1.0) + (t108 + t109)
-    t186 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    t187 = np.arctan2(t170, t186 / total_beta_front_elbow_down)
-    t188 = _runtime.wrap(_runtime.wrap(-(t181 - t185 + t187)))
-    t189 = t177 + t180
-    t190 = _runtime.wrap_up(_runtime.wrap(t182 + t189)) + t175
-    t191 = _runtime.wrap(_runtime.wrap(t185 + t187 - t189))
-    t192 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
+    t192 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t193 = np.arctan2(t191 / total_alpha_front_elbow_down, t192 / total_alpha_front_elbow_down)
+    t194 = t190 - t193
+    t195 = t112 - t113
+    t196 = _runtime.wrap_up(_runtime.wrap(t194 + t195)) + t188
+    t197 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t198 = np.arctan2(t197, 1.0) + (t116 + t117)
+    t199 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t200 = np.arctan2(t183, t199 / total_beta_front_elbow_down)
+    t201 = _runtime.wrap(_runtime.wrap(-(t194 - t198 + t200)))
+    t202 = t190 + t193
+    t203 = _runtime.wrap_up(_runtime.wrap(t195 + t202)) + t188
+    t204 = _runtime.wrap(_runtime.wrap(t198 + t200 - t202))
+    t205 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
     c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t31 + t32) / h))
     s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t33 - t34) / h)
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
-    t193 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t29 + t193)
-    t194 = t26 - reach_rear_elbow_up
-    t195 = reach_rear_elbow_up + t36
-    t196 = reach_rear_elbow_up - t36
-    t197 = t25 & (t27 <= t194) & (t27 <= t195) & (t27 <= t196)
+    t206 = outward_rear_elbow_up * outward_rear_elbow_up
+    reach_rear_elbow_up = np.sqrt(t29 + t206)
+    t207 = t26 - reach_rear_elbow_up
+    t208 = reach_rear_elbow_up + t36
+    t209 = reach_rear_elbow_up - t36
+    t210 = t25 & (t27 <= t207) & (t27 <= t208) & (t27 <= t209)
     folded_rear_elbow_up = reach_rear_elbow_up <= t41
-    s_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 0.0, t28 / reach_rear_elbow_up)
-    t198 = folded_rear_elbow_up | short
-    A_rear_elbow_up = np.maximum(t194, 0.0)
-    C_rear_elbow_up = np.maximum(t196, 0.0)
-    t199 = A_rear_elbow_up * C_rear_elbow_up
-    S_rear_elbow_up = t26 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t195, 0.0)
-    t200 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t199 + t200
-    c_base_rear_elbow_up = _runtime.select(t198, 1.0, -((t199 - t200) / at_base_rear_elbow_up))
-    t201 = s_sight_rear_elbow_up * c_base_rear_elbow_up
     c_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
+    t211 = folded_rear_elbow_up | short
+    A_rear_elbow_up = np.maximum(t207, 0.0)
+    C_rear_elbow_up = np.maximum(t209, 0.0)
+    t212 = A_rear_elbow_up * C_rear_elbow_up
+    S_rear_elbow_up = t26 + reach_rear_elbow_up
+    B_rear_elbow_up = np.maximum(t208, 0.0)
+    t213 = S_rear_elbow_up * B_rear_elbow_up
+    at_base_rear_elbow_up = t212 + t213
+    c_base_rear_elbow_up = _runtime.select(t211, 1.0, -((t212 - t213) / at_base_rear_elbow_up))
+    t214 = c_sight_rear_elbow_up * c_base_rear_elbow_up
+    s_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 0.0, t28 / reach_rear_elbow_up)
     rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
     rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t202 = rB_rear_elbow_up * rC_rear_elbow_up
+    t215 = rB_rear_elbow_up * rC_rear_elbow_up
     rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
     rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t203 = rS_rear_elbow_up * rA_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t202 * t203
-    s_base_rear_elbow_up = _runtime.select(t198, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t204 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t201 - t204
-    t205 = c_sight_rear_elbow_up * c_base_rear_elbow_up
-    t206 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t205 + t206
-    t207 = A_rear_elbow_up * S_rear_elbow_up
-    t208 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t207 + t208
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t207 - t208) / at_elbow_rear_elbow_up))
-    t209 = c_lag * c_bend_rear_elbow_up
-    s_bend_rear_elbow_up = _runtime.select(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t210 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t209 - t210
-    t211 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t212 = s_lag * c_bend_rear_elbow_up
-    t213 = c_lag * s_bend_rear_elbow_up
-    s_relative_rear_elbow_up = t212 + t213
-    t214 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    ctheta23A_rear_elbow_up = t211 - t214
-    t215 = stheta2A_rear_elbow_up * ctheta23A_rear_elbow_up
-    t216 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t217 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    stheta23A_rear_elbow_up = t216 + t217
-    t218 = ctheta2A_rear_elbow_up * stheta23A_rear_elbow_up
-    t219 = t215 - t218
-    t220 = ctheta2A_rear_elbow_up * ctheta23A_rear_elbow_up
-    t221 = stheta2A_rear_elbow_up * stheta23A_rear_elbow_up
-    c_elbow_rear_elbow_up = t220 + t221
-    t222 = L2 * t219 - a3 * c_elbow_rear_elbow_up
-    drawn_rear_elbow_up = L1 - L_2W * t219 + a_3W * c_elbow_rear_elbow_up
-    v_1_rear_elbow_up = L2 * c_elbow_rear_elbow_up + a3 * t219
-    whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
-    t223 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
+    t216 = rS_rear_elbow_up * rA_rear_elbow_up
+    area_rear_elbow_up = 2.0 * t215 * t216
+    s_base_rear_elbow_up = _runtime.select(t211, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
+    t217 = s_sight_rear_elbow_up * s_base_rear_elbow_up
+    ctheta2A_rear_elbow_up = t214 + t217
+    t218 = s_sight_rear_elbow_up * c_base_rear_elbow_up
+    t219 = c_sight_rear_elbow_up * s_base_rear_elbow_up
+    stheta2A_rear_elbow_up = t218 - t219
     p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up + higher * stheta2A_rear_elbow_up
-    t224 = ahead * stheta2A_rear_elbow_up - higher * ctheta2A_rear_elbow_up
-    part_alpha_rear_elbow_up = t222 * p_1_rear_elbow_up - v_1_rear_elbow_up * t224
-    t225 = _runtime.select(0.0 <= part_alpha_rear_elbow_up, 1.0, -1.0)
-    t226 = v_1_rear_elbow_up * p_1_rear_elbow_up + t222 * t224
-    slope_alpha_rear_elbow_up = t222 * drawn_rear_elbow_up * t223 + t225 * t226
-    t227 = np.abs(L_2W * c_elbow_rear_elbow_up + a_3W * t219)
-    t228 = t62 + t227
-    t229 = size * np.abs(slope_alpha_rear_elbow_up) / t228
-    t230 = part_alpha_rear_elbow_up * t225 - whole_alpha_rear_elbow_up * t223
-    t231 = -(_runtime.FEASIBILITY * (t40 + t229)) <= -t230
-    t232 = slope_alpha_rear_elbow_up * (t230 + np.maximum(-t230, 0.0))
-    t233 = slope_alpha_rear_elbow_up * slope_alpha_rear_elbow_up
-    turn_alpha_rear_elbow_up = t232 / (t66 + t233)
-    t234 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = turn_alpha_rear_elbow_up - t234 / L1
-    elbow_alpha_rear_elbow_up = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
-    t235 = v_1_rear_elbow_up * elbow_alpha_rear_elbow_up
-    t236 = t222 - t235
-    v_1_alpha_rear_elbow_up = v_1_rear_elbow_up + t222 * elbow_alpha_rear_elbow_up
-    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t237 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
-    t238 = t224 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up
-    p_1_alpha_rear_elbow_up = p_1_rear_elbow_up - t224 * lean_alpha_rear_elbow_up
+    t220 = A_rear_elbow_up * S_rear_elbow_up
+    t221 = C_rear_elbow_up * B_rear_elbow_up
+    at_elbow_rear_elbow_up = t220 + t221
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t220 - t221) / at_elbow_rear_elbow_up))
+    t222 = c_lag * c_bend_rear_elbow_up
+    s_bend_rear_elbow_up = _runtime.select(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
+    t223 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t222 - t223
+    t224 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t225 = s_lag * c_bend_rear_elbow_up
+    t226 = c_lag * s_bend_rear_elbow_up
+    s_relative_rear_elbow_up = t225 + t226
+    t227 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    ctheta23A_rear_elbow_up = t224 - t227
+    t228 = stheta2A_rear_elbow_up * ctheta23A_rear_elbow_up
+    t229 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
+    t230 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
+    stheta23A_rear_elbow_up = t229 + t230
+    t231 = ctheta2A_rear_elbow_up * stheta23A_rear_elbow_up
+    t232 = t228 - t231
+    t233 = ctheta2A_rear_elbow_up * ctheta23A_rear_elbow_up
+    t234 = stheta2A_rear_elbow_up * stheta23A_rear_elbow_up
+    c_elbow_rear_elbow_up = t233 + t234
+    t235 = L2 * t232 - a3 * c_elbow_rear_elbow_up
+    t236 = ahead * stheta2A_rear_elbow_up - higher * ctheta2A_rear_elbow_up
+    v_1_rear_elbow_up = L2 * c_elbow_rear_elbow_up + a3 * t232
+    part_alpha_rear_elbow_up = p_1_rear_elbow_up * t235 - t236 * v_1_rear_elbow_up
+    t237 = _runtime.select(0.0 <= part_alpha_rear_elbow_up, 1.0, -1.0)
+    whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
+    t238 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
+    t239 = part_alpha_rear_elbow_up * t237 - whole_alpha_rear_elbow_up * t238
+    spent_alpha_rear_elbow_up = -t239 <= t63
+    drawn_rear_elbow_up = L1 - L_2W * t232 + a_3W * c_elbow_rear_elbow_up
+    t240 = p_1_rear_elbow_up * v_1_rear_elbow_up + t235 * t236
+    slope_alpha_rear_elbow_up = t235 * t238 * drawn_rear_elbow_up + t237 * t240
+    t241 = np.abs(L_2W * c_elbow_rear_elbow_up + a_3W * t232)
+    t242 = t64 + t241
+    t243 = size * np.abs(slope_alpha_rear_elbow_up) / t242
+    t244 = _runtime.select(spent_alpha_rear_elbow_up, t243, 0.0)
+    t245 = -(_runtime.FEASIBILITY * (t40 + t244)) <= -t239
+    t246 = slope_alpha_rear_elbow_up * (t239 + np.abs(t239))
+    t247 = slope_alpha_rear_elbow_up * slope_alpha_rear_elbow_up
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t246 / (2.0 * (t68 + t247)), 0.0)
+    t248 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t248 / L1, 0.0)
+    t249 = p_1_rear_elbow_up - t236 * lean_alpha_rear_elbow_up
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t249, p_1_rear_elbow_up)
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t239 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
-    slope_beta_rear_elbow_up = drawn_rear_elbow_up * t236 * t237 + t238 * t239 * (L1 - drawn_rear_elbow_up)
-    t240 = size * np.abs(slope_beta_rear_elbow_up) / t228
-    t241 = part_beta_rear_elbow_up * t239 - whole_beta_rear_elbow_up * t237
-    t242 = -(_runtime.FEASIBILITY * (t40 + t240)) <= -t241
-    t243 = slope_beta_rear_elbow_up * (t241 + np.maximum(-t241, 0.0))
-    t244 = slope_beta_rear_elbow_up * slope_beta_rear_elbow_up
-    turn_beta_rear_elbow_up = t243 / (t66 + t244)
-    t245 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
-    lean_beta_rear_elbow_up = turn_beta_rear_elbow_up - t245 / L1
-    elbow_beta_rear_elbow_up = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
-    v_1_beta_rear_elbow_up = v_1_alpha_rear_elbow_up + t236 * elbow_beta_rear_elbow_up
+    t250 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
+    t251 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up + t235 * t251, v_1_rear_elbow_up)
+    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
+    t252 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
+    t253 = part_beta_rear_elbow_up * t250 - whole_beta_rear_elbow_up * t252
+    spent_beta_rear_elbow_up = -t253 <= t63
+    t254 = _runtime.select(spent_alpha_rear_elbow_up, t235 - v_1_rear_elbow_up * t251, t235)
+    t255 = t236 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    t256 = _runtime.select(spent_alpha_rear_elbow_up, t255, t236)
+    slope_beta_rear_elbow_up = drawn_rear_elbow_up * t252 * t254 + t250 * t256 * (L1 - drawn_rear_elbow_up)
+    t257 = size * np.abs(slope_beta_rear_elbow_up) / t242
+    t258 = _runtime.select(spent_beta_rear_elbow_up, t257, 0.0)
+    t259 = -(_runtime.FEASIBILITY * (t40 + t258)) <= -t253
+    t260 = slope_beta_rear_elbow_up * (t253 + np.abs(t253))
+    t261 = slope_beta_rear_elbow_up * slope_beta_rear_elbow_up
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t260 / (2.0 * (t68 + t261)), 0.0)
+    t262 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t262 / L1, 0.0)
+    t263 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, v_1_alpha_rear_elbow_up + t254 * t263, v_1_alpha_rear_elbow_up)
     sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -v_1_beta_rear_elbow_up, 1.0, -1.0)
-    t246 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    p_1_beta_rear_elbow_up = p_1_alpha_rear_elbow_up - t238 * lean_beta_rear_elbow_up
-    t247 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t248 = t197 & t231 & t242 & (t76 <= -(t246 + np.abs(t247)))
-    t249 = v_1_alpha_rear_elbow_up * elbow_beta_rear_elbow_up
-    t250 = t236 - t249
-    t251 = np.abs(t250)
-    t252 = _runtime.FEASIBILITY * (t75 * (1.0 + t251 / (t82 - t246)))
-    t253 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    t254 = t238 + t253
-    parallel_rear_elbow_up = -t246 <= _runtime.VANISHING * (64.0 * t251)
-    t255 = _runtime.select(parallel_rear_elbow_up, _runtime.select(0.0 <= -t250, -t254, t254), -t247)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t251, -t246)
-    sine_y_rear_elbow_up = t255 / whole_y_rear_elbow_up
-    t256 = t254 - t250 * sine_y_rear_elbow_up
-    left_along_rear_elbow_up = L1 - np.abs(t256)
-    t257 = left_along_rear_elbow_up - np.maximum(left_along_rear_elbow_up, 0.0)
-    t258 = t250 * t257 / (t246 * t246 + t250 * t250)
-    eased_rear_elbow_up = sine_y_rear_elbow_up + _runtime.select(0.0 <= -t256, t258, -t258)
-    t259 = whole_y_rear_elbow_up * eased_rear_elbow_up
-    t260 = whole_y_rear_elbow_up - t259
-    t261 = t248 & (-t252 <= left_along_rear_elbow_up) & (t76 <= t260)
-    t262 = whole_y_rear_elbow_up + t259
-    below_beta_rear_elbow_up = np.maximum(t260, t94)
-    above_beta_rear_elbow_up = np.maximum(t262, t94)
-    t263 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t264 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t265 = p_1_alpha_rear_elbow_up - t256 * lean_beta_rear_elbow_up
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t265, p_1_alpha_rear_elbow_up)
+    t266 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t267 = t210 & t245 & t259 & (t81 <= -(t264 + np.abs(t266)))
+    t268 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t269 = _runtime.select(spent_beta_rear_elbow_up, t256 + t268, t256)
+    t270 = _runtime.select(spent_beta_rear_elbow_up, t254 - v_1_alpha_rear_elbow_up * t263, t254)
+    t271 = np.abs(t270)
+    parallel_rear_elbow_up = -t264 <= _runtime.VANISHING * (64.0 * t271)
+    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, _runtime.select(0.0 <= -t270, -t269, t269), -t266)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t271, -t264)
+    t272 = t270 * part_y_rear_elbow_up / whole_y_rear_elbow_up
+    t273 = t269 - t272
+    left_along_rear_elbow_up = L1 - np.abs(t273)
+    spent_along_rear_elbow_up = left_along_rear_elbow_up <= t91
+    t274 = _runtime.select(spent_along_rear_elbow_up, t271 / (t92 - t264), 0.0)
+    t275 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t274)))
+    t276 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
+    t277 = t270 * t276 / (t264 * t264 + t270 * t270)
+    t278 = whole_y_rear_elbow_up * _runtime.select(0.0 <= -t273, t277, -t277)
+    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, part_y_rear_elbow_up + t278, part_y_rear_elbow_up)
+    t279 = whole_y_rear_elbow_up - eased_rear_elbow_up
+    t280 = t267 & (t275 <= left_along_rear_elbow_up) & (t81 <= t279)
+    t281 = whole_y_rear_elbow_up + eased_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t279, t102)
+    above_beta_rear_elbow_up = np.maximum(t281, t102)
+    t282 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t264 = t263 / total_beta_rear_elbow_up
-    t265 = t254 + t250 * t264
-    t266 = L1 + t265
-    t267 = L1 - t265
-    t268 = t261 & (t76 <= t262) & (t76 <= t266) & (t76 <= t267)
-    unreachable_3 = np.logical_not(t268)
-    t269 = _runtime.poison(invalid | unreachable_3)
-    t270 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    t271 = np.arctan2(t270, 1.0)
-    t272 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t28, outward_rear_elbow_up))
-    t273 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
-    t274 = _runtime.select(t198, 0.0, 2.0 * t273)
-    t275 = t271 + (t272 - t274)
-    below_alpha_rear_elbow_up = np.maximum(t266, t94)
-    above_alpha_rear_elbow_up = np.maximum(t267, t94)
-    t276 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t283 = t282 / total_beta_rear_elbow_up
+    t284 = t269 + t270 * t283
+    t285 = L1 + t284
+    t286 = L1 - t284
+    t287 = t280 & (t81 <= t281) & (t81 <= t285) & (t81 <= t286)
+    unreachable_3 = np.logical_not(t287)
+    t288 = _runtime.poison(invalid | unreachable_3)
+    t289 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t290 = np.arctan2(t289, 1.0)
+    t291 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t28, outward_rear_elbow_up))
+    t292 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
+    t293 = _runtime.select(t211, 0.0, 2.0 * t292)
+    t294 = t290 + (t291 - t293)
+    below_alpha_rear_elbow_up = np.maximum(t285, t102)
+    above_alpha_rear_elbow_up = np.maximum(t286, t102)
+    t295 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t277 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    t278 = np.arctan2(t276 / total_alpha_rear_elbow_up, t277 / total_alpha_rear_elbow_up)
-    t279 = _runtime.wrap_up(_runtime.wrap(t275 - t278)) + t269
-    t280 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t203, t202))
-    t281 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
-    t282 = t108 - t271 + (t280 + np.arctan2(t281, 1.0))
-    t283 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    t284 = np.arctan2(t264, t283 / total_beta_rear_elbow_up)
-    t285 = t278 - t284
-    t286 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t282 + t285)))
-    t287 = _runtime.wrap_up(_runtime.wrap(t275 + t278)) + t269
-    t288 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t282 - t285)))
-    stheta2A_rear_elbow_down = t201 + t204
-    ctheta2A_rear_elbow_down = t205 - t206
-    c_relative_rear_elbow_down = t209 + t210
-    t289 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    s_relative_rear_elbow_down = t212 - t213
-    t290 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    ctheta23A_rear_elbow_down = t289 - t290
-    t291 = stheta2A_rear_elbow_down * ctheta23A_rear_elbow_down
-    t292 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    t293 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    stheta23A_rear_elbow_down = t292 + t293
-    t294 = ctheta2A_rear_elbow_down * stheta23A_rear_elbow_down
-    t295 = t291 - t294
-    t296 = ctheta2A_rear_elbow_down * ctheta23A_rear_elbow_down
-    t297 = stheta2A_rear_elbow_down * stheta23A_rear_elbow_down
-    c_elbow_rear_elbow_down = t296 + t297
-    t298 = L2 * t295 - a3 * c_elbow_rear_elbow_down
-    drawn_rear_elbow_down = L1 - L_2W * t295 + a_3W * c_elbow_rear_elbow_down
-    v_1_rear_elbow_down = L2 * c_elbow_rear_elbow_down + a3 * t295
-    whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
-    t299 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
+    t296 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t297 = np.arctan2(t295 / total_alpha_rear_elbow_up, t296 / total_alpha_rear_elbow_up)
+    t298 = _runtime.wrap_up(_runtime.wrap(t294 - t297)) + t288
+    t299 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t216, t215))
+    t300 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t301 = t116 - t290 + (t299 + np.arctan2(t300, 1.0))
+    t302 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t303 = np.arctan2(t283, t302 / total_beta_rear_elbow_up)
+    t304 = t297 - t303
+    t305 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t301 + t304)))
+    t306 = _runtime.wrap_up(_runtime.wrap(t294 + t297)) + t288
+    t307 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t301 - t304)))
+    ctheta2A_rear_elbow_down = t214 - t217
+    stheta2A_rear_elbow_down = t218 + t219
     p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
-    t300 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
-    part_alpha_rear_elbow_down = t298 * p_1_rear_elbow_down - v_1_rear_elbow_down * t300
-    t301 = _runtime.select(0.0 <= part_alpha_rear_elbow_down, 1.0, -1.0)
-    t302 = v_1_rear_elbow_down * p_1_rear_elbow_down + t298 * t300
-    slope_alpha_rear_elbow_down = t298 * drawn_rear_elbow_down * t299 + t301 * t302
-    t303 = np.abs(L_2W * c_elbow_rear_elbow_down + a_3W * t295)
-    t304 = t62 + t303
-    t305 = size * np.abs(slope_alpha_rear_elbow_down) / t304
-    t306 = part_alpha_rear_elbow_down * t301 - whole_alpha_rear_elbow_down * t299
-    t307 = -(_runtime.FEASIBILITY * (t40 + t305)) <= -t306
-    t308 = slope_alpha_rear_elbow_down * (t306 + np.maximum(-t306, 0.0))
-    t309 = slope_alpha_rear_elbow_down * slope_alpha_rear_elbow_down
-    turn_alpha_rear_elbow_down = t308 / (t66 + t309)
-    t310 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
-    lean_alpha_rear_elbow_down = turn_alpha_rear_elbow_down - t310 / L1
-    elbow_alpha_rear_elbow_down = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
-    t311 = v_1_rear_elbow_down * elbow_alpha_rear_elbow_down
-    t312 = t298 - t311
-    v_1_alpha_rear_elbow_down = v_1_rear_elbow_down + t298 * elbow_alpha_rear_elbow_down
-    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t313 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
-    t314 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    t315 = t300 + t314
-    p_1_alpha_rear_elbow_down = p_1_rear_elbow_down - t300 * lean_alpha_rear_elbow_down
+    c_relative_rear_elbow_down = t222 + t223
+    t308 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    s_relative_rear_elbow_down = t225 - t226
+    t309 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    ctheta23A_rear_elbow_down = t308 - t309
+    t310 = stheta2A_rear_elbow_down * ctheta23A_rear_elbow_down
+    t311 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
+    t312 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
+    stheta23A_rear_elbow_down = t311 + t312
+    t313 = ctheta2A_rear_elbow_down * stheta23A_rear_elbow_down
+    t314 = t310 - t313
+    t315 = ctheta2A_rear_elbow_down * ctheta23A_rear_elbow_down
+    t316 = stheta2A_rear_elbow_down * stheta23A_rear_elbow_down
+    c_elbow_rear_elbow_down = t315 + t316
+    t317 = L2 * t314 - a3 * c_elbow_rear_elbow_down
+    t318 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
+    v_1_rear_elbow_down = L2 * c_elbow_rear_elbow_down + a3 * t314
+    part_alpha_rear_elbow_down = p_1_rear_elbow_down * t317 - t318 * v_1_rear_elbow_down
+    t319 = _runtime.select(0.0 <= part_alpha_rear_elbow_down, 1.0, -1.0)
+    whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
+    t320 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
+    t321 = part_alpha_rear_elbow_down * t319 - whole_alpha_rear_elbow_down * t320
+    spent_alpha_rear_elbow_down = -t321 <= t63
+    drawn_rear_elbow_down = L1 - L_2W * t314 + a_3W * c_elbow_rear_elbow_down
+    t322 = p_1_rear_elbow_down * v_1_rear_elbow_down + t317 * t318
+    slope_alpha_rear_elbow_down = t317 * t320 * drawn_rear_elbow_down + t319 * t322
+    t323 = np.abs(L_2W * c_elbow_rear_elbow_down + a_3W * t314)
+    t324 = t64 + t323
+    t325 = size * np.abs(slope_alpha_rear_elbow_down) / t324
+    t326 = _runtime.select(spent_alpha_rear_elbow_down, t325, 0.0)
+    t327 = -(_runtime.FEASIBILITY * (t40 + t326)) <= -t321
+    t328 = slope_alpha_rear_elbow_down * (t321 + np.abs(t321))
+    t329 = slope_alpha_rear_elbow_down * slope_alpha_rear_elbow_down
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t328 / (2.0 * (t68 + t329)), 0.0)
+    t330 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t330 / L1, 0.0)
+    t331 = p_1_rear_elbow_down - t318 * lean_alpha_rear_elbow_down
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t331, p_1_rear_elbow_down)
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t316 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
-    slope_beta_rear_elbow_down = drawn_rear_elbow_down * t312 * t313 + t315 * t316 * (L1 - drawn_rear_elbow_down)
-    t317 = size * np.abs(slope_beta_rear_elbow_down) / t304
-    t318 = part_beta_rear_elbow_down * t316 - whole_beta_rear_elbow_down * t313
-    t319 = -(_runtime.FEASIBILITY * (t40 + t317)) <= -t318
-    t320 = slope_beta_rear_elbow_down * (t318 + np.maximum(-t318, 0.0))
-    t321 = slope_beta_rear_elbow_down * slope_beta_rear_elbow_down
-    turn_beta_rear_elbow_down = t320 / (t66 + t321)
-    t322 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
-    lean_beta_rear_elbow_down = turn_beta_rear_elbow_down - t322 / L1
-    elbow_beta_rear_elbow_down = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
-    v_1_beta_rear_elbow_down = v_1_alpha_rear_elbow_down + t312 * elbow_beta_rear_elbow_down
+    t332 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
+    t333 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1_rear_elbow_down + t317 * t333, v_1_rear_elbow_down)
+    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
+    t334 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
+    t335 = part_beta_rear_elbow_down * t332 - whole_beta_rear_elbow_down * t334
+    spent_beta_rear_elbow_down = -t335 <= t63
+    t336 = _runtime.select(spent_alpha_rear_elbow_down, t317 - v_1_rear_elbow_down * t333, t317)
+    t337 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t338 = _runtime.select(spent_alpha_rear_elbow_down, t318 + t337, t318)
+    slope_beta_rear_elbow_down = drawn_rear_elbow_down * t334 * t336 + t332 * t338 * (L1 - drawn_rear_elbow_down)
+    t339 = size * np.abs(slope_beta_rear_elbow_down) / t324
+    t340 = _runtime.select(spent_beta_rear_elbow_down, t339, 0.0)
+    t341 = -(_runtime.FEASIBILITY * (t40 + t340)) <= -t335
+    t342 = slope_beta_rear_elbow_down * (t335 + np.abs(t335))
+    t343 = slope_beta_rear_elbow_down * slope_beta_rear_elbow_down
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t342 / (2.0 * (t68 + t343)), 0.0)
+    t344 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t344 / L1, 0.0)
+    t345 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, v_1_alpha_rear_elbow_down + t336 * t345, v_1_alpha_rear_elbow_down)
     sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -v_1_beta_rear_elbow_down, 1.0, -1.0)
-    t323 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    p_1_beta_rear_elbow_down = p_1_alpha_rear_elbow_down - t315 * lean_beta_rear_elbow_down
-    t324 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t325 = t197 & t307 & t319 & (t76 <= -(t323 + np.abs(t324)))
-    t326 = v_1_alpha_rear_elbow_down * elbow_beta_rear_elbow_down
-    t327 = t312 - t326
-    t328 = np.abs(t327)
-    t329 = _runtime.FEASIBILITY * (t75 * (1.0 + t328 / (t82 - t323)))
-    t330 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    t331 = t315 + t330
-    parallel_rear_elbow_down = -t323 <= _runtime.VANISHING * (64.0 * t328)
-    t332 = _runtime.select(parallel_rear_elbow_down, _runtime.select(0.0 <= -t327, -t331, t331), -t324)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t328, -t323)
-    sine_y_rear_elbow_down = t332 / whole_y_rear_elbow_down
-    t333 = t331 - t327 * sine_y_rear_elbow_down
-    left_along_rear_elbow_down = L1 - np.abs(t333)
-    t334 = left_along_rear_elbow_down - np.maximum(left_along_rear_elbow_down, 0.0)
-    t335 = t327 * t334 / (t323 * t323 + t327 * t327)
-    eased_rear_elbow_down = sine_y_rear_elbow_down + _runtime.select(0.0 <= -t333, t335, -t335)
-    t336 = whole_y_rear_elbow_down * eased_rear_elbow_down
-    t337 = whole_y_rear_elbow_down - t336
-    t338 = t325 & (-t329 <= left_along_rear_elbow_down) & (t76 <= t337)
-    t339 = whole_y_rear_elbow_down + t336
-    below_beta_rear_elbow_down = np.maximum(t337, t94)
-    above_beta_rear_elbow_down = np.maximum(t339, t94)
-    t340 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t346 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t347 = p_1_alpha_rear_elbow_down - t338 * lean_beta_rear_elbow_down
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t347, p_1_alpha_rear_elbow_down)
+    t348 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t349 = t210 & t327 & t341 & (t81 <= -(t346 + np.abs(t348)))
+    t350 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t351 = _runtime.select(spent_beta_rear_elbow_down, t338 + t350, t338)
+    t352 = _runtime.select(spent_beta_rear_elbow_down, t336 - v_1_alpha_rear_elbow_down * t345, t336)
+    t353 = np.abs(t352)
+    parallel_rear_elbow_down = -t346 <= _runtime.VANISHING * (64.0 * t353)
+    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, _runtime.select(0.0 <= -t352, -t351, t351), -t348)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t353, -t346)
+    t354 = t352 * part_y_rear_elbow_down / whole_y_rear_elbow_down
+    t355 = t351 - t354
+    left_along_rear_elbow_down = L1 - np.abs(t355)
+    spent_along_rear_elbow_down = left_along_rear_elbow_down <= t91
+    t356 = _runtime.select(spent_along_rear_elbow_down, t353 / (t92 - t346), 0.0)
+    t357 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t356)))
+    t358 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
+    t359 = t352 * t358 / (t346 * t346 + t352 * t352)
+    t360 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t355, t359, -t359)
+    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t360, part_y_rear_elbow_down)
+    t361 = whole_y_rear_elbow_down - eased_rear_elbow_down
+    t362 = t349 & (t357 <= left_along_rear_elbow_down) & (t81 <= t361)
+    t363 = whole_y_rear_elbow_down + eased_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t361, t102)
+    above_beta_rear_elbow_down = np.maximum(t363, t102)
+    t364 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t341 = t340 / total_beta_rear_elbow_down
-    t342 = t331 + t327 * t341
-    t343 = L1 + t342
-    t344 = L1 - t342
-    t345 = t338 & (t76 <= t339) & (t76 <= t343) & (t76 <= t344)
-    unreachable_4 = np.logical_not(t345)
-    t346 = _runtime.poison(invalid | unreachable_4)
-    t347 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    t348 = np.arctan2(t347, 1.0)
-    below_alpha_rear_elbow_down = np.maximum(t343, t94)
-    above_alpha_rear_elbow_down = np.maximum(t344, t94)
-    t349 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t365 = t364 / total_beta_rear_elbow_down
+    t366 = t351 + t352 * t365
+    t367 = L1 + t366
+    t368 = L1 - t366
+    t369 = t362 & (t81 <= t363) & (t81 <= t367) & (t81 <= t368)
+    unreachable_4 = np.logical_not(t369)
+    t370 = _runtime.poison(invalid | unreachable_4)
+    t371 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t372 = np.arctan2(t371, 1.0)
+    below_alpha_rear_elbow_down = np.maximum(t367, t102)
+    above_alpha_rear_elbow_down = np.maximum(t368, t102)
+    t373 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t350 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    t351 = np.arctan2(t349 / total_alpha_rear_elbow_down, t350 / total_alpha_rear_elbow_down)
-    t352 = t348 - t351
-    t353 = t272 + t274
-    t354 = _runtime.wrap(_runtime.wrap(t352 + t353)) + t346
-    t355 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
-    t356 = np.arctan2(t355, 1.0) + (t108 - t280)
-    t357 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    t358 = np.arctan2(t341, t357 / total_beta_rear_elbow_down)
-    t359 = _runtime.wrap(_runtime.wrap(-(t352 - t356 + t358)))
-    t360 = t348 + t351
-    t361 = _runtime.wrap(_runtime.wrap(t353 + t360)) + t346
-    t362 = _runtime.wrap(_runtime.wrap(t356 + t358 - t360))
-    t363 = nowhere | folded | short
-    t364 = _runtime.status(invalid, unreachable, t363 | parallel)
-    t365 = _runtime.status(invalid, unreachable_2, t363 | parallel_front_elbow_down)
-    t366 = nowhere | folded_rear_elbow_up | short
-    t367 = _runtime.status(invalid, unreachable_3, t366 | parallel_rear_elbow_up)
-    t368 = _runtime.status(invalid, unreachable_4, t366 | parallel_rear_elbow_down)
+    t374 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t375 = np.arctan2(t373 / total_alpha_rear_elbow_down, t374 / total_alpha_rear_elbow_down)
+    t376 = t372 - t375
+    t377 = t291 + t293
+    t378 = _runtime.wrap(_runtime.wrap(t376 + t377)) + t370
+    t379 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t380 = np.arctan2(t379, 1.0) + (t116 - t299)
+    t381 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t382 = np.arctan2(t365, t381 / total_beta_rear_elbow_down)
+    t383 = _runtime.wrap(_runtime.wrap(-(t376 - t380 + t382)))
+    t384 = t372 + t375
+    t385 = _runtime.wrap(_runtime.wrap(t377 + t384)) + t370
+    t386 = _runtime.wrap(_runtime.wrap(t380 + t382 - t384))
+    t387 = nowhere | folded | short
+    t388 = _runtime.status(invalid, unreachable, t387 | parallel)
+    t389 = _runtime.status(invalid, unreachable_2, t387 | parallel_front_elbow_down)
+    t390 = nowhere | folded_rear_elbow_up | short
+    t391 = _runtime.status(invalid, unreachable_3, t390 | parallel_rear_elbow_up)
+    t392 = _runtime.status(invalid, unreachable_4, t390 | parallel_rear_elbow_down)
     return (
-        t15 + t99,
-        t107,
-        _runtime.wrap_cut(t114) + t99,
-        t116,
-        _runtime.wrap_cut(t117) + t99,
-        t118 + t99,
-        t15 + t175,
-        t183,
-        _runtime.wrap_cut(t188) + t175,
-        t190,
-        _runtime.wrap_cut(t191) + t175,
-        t118 + t175,
-        t192 + t269,
-        t279,
-        t286 + t269,
-        t287,
-        t288 + t269,
-        t118 + t269,
-        t192 + t346,
-        t354,
-        _runtime.wrap_cut(t359) + t346,
-        t361,
-        _runtime.wrap_cut(t362) + t346,
-        t118 + t346,
-        t364,
-        t365,
-        t367,
-        t368,
+        t15 + t107,
+        t115,
+        _runtime.wrap_cut(t122) + t107,
+        t124,
+        _runtime.wrap_cut(t125) + t107,
+        t126 + t107,
+        t15 + t188,
+        t196,
+        _runtime.wrap_cut(t201) + t188,
+        t203,
+        _runtime.wrap_cut(t204) + t188,
+        t126 + t188,
+        t205 + t288,
+        t298,
+        t305 + t288,
+        t306,
+        t307 + t288,
+        t126 + t288,
+        t205 + t370,
+        t378,
+        _runtime.wrap_cut(t383) + t370,
+        t385,
+        _runtime.wrap_cut(t386) + t370,
+        t126 + t370,
+        t388,
+        t389,
+        t391,
+        t392,
     )
 
 

@@ -10,7 +10,7 @@
 #   jacobian: 208 add, 54 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
 #   determinant: 86 add, 54 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
 #   singularities: 91 add, 54 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
-#   ik: 320 compare and select, 367 add, 28 atan2, 78 divide, 438 multiply, 3 sincos, 41 sqrt
+#   ik: 360 compare and select, 371 add, 28 atan2, 78 divide, 461 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -1206,663 +1206,681 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
     t41 = d * size
-    t42 = _runtime.VANISHING * t27
-    folded = reach <= t42
+    t42 = L1 * 2.0
+    t43 = _runtime.VANISHING * t27
+    folded = reach <= t43
     s_sight = _runtime.select(folded, 0.0, t29 / reach)
     short = L1 * fore <= _runtime.VANISHING * (t27 * t27)
-    t43 = folded | short
+    t44 = folded | short
     A = np.maximum(t36, 0.0)
     C = np.maximum(t39, 0.0)
-    t44 = A * C
+    t45 = A * C
     S = t27 + reach
     B = np.maximum(t38, 0.0)
-    t45 = S * B
-    at_base = t44 + t45
-    c_base = _runtime.select(t43, 1.0, -((t44 - t45) / at_base))
-    t46 = s_sight * c_base
+    t46 = S * B
+    at_base = t45 + t46
+    c_base = _runtime.select(t44, 1.0, -((t45 - t46) / at_base))
+    t47 = s_sight * c_base
     c_sight = _runtime.select(folded, 1.0, outward / reach)
     area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = _runtime.select(t43, 0.0, area_front_elbow_down_alike / at_base)
-    t47 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t46 + t47
-    t48 = c_sight * c_base
-    t49 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t48 - t49
-    bare = fore <= t42
+    s_base_front_elbow_down_alike = _runtime.select(t44, 0.0, area_front_elbow_down_alike / at_base)
+    t48 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t47 + t48
+    t49 = c_sight * c_base
+    t50 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t49 - t50
+    bare = fore <= t43
     c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    t50 = A * S
-    t51 = C * B
-    at_elbow = t50 + t51
-    c_bend = _runtime.select(short, 1.0, -((t50 - t51) / at_elbow))
-    t52 = c_lag * c_bend
+    t51 = A * S
+    t52 = C * B
+    at_elbow = t51 + t52
+    c_bend = _runtime.select(short, 1.0, -((t51 - t52) / at_elbow))
+    t53 = c_lag * c_bend
     s_lag = _runtime.select(bare, 0.0, L_2W / fore)
     s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t53 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t52 + t53
-    t54 = s_lag * c_bend
-    t55 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t54 - t55
+    t54 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t53 + t54
+    t55 = s_lag * c_bend
+    t56 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t55 - t56
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    t56 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t57 = stheta2A * ctheta23A - ctheta2A * stheta23A
     c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    drawn = L1 - L_2W * t56 + a_3W * c_elbow
-    t57 = 2.0 * drawn
-    point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t58 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t59 = d * t58
-    h_right_0 = point_21 - t59
+    t58 = L2 * t57 - a3 * c_elbow
+    t59 = 0.0 <= -t58
+    t60 = L2 * c_elbow + a3 * t57
+    large = fore_arm + _runtime.select(t59, -t58, t58)
+    small = t60 * t60 / large
+    t61 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t62 = d * t61
+    t63 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
+    t64 = d * t63
+    gap = t62 * t62 + t64 * t64
+    t65 = t42 * _runtime.select(t59, small, large) - gap
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
-    t60 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t61 = d * t60
-    r_right_0 = point_11 - t61
-    slope_right = t57 * (ctheta2A * h_right_0 - stheta2A * r_right_0)
-    t62 = size / 100000.0
-    t63 = t62 + np.abs(L_2W * c_elbow + a_3W * t56)
-    t64 = _runtime.FEASIBILITY * (t41 + size * np.abs(slope_right) / t63)
-    t65 = L1 * 2.0
-    t66 = L2 * t56 - a3 * c_elbow
-    t67 = 0.0 <= -t66
-    t68 = L2 * c_elbow + a3 * t56
-    large = fore_arm + _runtime.select(t67, -t66, t66)
-    small = t68 * t68 / large
-    gap = t61 * t61 + t59 * t59
-    t69 = t65 * _runtime.select(t67, small, large) - gap
-    t70 = 2.0 * point_11 * t61 + 2.0 * point_21 * t59
-    room_right = t69 + t70
-    h_left_0 = point_21 + t59
-    r_left_0 = point_11 + t61
-    slope_left = t57 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
-    t71 = _runtime.FEASIBILITY * (t41 + size * np.abs(slope_left) / t63)
-    room_left = t69 - t70
-    t72 = t40 & (-t64 <= room_right) & (-t71 <= room_left)
-    t73 = -(_runtime.FEASIBILITY * t41)
-    t74 = slope_left * (room_left - np.maximum(room_left, 0.0))
-    t75 = size * size
-    t76 = t75 * t75 / 10000000000.0
-    t77 = slope_right * (room_right - np.maximum(room_right, 0.0))
-    t78 = t74 / (t76 + slope_left * slope_left) + t77 / (t76 + slope_right * slope_right)
-    t79 = t70 - slope_right * t78
-    t80 = t69 + t79
-    swing = drawn * t78
-    t81 = ctheta2A * swing
-    h_right = h_right_0 + t81 - r_right_0 * t78
-    t82 = stheta2A * swing
-    r_right = r_right_0 + h_right_0 * t78 - t82
-    t83 = h_right * h_right + r_right * r_right
-    t84 = gap * gap
-    t85 = L1 - fore_arm
-    t86 = t85 * t85
-    t87 = gap + t65 * _runtime.select(t67, large, small)
-    t88 = _runtime.select(t75 * t83 < t84, t86 - t83, t79 - t87)
-    t89 = t70 + slope_left * t78
-    t90 = t69 - t89
-    t91 = t72 & (t73 <= t80) & (t73 <= -t88) & (t73 <= t90)
-    h_left = h_left_0 + t81 - r_left_0 * t78
-    r_left = r_left_0 - t82 + h_left_0 * t78
-    t92 = h_left * h_left + r_left * r_left
-    t93 = _runtime.select(t75 * t92 < t84, t92 - t86, t87 + t89)
-    unreachable = np.logical_not(t91 & (t73 <= t93))
-    t94 = _runtime.poison(invalid | unreachable)
-    t95 = t16 + t94
-    t96 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.sqrt(t83) <= t96
-    t97 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t75
-    t98 = 2.0 * fore_arm
-    t99 = _runtime.VANISHING * (_runtime.VANISHING * (t41 * 16.0))
-    M_right = np.maximum(-t88, t99)
-    N_right = np.maximum(t80, t99)
-    whole_right = M_right + N_right
-    ahead_1_right = _runtime.select(short_right, size, t85 + t98 * M_right / whole_right)
-    t100 = 2.0 * _runtime.select(0.0 <= -t68, 1.0, -1.0)
+    point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
+    t66 = 2.0 * t62 * point_11 + 2.0 * t64 * point_21
+    room_right = t65 + t66
+    t67 = _runtime.VANISHING * t41
+    spent_right = room_right <= t67
+    drawn = L1 - L_2W * t57 + a_3W * c_elbow
+    t68 = 2.0 * drawn
+    t69 = t64 - point_21
+    t70 = t62 - point_11
+    t71 = t68 * (ctheta2A * t69 - stheta2A * t70)
+    t72 = size / 100000.0
+    t73 = t72 + np.abs(L_2W * c_elbow + a_3W * t57)
+    t74 = _runtime.select(spent_right, size * np.abs(-t71) / t73, 0.0)
+    t75 = -(_runtime.FEASIBILITY * (t41 + t74)) <= room_right
+    room_left = t65 - t66
+    spent_left = room_left <= t67
+    h_left_0 = t64 + point_21
+    r_left_0 = t62 + point_11
+    slope_left = t68 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    t76 = _runtime.select(spent_left, size * np.abs(slope_left) / t73, 0.0)
+    t77 = -(_runtime.FEASIBILITY * (t41 + t76)) <= room_left
+    t78 = -(_runtime.FEASIBILITY * t41)
+    t79 = size * size
+    t80 = t79 * t79 / 10000000000.0
+    t81 = t71 * (room_right - np.abs(room_right)) / (2.0 * (t80 + t71 * t71))
+    t82 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t80 + slope_left * slope_left))
+    turn = _runtime.select(spent_right, t81, 0.0) + _runtime.select(spent_left, -t82, 0.0)
+    t83 = t66 - t71 * turn
+    t84 = t65 + t83
+    t85 = drawn * turn
+    t86 = ctheta2A * t85
+    t87 = t69 + t86 + t70 * turn
+    t88 = stheta2A * t85
+    t89 = t70 - t69 * turn - t88
+    t90 = t87 * t87 + t89 * t89
+    t91 = gap * gap
+    t92 = L1 - fore_arm
+    t93 = t92 * t92
+    M = t42 * _runtime.select(t59, large, small)
+    t94 = gap + M
+    t95 = _runtime.select(t79 * t90 < t91, t93 - t90, t83 - t94)
+    t96 = t40 & t75 & t77 & (t78 <= t84) & (t78 <= -t95)
+    t97 = t66 - slope_left * turn
+    t98 = t65 - t97
+    h_left = h_left_0 - t86 + r_left_0 * turn
+    r_left = r_left_0 + t88 - h_left_0 * turn
+    t99 = h_left * h_left + r_left * r_left
+    t100 = _runtime.select(t79 * t99 < t91, t99 - t93, t94 + t97)
+    unreachable = np.logical_not(t96 & (t78 <= t98) & (t78 <= t100))
+    t101 = _runtime.poison(invalid | unreachable)
+    t102 = t16 + t101
+    t103 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.sqrt(t90) <= t103
+    t104 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t79
+    t105 = 2.0 * _runtime.select(0.0 <= -t60, 1.0, -1.0)
+    t106 = _runtime.VANISHING * (_runtime.VANISHING * (t41 * 16.0))
+    N_right = np.maximum(t84, t106)
     rN_right = np.sqrt(N_right)
+    M_right = np.maximum(-t95, t106)
     rM_right = np.sqrt(M_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t100 * rN_right * rM_right / whole_right)
-    t101 = fore_arm * s_bend_right
-    t102 = np.arctan2(h_right * ahead_1_right - r_right * t101, r_right * ahead_1_right + h_right * t101)
-    t103 = _runtime.wrap_cut(_runtime.select(folded_right, t97, t102))
-    t104 = t103 + t94
+    whole_right = M_right + N_right
+    s_bend_right = _runtime.select(short_right, 0.0, t105 * rN_right * rM_right / whole_right)
+    t107 = fore_arm * s_bend_right
+    t108 = 2.0 * fore_arm
+    ahead_1_right = _runtime.select(short_right, size, t92 + t108 * M_right / whole_right)
+    t109 = np.arctan2(t89 * t107 - t87 * ahead_1_right, -(t89 * ahead_1_right + t87 * t107))
+    t110 = _runtime.wrap_cut(_runtime.select(folded_right, t104, t109))
+    t111 = t110 + t101
     bare_right = fore_arm <= _runtime.VANISHING * size
     s_lag_right = _runtime.select(bare_right, 0.0, L2 / fore_arm)
     c_lag_right = _runtime.select(bare_right, 1.0, a3 / fore_arm)
-    t105 = np.arctan2(s_lag_right, c_lag_right)
-    t106 = _runtime.select(short_right, 0.0, t100 * np.arctan2(rN_right, rM_right))
-    t107 = _runtime.wrap_cut(_runtime.wrap(t105 + t106))
-    t108 = t107 + t94
-    folded_left = np.sqrt(t92) <= t96
-    M_left = np.maximum(t93, 0.0)
-    N_left = np.maximum(t90, 0.0)
+    t112 = np.arctan2(s_lag_right, c_lag_right)
+    t113 = _runtime.select(short_right, 0.0, t105 * np.arctan2(rN_right, rM_right))
+    t114 = _runtime.wrap_cut(_runtime.wrap(t112 + t113))
+    t115 = t114 + t101
+    folded_left = np.sqrt(t99) <= t103
+    M_left = np.maximum(t100, 0.0)
+    N_left = np.maximum(t98, 0.0)
     whole_left = M_left + N_left
-    ahead_1_left = _runtime.select(short_right, size, t85 + t98 * M_left / whole_left)
-    t109 = h_left * ahead_1_left
+    ahead_1_left = _runtime.select(short_right, size, t92 + t108 * M_left / whole_left)
+    t116 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t100 * rN_left * rM_left / whole_left)
-    t110 = fore_arm * s_bend_left
-    t111 = r_left * t110
-    t112 = r_left * ahead_1_left
-    t113 = h_left * t110
-    t114 = _runtime.select(folded_left, t97, np.arctan2(t109 - t111, t112 + t113))
-    t115 = _runtime.select(short_right, 0.0, t100 * np.arctan2(rN_left, rM_left))
-    t116 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    t117 = t116 + t94
-    t118 = _runtime.select(folded_left, t97, np.arctan2(t109 + t111, t112 - t113))
-    stheta2A_front_elbow_down_alike = t46 - t47
-    ctheta2A_front_elbow_down_alike = t48 + t49
-    c_relative_front_elbow_down_alike = t52 - t53
-    t119 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t54 + t55
-    t120 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t119 - t120
-    t121 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t122 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t123 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t122 + t123
-    t124 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t125 = t121 - t124
-    t126 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t127 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t126 + t127
-    drawn_front_elbow_down_alike = L1 - L_2W * t125 + a_3W * c_elbow_front_elbow_down_alike
-    t128 = 2.0 * drawn_front_elbow_down_alike
-    t129 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t129 + a3 * stheta23A_front_elbow_down_alike
-    t130 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t131 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t132 = d * (t130 + t131)
-    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t132
-    t133 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t134 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t134 + a3 * ctheta23A_front_elbow_down_alike
-    t135 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t136 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t137 = d * (t135 - t136)
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t137
-    t138 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    slope_right_front_elbow_down_alike = t128 * (t133 - t138)
-    t139 = size * np.abs(slope_right_front_elbow_down_alike)
-    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t125
-    t140 = t62 + np.abs(tilt_front_elbow_down_alike)
-    t141 = -(_runtime.FEASIBILITY * (t41 + t139 / t140))
-    t142 = L2 * t125 - a3 * c_elbow_front_elbow_down_alike
-    t143 = 0.0 <= -t142
-    t144 = L2 * c_elbow_front_elbow_down_alike + a3 * t125
-    large_front_elbow_down_alike = fore_arm + _runtime.select(t143, -t142, t142)
-    small_front_elbow_down_alike = t144 * t144 / large_front_elbow_down_alike
-    t145 = _runtime.select(t143, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    gap_front_elbow_down_alike = t137 * t137 + t132 * t132
-    t146 = t65 * t145 - gap_front_elbow_down_alike
-    t147 = 2.0 * point_11_front_elbow_down_alike * t137 + 2.0 * point_21_front_elbow_down_alike * t132
-    room_right_front_elbow_down_alike = t146 + t147
-    t148 = t40 & (t141 <= room_right_front_elbow_down_alike)
-    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t132
-    t149 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t137
-    t150 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    slope_left_front_elbow_down_alike = t128 * (t149 - t150)
-    t151 = size * np.abs(slope_left_front_elbow_down_alike)
-    t152 = -(_runtime.FEASIBILITY * (t41 + t151 / t140))
-    room_left_front_elbow_down_alike = t146 - t147
-    t153 = t148 & (t152 <= room_left_front_elbow_down_alike)
-    kept_left_front_elbow_down_alike = np.maximum(room_left_front_elbow_down_alike, 0.0)
-    t154 = room_left_front_elbow_down_alike - kept_left_front_elbow_down_alike
-    t155 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t156 = slope_left_front_elbow_down_alike * t154 / (t76 + t155)
-    kept_right_front_elbow_down_alike = np.maximum(room_right_front_elbow_down_alike, 0.0)
-    t157 = room_right_front_elbow_down_alike - kept_right_front_elbow_down_alike
-    t158 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
-    t159 = slope_right_front_elbow_down_alike * t157 / (t76 + t158)
-    t160 = t156 + t159
-    t161 = t147 - slope_right_front_elbow_down_alike * t160
-    t162 = t146 + t161
-    swing_front_elbow_down_alike = drawn_front_elbow_down_alike * t160
-    t163 = ctheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
-    h_right_front_elbow_down_alike = h_right_0_front_elbow_down_alike + t163 - r_right_0_front_elbow_down_alike * t160
-    t164 = h_right_front_elbow_down_alike * h_right_front_elbow_down_alike
-    t165 = r_right_0_front_elbow_down_alike + h_right_0_front_elbow_down_alike * t160
-    t166 = stheta2A_front_elbow_down_alike * swing_front_elbow_down_alike
-    r_right_front_elbow_down_alike = t165 - t166
-    t167 = r_right_front_elbow_down_alike * r_right_front_elbow_down_alike
-    t168 = t164 + t167
-    t169 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t170 = _runtime.select(t143, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    t171 = gap_front_elbow_down_alike + t65 * t170
-    t172 = _runtime.select(t75 * t168 < t169, t86 - t168, t161 - t171)
-    t173 = t147 + slope_left_front_elbow_down_alike * t160
-    t174 = t146 - t173
-    t175 = t153 & (t73 <= t162) & (t73 <= -t172) & (t73 <= t174)
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike + t163 - r_left_0_front_elbow_down_alike * t160
-    t176 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t166 + h_left_0_front_elbow_down_alike * t160
-    t177 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t178 = t176 + t177
-    t179 = _runtime.select(t75 * t178 < t169, t178 - t86, t171 + t173)
-    unreachable_2 = np.logical_not(t175 & (t73 <= t179))
-    t180 = _runtime.poison(invalid | unreachable_2)
-    t181 = t16 + t180
-    folded_right_front_elbow_down_alike = np.sqrt(t168) <= t96
-    t182 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(-t172, t99)
-    N_right_front_elbow_down_alike = np.maximum(t162, t99)
-    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t183 = t98 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t85 + t183)
-    t184 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t185 = 2.0 * _runtime.select(0.0 <= -t144, 1.0, -1.0)
+    s_bend_left = _runtime.select(short_right, 0.0, t105 * rN_left * rM_left / whole_left)
+    t117 = fore_arm * s_bend_left
+    t118 = r_left * t117
+    t119 = r_left * ahead_1_left
+    t120 = h_left * t117
+    t121 = _runtime.select(folded_left, t104, np.arctan2(t116 - t118, t119 + t120))
+    t122 = _runtime.select(short_right, 0.0, t105 * np.arctan2(rN_left, rM_left))
+    t123 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t124 = t123 + t101
+    t125 = _runtime.select(folded_left, t104, np.arctan2(t116 + t118, t119 - t120))
+    stheta2A_front_elbow_down_alike = t47 - t48
+    ctheta2A_front_elbow_down_alike = t49 + t50
+    c_relative_front_elbow_down_alike = t53 - t54
+    t126 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t55 + t56
+    t127 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t126 - t127
+    t128 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t129 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t130 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t129 + t130
+    t131 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    t132 = t128 - t131
+    t133 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
+    t134 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
+    c_elbow_front_elbow_down_alike = t133 + t134
+    t135 = L2 * t132 - a3 * c_elbow_front_elbow_down_alike
+    t136 = 0.0 <= -t135
+    t137 = L2 * c_elbow_front_elbow_down_alike + a3 * t132
+    large_front_elbow_down_alike = fore_arm + _runtime.select(t136, -t135, t135)
+    small_front_elbow_down_alike = t137 * t137 / large_front_elbow_down_alike
+    t138 = _runtime.select(t136, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    t139 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t140 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t141 = d * (t139 - t140)
+    t142 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t143 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t144 = d * (t142 + t143)
+    gap_front_elbow_down_alike = t141 * t141 + t144 * t144
+    t145 = t42 * t138 - gap_front_elbow_down_alike
+    t146 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t146 + a3 * ctheta23A_front_elbow_down_alike
+    t147 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t147 + a3 * stheta23A_front_elbow_down_alike
+    t148 = 2.0 * t141 * point_11_front_elbow_down_alike + 2.0 * t144 * point_21_front_elbow_down_alike
+    room_right_front_elbow_down_alike = t145 + t148
+    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t67
+    drawn_front_elbow_down_alike = L1 - L_2W * t132 + a_3W * c_elbow_front_elbow_down_alike
+    t149 = 2.0 * drawn_front_elbow_down_alike
+    t150 = t144 - point_21_front_elbow_down_alike
+    t151 = t141 - point_11_front_elbow_down_alike
+    t152 = ctheta2A_front_elbow_down_alike * t150 - stheta2A_front_elbow_down_alike * t151
+    t153 = t149 * t152
+    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t132
+    t154 = t72 + np.abs(tilt_front_elbow_down_alike)
+    t155 = _runtime.select(spent_right_front_elbow_down_alike, size * np.abs(-t153) / t154, 0.0)
+    t156 = -(_runtime.FEASIBILITY * (t41 + t155)) <= room_right_front_elbow_down_alike
+    room_left_front_elbow_down_alike = t145 - t148
+    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t67
+    h_left_0_front_elbow_down_alike = t144 + point_21_front_elbow_down_alike
+    t157 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = t141 + point_11_front_elbow_down_alike
+    t158 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    slope_left_front_elbow_down_alike = t149 * (t157 - t158)
+    t159 = size * np.abs(slope_left_front_elbow_down_alike)
+    t160 = _runtime.select(spent_left_front_elbow_down_alike, t159 / t154, 0.0)
+    t161 = -(_runtime.FEASIBILITY * (t41 + t160)) <= room_left_front_elbow_down_alike
+    t162 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
+    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t153 * t162 / (2.0 * (t80 + t153 * t153)), 0.0)
+    t163 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
+    t164 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t165 = slope_left_front_elbow_down_alike * t163 / (2.0 * (t80 + t164))
+    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t165, 0.0)
+    turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
+    t166 = t148 - t153 * turn_front_elbow_down_alike
+    t167 = t145 + t166
+    t168 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    t169 = ctheta2A_front_elbow_down_alike * t168
+    t170 = t150 + t169 + t151 * turn_front_elbow_down_alike
+    t171 = stheta2A_front_elbow_down_alike * t168
+    t172 = t151 - t150 * turn_front_elbow_down_alike - t171
+    t173 = t170 * t170 + t172 * t172
+    t174 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t175 = _runtime.select(t136, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    M_front_elbow_down_alike = t42 * t175
+    t176 = gap_front_elbow_down_alike + M_front_elbow_down_alike
+    t177 = _runtime.select(t79 * t173 < t174, t93 - t173, t166 - t176)
+    t178 = t40 & t156 & t161 & (t78 <= t167) & (t78 <= -t177)
+    t179 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
+    t180 = t148 - t179
+    t181 = t145 - t180
+    t182 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t169 + t182
+    t183 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    t184 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike + t171 - t184
+    t185 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t186 = t183 + t185
+    t187 = _runtime.select(t79 * t186 < t174, t186 - t93, t176 + t180)
+    unreachable_2 = np.logical_not(t178 & (t78 <= t181) & (t78 <= t187))
+    t188 = _runtime.poison(invalid | unreachable_2)
+    t189 = t16 + t188
+    folded_right_front_elbow_down_alike = np.sqrt(t173) <= t103
+    t190 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    t191 = 2.0 * _runtime.select(0.0 <= -t137, 1.0, -1.0)
+    N_right_front_elbow_down_alike = np.maximum(t167, t106)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
+    M_right_front_elbow_down_alike = np.maximum(-t177, t106)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t186 = t185 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t186 / whole_right_front_elbow_down_alike)
-    t187 = fore_arm * s_bend_right_front_elbow_down_alike
-    t188 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t189 = np.arctan2(t184 - r_right_front_elbow_down_alike * t187, t188 + h_right_front_elbow_down_alike * t187)
-    t190 = _runtime.select(folded_right_front_elbow_down_alike, t182, t189)
-    t191 = _runtime.wrap_cut(t190) + t180
-    t192 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t193 = _runtime.select(short_right, 0.0, t185 * t192)
-    t194 = _runtime.wrap_cut(_runtime.wrap(t105 + t193))
-    t195 = t194 + t180
-    folded_left_front_elbow_down_alike = np.sqrt(t178) <= t96
-    M_left_front_elbow_down_alike = np.maximum(t179, 0.0)
-    N_left_front_elbow_down_alike = np.maximum(t174, 0.0)
+    t192 = t191 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t192 / whole_right_front_elbow_down_alike)
+    t193 = fore_arm * s_bend_right_front_elbow_down_alike
+    t194 = t108 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t92 + t194)
+    up_right_front_elbow_down_alike = t172 * t193 - t170 * ahead_1_right_front_elbow_down_alike
+    t195 = t172 * ahead_1_right_front_elbow_down_alike + t170 * t193
+    t196 = np.arctan2(up_right_front_elbow_down_alike, -t195)
+    t197 = _runtime.select(folded_right_front_elbow_down_alike, t190, t196)
+    t198 = _runtime.wrap_cut(t197) + t188
+    t199 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t200 = _runtime.select(short_right, 0.0, t191 * t199)
+    t201 = _runtime.wrap_cut(_runtime.wrap(t112 + t200))
+    t202 = t201 + t188
+    folded_left_front_elbow_down_alike = np.sqrt(t186) <= t103
+    M_left_front_elbow_down_alike = np.maximum(t187, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t181, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t196 = t98 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t85 + t196)
-    t197 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t203 = t108 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t92 + t203)
+    t204 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t198 = t185 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t198 / whole_left_front_elbow_down_alike)
-    t199 = fore_arm * s_bend_left_front_elbow_down_alike
-    t200 = r_left_front_elbow_down_alike * t199
-    t201 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t202 = h_left_front_elbow_down_alike * t199
-    t203 = _runtime.select(folded_left_front_elbow_down_alike, t182, np.arctan2(t197 - t200, t201 + t202))
-    t204 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t205 = _runtime.select(short_right, 0.0, t185 * t204)
-    t206 = t116 + t180
-    t207 = _runtime.select(folded_left_front_elbow_down_alike, t182, np.arctan2(t197 + t200, t201 - t202))
-    t208 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    t205 = t191 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t205 / whole_left_front_elbow_down_alike)
+    t206 = fore_arm * s_bend_left_front_elbow_down_alike
+    t207 = r_left_front_elbow_down_alike * t206
+    t208 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t209 = h_left_front_elbow_down_alike * t206
+    t210 = _runtime.select(folded_left_front_elbow_down_alike, t190, np.arctan2(t204 - t207, t208 + t209))
+    t211 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t212 = _runtime.select(short_right, 0.0, t191 * t211)
+    t213 = t123 + t188
+    t214 = _runtime.select(folded_left_front_elbow_down_alike, t190, np.arctan2(t204 + t207, t208 - t209))
+    t215 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
     c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t32 + t33) / h))
     s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t34 - t35) / h)
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
-    t209 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t30 + t209)
-    t210 = t27 - reach_rear_elbow_up_alike
-    t211 = reach_rear_elbow_up_alike + t37
-    t212 = reach_rear_elbow_up_alike - t37
-    t213 = t26 & (t28 <= t210) & (t28 <= t211) & (t28 <= t212)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t42
+    t216 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t30 + t216)
+    t217 = t27 - reach_rear_elbow_up_alike
+    t218 = reach_rear_elbow_up_alike + t37
+    t219 = reach_rear_elbow_up_alike - t37
+    t220 = t26 & (t28 <= t217) & (t28 <= t218) & (t28 <= t219)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t43
     s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t29 / reach_rear_elbow_up_alike)
-    t214 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t210, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t212, 0.0)
-    t215 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    t221 = folded_rear_elbow_up_alike | short
+    A_rear_elbow_up_alike = np.maximum(t217, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t219, 0.0)
+    t222 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
     S_rear_elbow_up_alike = t27 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t211, 0.0)
-    t216 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t215 + t216
-    t217 = -((t215 - t216) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = _runtime.select(t214, 1.0, t217)
-    t218 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t219 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t219)
-    t220 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t220 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t221 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = _runtime.select(t214, 0.0, t221)
-    t222 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t218 - t222
-    t223 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t224 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t223 + t224
-    t225 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t226 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t225 + t226
-    t227 = -((t225 - t226) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t227)
-    t228 = c_lag * c_bend_rear_elbow_up_alike
-    t229 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t229)
-    t230 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t228 - t230
-    t231 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t232 = s_lag * c_bend_rear_elbow_up_alike
-    t233 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t232 + t233
-    t234 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t231 - t234
-    t235 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t236 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t237 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t236 + t237
-    t238 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t239 = t235 - t238
-    t240 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t241 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t240 + t241
-    drawn_rear_elbow_up_alike = L1 - L_2W * t239 + a_3W * c_elbow_rear_elbow_up_alike
-    t242 = 2.0 * drawn_rear_elbow_up_alike
-    t243 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t243 + a3 * stheta23A_rear_elbow_up_alike
-    t244 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t245 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t244
-    t246 = d * t245
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t246
-    t247 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t248 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t248 + a3 * ctheta23A_rear_elbow_up_alike
-    t249 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t250 = t249 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t251 = d * t250
-    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t251
-    t252 = stheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    slope_right_rear_elbow_up_alike = t242 * (t247 - t252)
-    t253 = size * np.abs(slope_right_rear_elbow_up_alike)
-    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t239
-    t254 = t62 + np.abs(tilt_rear_elbow_up_alike)
-    t255 = -(_runtime.FEASIBILITY * (t41 + t253 / t254))
-    t256 = L2 * t239 - a3 * c_elbow_rear_elbow_up_alike
-    t257 = 0.0 <= -t256
-    t258 = L2 * c_elbow_rear_elbow_up_alike + a3 * t239
-    large_rear_elbow_up_alike = fore_arm + _runtime.select(t257, -t256, t256)
-    small_rear_elbow_up_alike = t258 * t258 / large_rear_elbow_up_alike
-    t259 = _runtime.select(t257, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    gap_rear_elbow_up_alike = t251 * t251 + t246 * t246
-    t260 = t65 * t259 - gap_rear_elbow_up_alike
-    t261 = 2.0 * point_11_rear_elbow_up_alike * t251 + 2.0 * point_21_rear_elbow_up_alike * t246
-    room_right_rear_elbow_up_alike = t260 + t261
-    t262 = t213 & (t255 <= room_right_rear_elbow_up_alike)
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t246
-    t263 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t251
-    t264 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    slope_left_rear_elbow_up_alike = t242 * (t263 - t264)
-    t265 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t266 = -(_runtime.FEASIBILITY * (t41 + t265 / t254))
-    room_left_rear_elbow_up_alike = t260 - t261
-    t267 = t262 & (t266 <= room_left_rear_elbow_up_alike)
-    kept_left_rear_elbow_up_alike = np.maximum(room_left_rear_elbow_up_alike, 0.0)
-    t268 = room_left_rear_elbow_up_alike - kept_left_rear_elbow_up_alike
-    t269 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t270 = slope_left_rear_elbow_up_alike * t268 / (t76 + t269)
-    kept_right_rear_elbow_up_alike = np.maximum(room_right_rear_elbow_up_alike, 0.0)
-    t271 = room_right_rear_elbow_up_alike - kept_right_rear_elbow_up_alike
-    t272 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
-    t273 = slope_right_rear_elbow_up_alike * t271 / (t76 + t272)
-    t274 = t270 + t273
-    t275 = t261 - slope_right_rear_elbow_up_alike * t274
-    t276 = t260 + t275
-    swing_rear_elbow_up_alike = drawn_rear_elbow_up_alike * t274
-    t277 = ctheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
-    h_right_rear_elbow_up_alike = h_right_0_rear_elbow_up_alike + t277 - r_right_0_rear_elbow_up_alike * t274
-    t278 = h_right_rear_elbow_up_alike * h_right_rear_elbow_up_alike
-    t279 = r_right_0_rear_elbow_up_alike + h_right_0_rear_elbow_up_alike * t274
-    t280 = stheta2A_rear_elbow_up_alike * swing_rear_elbow_up_alike
-    r_right_rear_elbow_up_alike = t279 - t280
-    t281 = r_right_rear_elbow_up_alike * r_right_rear_elbow_up_alike
-    t282 = t278 + t281
-    t283 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t284 = _runtime.select(t257, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    t285 = gap_rear_elbow_up_alike + t65 * t284
-    t286 = _runtime.select(t75 * t282 < t283, t86 - t282, t275 - t285)
-    t287 = t261 + slope_left_rear_elbow_up_alike * t274
-    t288 = t260 - t287
-    t289 = t267 & (t73 <= t276) & (t73 <= -t286) & (t73 <= t288)
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike + t277 - r_left_0_rear_elbow_up_alike * t274
-    t290 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t280 + h_left_0_rear_elbow_up_alike * t274
-    t291 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t292 = t290 + t291
-    t293 = _runtime.select(t75 * t292 < t283, t292 - t86, t285 + t287)
-    unreachable_3 = np.logical_not(t289 & (t73 <= t293))
-    t294 = _runtime.poison(invalid | unreachable_3)
-    t295 = t208 + t294
-    folded_right_rear_elbow_up_alike = np.sqrt(t282) <= t96
-    t296 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(-t286, t99)
-    N_right_rear_elbow_up_alike = np.maximum(t276, t99)
-    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t297 = t98 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t85 + t297)
-    t298 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t299 = 2.0 * _runtime.select(0.0 <= -t258, 1.0, -1.0)
+    B_rear_elbow_up_alike = np.maximum(t218, 0.0)
+    t223 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t222 + t223
+    t224 = -((t222 - t223) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = _runtime.select(t221, 1.0, t224)
+    t225 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t226 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t226)
+    t227 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t227 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t228 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = _runtime.select(t221, 0.0, t228)
+    t229 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t225 - t229
+    t230 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t231 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t230 + t231
+    t232 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
+    t233 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t232 + t233
+    t234 = -((t232 - t233) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t234)
+    t235 = c_lag * c_bend_rear_elbow_up_alike
+    t236 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t236)
+    t237 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t235 - t237
+    t238 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t239 = s_lag * c_bend_rear_elbow_up_alike
+    t240 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t239 + t240
+    t241 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t238 - t241
+    t242 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t243 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
+    t244 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t243 + t244
+    t245 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    t246 = t242 - t245
+    t247 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
+    t248 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
+    c_elbow_rear_elbow_up_alike = t247 + t248
+    t249 = L2 * t246 - a3 * c_elbow_rear_elbow_up_alike
+    t250 = 0.0 <= -t249
+    t251 = L2 * c_elbow_rear_elbow_up_alike + a3 * t246
+    large_rear_elbow_up_alike = fore_arm + _runtime.select(t250, -t249, t249)
+    small_rear_elbow_up_alike = t251 * t251 / large_rear_elbow_up_alike
+    t252 = _runtime.select(t250, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    t253 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t254 = t253 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t255 = d * t254
+    t256 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t257 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t256
+    t258 = d * t257
+    gap_rear_elbow_up_alike = t255 * t255 + t258 * t258
+    t259 = t42 * t252 - gap_rear_elbow_up_alike
+    t260 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t260 + a3 * ctheta23A_rear_elbow_up_alike
+    t261 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t261 + a3 * stheta23A_rear_elbow_up_alike
+    t262 = 2.0 * t255 * point_11_rear_elbow_up_alike + 2.0 * t258 * point_21_rear_elbow_up_alike
+    room_right_rear_elbow_up_alike = t259 + t262
+    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t67
+    drawn_rear_elbow_up_alike = L1 - L_2W * t246 + a_3W * c_elbow_rear_elbow_up_alike
+    t263 = 2.0 * drawn_rear_elbow_up_alike
+    t264 = t258 - point_21_rear_elbow_up_alike
+    t265 = t255 - point_11_rear_elbow_up_alike
+    t266 = ctheta2A_rear_elbow_up_alike * t264 - stheta2A_rear_elbow_up_alike * t265
+    t267 = t263 * t266
+    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t246
+    t268 = t72 + np.abs(tilt_rear_elbow_up_alike)
+    t269 = _runtime.select(spent_right_rear_elbow_up_alike, size * np.abs(-t267) / t268, 0.0)
+    t270 = -(_runtime.FEASIBILITY * (t41 + t269)) <= room_right_rear_elbow_up_alike
+    room_left_rear_elbow_up_alike = t259 - t262
+    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t67
+    h_left_0_rear_elbow_up_alike = t258 + point_21_rear_elbow_up_alike
+    t271 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t255 + point_11_rear_elbow_up_alike
+    t272 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t263 * (t271 - t272)
+    t273 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t274 = _runtime.select(spent_left_rear_elbow_up_alike, t273 / t268, 0.0)
+    t275 = -(_runtime.FEASIBILITY * (t41 + t274)) <= room_left_rear_elbow_up_alike
+    t276 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
+    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t267 * t276 / (2.0 * (t80 + t267 * t267)), 0.0)
+    t277 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
+    t278 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t279 = slope_left_rear_elbow_up_alike * t277 / (2.0 * (t80 + t278))
+    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t279, 0.0)
+    turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
+    t280 = t262 - t267 * turn_rear_elbow_up_alike
+    t281 = t259 + t280
+    t282 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t283 = ctheta2A_rear_elbow_up_alike * t282
+    t284 = t264 + t283 + t265 * turn_rear_elbow_up_alike
+    t285 = stheta2A_rear_elbow_up_alike * t282
+    t286 = t265 - t264 * turn_rear_elbow_up_alike - t285
+    t287 = t284 * t284 + t286 * t286
+    t288 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t289 = _runtime.select(t250, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    M_rear_elbow_up_alike = t42 * t289
+    t290 = gap_rear_elbow_up_alike + M_rear_elbow_up_alike
+    t291 = _runtime.select(t79 * t287 < t288, t93 - t287, t280 - t290)
+    t292 = t220 & t270 & t275 & (t78 <= t281) & (t78 <= -t291)
+    t293 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t294 = t262 - t293
+    t295 = t259 - t294
+    t296 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t283 + t296
+    t297 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    t298 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t285 - t298
+    t299 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t300 = t297 + t299
+    t301 = _runtime.select(t79 * t300 < t288, t300 - t93, t290 + t294)
+    unreachable_3 = np.logical_not(t292 & (t78 <= t295) & (t78 <= t301))
+    t302 = _runtime.poison(invalid | unreachable_3)
+    t303 = t215 + t302
+    folded_right_rear_elbow_up_alike = np.sqrt(t287) <= t103
+    t304 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    t305 = 2.0 * _runtime.select(0.0 <= -t251, 1.0, -1.0)
+    N_right_rear_elbow_up_alike = np.maximum(t281, t106)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
+    M_right_rear_elbow_up_alike = np.maximum(-t291, t106)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t300 = t299 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t300 / whole_right_rear_elbow_up_alike)
-    t301 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t302 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t303 = np.arctan2(t298 - r_right_rear_elbow_up_alike * t301, t302 + h_right_rear_elbow_up_alike * t301)
-    t304 = _runtime.select(folded_right_rear_elbow_up_alike, t296, t303)
-    t305 = _runtime.wrap_cut(t304) + t294
-    t306 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t307 = _runtime.select(short_right, 0.0, t299 * t306)
-    t308 = _runtime.wrap_cut(_runtime.wrap(t105 + t307))
-    t309 = t308 + t294
-    folded_left_rear_elbow_up_alike = np.sqrt(t292) <= t96
-    M_left_rear_elbow_up_alike = np.maximum(t293, 0.0)
-    N_left_rear_elbow_up_alike = np.maximum(t288, 0.0)
+    t306 = t305 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t306 / whole_right_rear_elbow_up_alike)
+    t307 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t308 = t108 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t92 + t308)
+    up_right_rear_elbow_up_alike = t286 * t307 - t284 * ahead_1_right_rear_elbow_up_alike
+    t309 = t286 * ahead_1_right_rear_elbow_up_alike + t284 * t307
+    t310 = np.arctan2(up_right_rear_elbow_up_alike, -t309)
+    t311 = _runtime.select(folded_right_rear_elbow_up_alike, t304, t310)
+    t312 = _runtime.wrap_cut(t311) + t302
+    t313 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t314 = _runtime.select(short_right, 0.0, t305 * t313)
+    t315 = _runtime.wrap_cut(_runtime.wrap(t112 + t314))
+    t316 = t315 + t302
+    folded_left_rear_elbow_up_alike = np.sqrt(t300) <= t103
+    M_left_rear_elbow_up_alike = np.maximum(t301, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t295, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t310 = t98 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t85 + t310)
-    t311 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t317 = t108 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t92 + t317)
+    t318 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t312 = t299 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t312 / whole_left_rear_elbow_up_alike)
-    t313 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t314 = r_left_rear_elbow_up_alike * t313
-    t315 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t316 = h_left_rear_elbow_up_alike * t313
-    t317 = _runtime.select(folded_left_rear_elbow_up_alike, t296, np.arctan2(t311 - t314, t315 + t316))
-    t318 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t319 = _runtime.select(short_right, 0.0, t299 * t318)
-    t320 = t116 + t294
-    t321 = _runtime.select(folded_left_rear_elbow_up_alike, t296, np.arctan2(t311 + t314, t315 - t316))
-    stheta2A_rear_elbow_down_alike = t218 + t222
-    ctheta2A_rear_elbow_down_alike = t223 - t224
-    c_relative_rear_elbow_down_alike = t228 + t230
-    t322 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t232 - t233
-    t323 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t322 - t323
-    t324 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t325 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t326 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t325 + t326
-    t327 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t328 = t324 - t327
-    t329 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t330 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t329 + t330
-    drawn_rear_elbow_down_alike = L1 - L_2W * t328 + a_3W * c_elbow_rear_elbow_down_alike
-    t331 = 2.0 * drawn_rear_elbow_down_alike
-    t332 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t332 + a3 * stheta23A_rear_elbow_down_alike
-    t333 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t334 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t333
-    t335 = d * t334
-    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t335
-    t336 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t337 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t337 + a3 * ctheta23A_rear_elbow_down_alike
-    t338 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t339 = t338 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t340 = d * t339
-    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t340
-    t341 = stheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    slope_right_rear_elbow_down_alike = t331 * (t336 - t341)
-    t342 = size * np.abs(slope_right_rear_elbow_down_alike)
-    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t328
-    t343 = t62 + np.abs(tilt_rear_elbow_down_alike)
-    t344 = -(_runtime.FEASIBILITY * (t41 + t342 / t343))
-    t345 = L2 * t328 - a3 * c_elbow_rear_elbow_down_alike
-    t346 = 0.0 <= -t345
-    t347 = L2 * c_elbow_rear_elbow_down_alike + a3 * t328
-    large_rear_elbow_down_alike = fore_arm + _runtime.select(t346, -t345, t345)
-    small_rear_elbow_down_alike = t347 * t347 / large_rear_elbow_down_alike
-    t348 = _runtime.select(t346, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    gap_rear_elbow_down_alike = t340 * t340 + t335 * t335
-    t349 = t65 * t348 - gap_rear_elbow_down_alike
-    t350 = 2.0 * point_11_rear_elbow_down_alike * t340 + 2.0 * point_21_rear_elbow_down_alike * t335
-    room_right_rear_elbow_down_alike = t349 + t350
-    t351 = t213 & (t344 <= room_right_rear_elbow_down_alike)
-    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t335
-    t352 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t340
-    t353 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t331 * (t352 - t353)
-    t354 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t355 = -(_runtime.FEASIBILITY * (t41 + t354 / t343))
-    room_left_rear_elbow_down_alike = t349 - t350
-    t356 = t351 & (t355 <= room_left_rear_elbow_down_alike)
-    kept_left_rear_elbow_down_alike = np.maximum(room_left_rear_elbow_down_alike, 0.0)
-    t357 = room_left_rear_elbow_down_alike - kept_left_rear_elbow_down_alike
-    t358 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t359 = slope_left_rear_elbow_down_alike * t357 / (t76 + t358)
-    kept_right_rear_elbow_down_alike = np.maximum(room_right_rear_elbow_down_alike, 0.0)
-    t360 = room_right_rear_elbow_down_alike - kept_right_rear_elbow_down_alike
-    t361 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
-    t362 = slope_right_rear_elbow_down_alike * t360 / (t76 + t361)
-    t363 = t359 + t362
-    t364 = t350 - slope_right_rear_elbow_down_alike * t363
-    t365 = t349 + t364
-    swing_rear_elbow_down_alike = drawn_rear_elbow_down_alike * t363
-    t366 = ctheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
-    h_right_rear_elbow_down_alike = h_right_0_rear_elbow_down_alike + t366 - r_right_0_rear_elbow_down_alike * t363
-    t367 = h_right_rear_elbow_down_alike * h_right_rear_elbow_down_alike
-    t368 = r_right_0_rear_elbow_down_alike + h_right_0_rear_elbow_down_alike * t363
-    t369 = stheta2A_rear_elbow_down_alike * swing_rear_elbow_down_alike
-    r_right_rear_elbow_down_alike = t368 - t369
-    t370 = r_right_rear_elbow_down_alike * r_right_rear_elbow_down_alike
-    t371 = t367 + t370
-    t372 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t373 = _runtime.select(t346, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    t374 = gap_rear_elbow_down_alike + t65 * t373
-    t375 = _runtime.select(t75 * t371 < t372, t86 - t371, t364 - t374)
-    t376 = t350 + slope_left_rear_elbow_down_alike * t363
-    t377 = t349 - t376
-    t378 = t356 & (t73 <= t365) & (t73 <= -t375) & (t73 <= t377)
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike + t366 - r_left_0_rear_elbow_down_alike * t363
-    t379 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t369 + h_left_0_rear_elbow_down_alike * t363
-    t380 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t381 = t379 + t380
-    t382 = _runtime.select(t75 * t381 < t372, t381 - t86, t374 + t376)
-    unreachable_4 = np.logical_not(t378 & (t73 <= t382))
-    t383 = _runtime.poison(invalid | unreachable_4)
-    t384 = t208 + t383
-    folded_right_rear_elbow_down_alike = np.sqrt(t371) <= t96
-    t385 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(-t375, t99)
-    N_right_rear_elbow_down_alike = np.maximum(t365, t99)
-    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t386 = t98 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t85 + t386)
-    t387 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t388 = 2.0 * _runtime.select(0.0 <= -t347, 1.0, -1.0)
+    t319 = t305 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t319 / whole_left_rear_elbow_up_alike)
+    t320 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t321 = r_left_rear_elbow_up_alike * t320
+    t322 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t323 = h_left_rear_elbow_up_alike * t320
+    t324 = _runtime.select(folded_left_rear_elbow_up_alike, t304, np.arctan2(t318 - t321, t322 + t323))
+    t325 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t326 = _runtime.select(short_right, 0.0, t305 * t325)
+    t327 = t123 + t302
+    t328 = _runtime.select(folded_left_rear_elbow_up_alike, t304, np.arctan2(t318 + t321, t322 - t323))
+    stheta2A_rear_elbow_down_alike = t225 + t229
+    ctheta2A_rear_elbow_down_alike = t230 - t231
+    c_relative_rear_elbow_down_alike = t235 + t237
+    t329 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    s_relative_rear_elbow_down_alike = t239 - t240
+    t330 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t329 - t330
+    t331 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t332 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
+    t333 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t332 + t333
+    t334 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    t335 = t331 - t334
+    t336 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
+    t337 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
+    c_elbow_rear_elbow_down_alike = t336 + t337
+    t338 = L2 * t335 - a3 * c_elbow_rear_elbow_down_alike
+    t339 = 0.0 <= -t338
+    t340 = L2 * c_elbow_rear_elbow_down_alike + a3 * t335
+    large_rear_elbow_down_alike = fore_arm + _runtime.select(t339, -t338, t338)
+    small_rear_elbow_down_alike = t340 * t340 / large_rear_elbow_down_alike
+    t341 = _runtime.select(t339, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    t342 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t343 = t342 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t344 = d * t343
+    t345 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t346 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t345
+    t347 = d * t346
+    gap_rear_elbow_down_alike = t344 * t344 + t347 * t347
+    t348 = t42 * t341 - gap_rear_elbow_down_alike
+    t349 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t349 + a3 * ctheta23A_rear_elbow_down_alike
+    t350 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t350 + a3 * stheta23A_rear_elbow_down_alike
+    t351 = 2.0 * t344 * point_11_rear_elbow_down_alike + 2.0 * t347 * point_21_rear_elbow_down_alike
+    room_right_rear_elbow_down_alike = t348 + t351
+    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t67
+    drawn_rear_elbow_down_alike = L1 - L_2W * t335 + a_3W * c_elbow_rear_elbow_down_alike
+    t352 = 2.0 * drawn_rear_elbow_down_alike
+    t353 = t347 - point_21_rear_elbow_down_alike
+    t354 = t344 - point_11_rear_elbow_down_alike
+    t355 = ctheta2A_rear_elbow_down_alike * t353 - stheta2A_rear_elbow_down_alike * t354
+    t356 = t352 * t355
+    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t335
+    t357 = t72 + np.abs(tilt_rear_elbow_down_alike)
+    t358 = _runtime.select(spent_right_rear_elbow_down_alike, size * np.abs(-t356) / t357, 0.0)
+    t359 = -(_runtime.FEASIBILITY * (t41 + t358)) <= room_right_rear_elbow_down_alike
+    room_left_rear_elbow_down_alike = t348 - t351
+    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t67
+    h_left_0_rear_elbow_down_alike = t347 + point_21_rear_elbow_down_alike
+    t360 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t344 + point_11_rear_elbow_down_alike
+    t361 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t352 * (t360 - t361)
+    t362 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t363 = _runtime.select(spent_left_rear_elbow_down_alike, t362 / t357, 0.0)
+    t364 = -(_runtime.FEASIBILITY * (t41 + t363)) <= room_left_rear_elbow_down_alike
+    t365 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
+    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t356 * t365 / (2.0 * (t80 + t356 * t356)), 0.0)
+    t366 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
+    t367 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t368 = slope_left_rear_elbow_down_alike * t366 / (2.0 * (t80 + t367))
+    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t368, 0.0)
+    turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
+    t369 = t351 - t356 * turn_rear_elbow_down_alike
+    t370 = t348 + t369
+    t371 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t372 = ctheta2A_rear_elbow_down_alike * t371
+    t373 = t353 + t372 + t354 * turn_rear_elbow_down_alike
+    t374 = stheta2A_rear_elbow_down_alike * t371
+    t375 = t354 - t353 * turn_rear_elbow_down_alike - t374
+    t376 = t373 * t373 + t375 * t375
+    t377 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t378 = _runtime.select(t339, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    M_rear_elbow_down_alike = t42 * t378
+    t379 = gap_rear_elbow_down_alike + M_rear_elbow_down_alike
+    t380 = _runtime.select(t79 * t376 < t377, t93 - t376, t369 - t379)
+    t381 = t220 & t359 & t364 & (t78 <= t370) & (t78 <= -t380)
+    t382 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t383 = t351 - t382
+    t384 = t348 - t383
+    t385 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t372 + t385
+    t386 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    t387 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t374 - t387
+    t388 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t389 = t386 + t388
+    t390 = _runtime.select(t79 * t389 < t377, t389 - t93, t379 + t383)
+    unreachable_4 = np.logical_not(t381 & (t78 <= t384) & (t78 <= t390))
+    t391 = _runtime.poison(invalid | unreachable_4)
+    t392 = t215 + t391
+    folded_right_rear_elbow_down_alike = np.sqrt(t376) <= t103
+    t393 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    t394 = 2.0 * _runtime.select(0.0 <= -t340, 1.0, -1.0)
+    N_right_rear_elbow_down_alike = np.maximum(t370, t106)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
+    M_right_rear_elbow_down_alike = np.maximum(-t380, t106)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t389 = t388 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t389 / whole_right_rear_elbow_down_alike)
-    t390 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t391 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t392 = np.arctan2(t387 - r_right_rear_elbow_down_alike * t390, t391 + h_right_rear_elbow_down_alike * t390)
-    t393 = _runtime.select(folded_right_rear_elbow_down_alike, t385, t392)
-    t394 = _runtime.wrap_cut(t393) + t383
-    t395 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t396 = _runtime.select(short_right, 0.0, t388 * t395)
-    t397 = _runtime.wrap_cut(_runtime.wrap(t105 + t396))
-    t398 = t397 + t383
-    folded_left_rear_elbow_down_alike = np.sqrt(t381) <= t96
-    M_left_rear_elbow_down_alike = np.maximum(t382, 0.0)
-    N_left_rear_elbow_down_alike = np.maximum(t377, 0.0)
+    t395 = t394 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t395 / whole_right_rear_elbow_down_alike)
+    t396 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t397 = t108 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t92 + t397)
+    up_right_rear_elbow_down_alike = t375 * t396 - t373 * ahead_1_right_rear_elbow_down_alike
+    t398 = t375 * ahead_1_right_rear_elbow_down_alike + t373 * t396
+    t399 = np.arctan2(up_right_rear_elbow_down_alike, -t398)
+    t400 = _runtime.select(folded_right_rear_elbow_down_alike, t393, t399)
+    t401 = _runtime.wrap_cut(t400) + t391
+    t402 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t403 = _runtime.select(short_right, 0.0, t394 * t402)
+    t404 = _runtime.wrap_cut(_runtime.wrap(t112 + t403))
+    t405 = t404 + t391
+    folded_left_rear_elbow_down_alike = np.sqrt(t389) <= t103
+    M_left_rear_elbow_down_alike = np.maximum(t390, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t384, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t399 = t98 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t85 + t399)
-    t400 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t406 = t108 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t92 + t406)
+    t407 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t401 = t388 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t401 / whole_left_rear_elbow_down_alike)
-    t402 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t403 = r_left_rear_elbow_down_alike * t402
-    t404 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t405 = h_left_rear_elbow_down_alike * t402
-    t406 = _runtime.select(folded_left_rear_elbow_down_alike, t385, np.arctan2(t400 - t403, t404 + t405))
-    t407 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t408 = _runtime.select(short_right, 0.0, t388 * t407)
-    t409 = t116 + t383
-    t410 = _runtime.select(folded_left_rear_elbow_down_alike, t385, np.arctan2(t400 + t403, t404 - t405))
-    t411 = nowhere | folded | short
-    t412 = t411 | folded_right | short_right | folded_left
-    t413 = _runtime.status(invalid, unreachable, t412)
-    t414 = t411 | folded_right_front_elbow_down_alike | short_right
-    t415 = _runtime.status(invalid, unreachable_2, t414 | folded_left_front_elbow_down_alike)
-    t416 = nowhere | folded_rear_elbow_up_alike | short
-    t417 = t416 | folded_right_rear_elbow_up_alike | short_right
-    t418 = _runtime.status(invalid, unreachable_3, t417 | folded_left_rear_elbow_up_alike)
-    t419 = t416 | folded_right_rear_elbow_down_alike | short_right
-    t420 = _runtime.status(invalid, unreachable_4, t419 | folded_left_rear_elbow_down_alike)
+    t408 = t394 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t408 / whole_left_rear_elbow_down_alike)
+    t409 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t410 = r_left_rear_elbow_down_alike * t409
+    t411 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t412 = h_left_rear_elbow_down_alike * t409
+    t413 = _runtime.select(folded_left_rear_elbow_down_alike, t393, np.arctan2(t407 - t410, t411 + t412))
+    t414 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t415 = _runtime.select(short_right, 0.0, t394 * t414)
+    t416 = t123 + t391
+    t417 = _runtime.select(folded_left_rear_elbow_down_alike, t393, np.arctan2(t407 + t410, t411 - t412))
+    t418 = nowhere | folded | short
+    square = t93 + M
+    t419 = 10000.0 * t79
+    pole = M * square <= _runtime.VANISHING * (t419 * gap)
+    t420 = _runtime.VANISHING * t419
+    t421 = t418 | pole | (square <= t420) | folded_right
+    t422 = _runtime.status(invalid, unreachable, t421 | short_right | folded_left)
+    square_front_elbow_down_alike = t93 + M_front_elbow_down_alike
+    t423 = M_front_elbow_down_alike * square_front_elbow_down_alike
+    t424 = _runtime.VANISHING * (t419 * gap_front_elbow_down_alike)
+    t425 = t418 | (t423 <= t424) | (square_front_elbow_down_alike <= t420)
+    t426 = t425 | folded_right_front_elbow_down_alike | short_right
+    t427 = _runtime.status(invalid, unreachable_2, t426 | folded_left_front_elbow_down_alike)
+    t428 = nowhere | folded_rear_elbow_up_alike | short
+    square_rear_elbow_up_alike = t93 + M_rear_elbow_up_alike
+    t429 = M_rear_elbow_up_alike * square_rear_elbow_up_alike
+    t430 = _runtime.VANISHING * (t419 * gap_rear_elbow_up_alike)
+    t431 = t428 | (t429 <= t430) | (square_rear_elbow_up_alike <= t420)
+    t432 = t431 | folded_right_rear_elbow_up_alike | short_right
+    t433 = _runtime.status(invalid, unreachable_3, t432 | folded_left_rear_elbow_up_alike)
+    square_rear_elbow_down_alike = t93 + M_rear_elbow_down_alike
+    t434 = M_rear_elbow_down_alike * square_rear_elbow_down_alike
+    t435 = _runtime.VANISHING * (t419 * gap_rear_elbow_down_alike)
+    t436 = t428 | (t434 <= t435) | (square_rear_elbow_down_alike <= t420)
+    t437 = t436 | folded_right_rear_elbow_down_alike | short_right
+    t438 = _runtime.status(invalid, unreachable_4, t437 | folded_left_rear_elbow_down_alike)
     return (
-        t95,
-        t104,
-        t108,
-        _runtime.wrap_cut(t114) + t94,
-        _runtime.wrap(t105 + t115) + t94,
-        t117,
-        t95,
-        t104,
-        t108,
-        _runtime.wrap_cut(t118) + t94,
-        _runtime.wrap(t105 - t115) + t94,
-        t117,
-        t181,
-        t191,
-        t195,
-        _runtime.wrap_cut(t203) + t180,
-        _runtime.wrap(t105 + t205) + t180,
-        t206,
-        t181,
-        t191,
-        t195,
-        _runtime.wrap_cut(t207) + t180,
-        _runtime.wrap(t105 - t205) + t180,
-        t206,
-        t295,
-        t305,
-        t309,
-        _runtime.wrap_cut(t317) + t294,
-        _runtime.wrap(t105 + t319) + t294,
-        t320,
-        t295,
-        t305,
-        t309,
-        _runtime.wrap_cut(t321) + t294,
-        _runtime.wrap(t105 - t319) + t294,
-        t320,
-        t384,
-        t394,
-        t398,
-        _runtime.wrap_cut(t406) + t383,
-        _runtime.wrap(t105 + t408) + t383,
-        t409,
-        t384,
-        t394,
-        t398,
-        _runtime.wrap_cut(t410) + t383,
-        _runtime.wrap(t105 - t408) + t383,
-        t409,
-        t413,
-        t413,
-        t415,
-        t415,
-        t418,
-        t418,
-        t420,
-        t420,
+        t102,
+        t111,
+        t115,
+        _runtime.wrap_cut(t121) + t101,
+        _runtime.wrap(t112 + t122) + t101,
+        t124,
+        t102,
+        t111,
+        t115,
+        _runtime.wrap_cut(t125) + t101,
+        _runtime.wrap(t112 - t122) + t101,
+        t124,
+        t189,
+        t198,
+        t202,
+        _runtime.wrap_cut(t210) + t188,
+        _runtime.wrap(t112 + t212) + t188,
+        t213,
+        t189,
+        t198,
+        t202,
+        _runtime.wrap_cut(t214) + t188,
+        _runtime.wrap(t112 - t212) + t188,
+        t213,
+        t303,
+        t312,
+        t316,
+        _runtime.wrap_cut(t324) + t302,
+        _runtime.wrap(t112 + t326) + t302,
+        t327,
+        t303,
+        t312,
+        t316,
+        _runtime.wrap_cut(t328) + t302,
+        _runtime.wrap(t112 - t326) + t302,
+        t327,
+        t392,
+        t401,
+        t405,
+        _runtime.wrap_cut(t413) + t391,
+        _runtime.wrap(t112 + t415) + t391,
+        t416,
+        t392,
+        t401,
+        t405,
+        _runtime.wrap_cut(t417) + t391,
+        _runtime.wrap(t112 - t415) + t391,
+        t416,
+        t422,
+        t422,
+        t427,
+        t427,
+        t433,
+        t433,
+        t438,
+        t438,
     )
 
 

@@ -25,10 +25,10 @@ class Lemma:
     """A lemma applied: ``equations`` vanish at ``solution`` (unknown -> closed form).
 
     ``excluded`` solutions of the equations violate the inequality that ``statement`` names.
-    ``pairs`` holds the names of the cosine and the sine of an unknown, computed without its angle,
-    for the steps that follow; ``body`` are the statements that the lemma added to the program.
-    ``premises`` says what names of earlier statements must stand for; where the inverse is proved,
-    so is that.
+    ``pairs`` holds the names of the cosine and the sine of an unknown, or of a sum of them,
+    computed without its angle, for the steps that follow; ``body`` are the statements that the
+    lemma added to the program.  ``premises`` says what names of earlier statements must stand for;
+    where the inverse is proved, so is that.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Lemma:
     solution: Mapping[sp.Symbol, sp.Expr]
     branches: int
     excluded: int = 0
-    pairs: Mapping[sp.Symbol, tuple[sp.Symbol, sp.Symbol]] = field(default_factory=dict)
+    pairs: Mapping[sp.Expr, tuple[sp.Symbol, sp.Symbol]] = field(default_factory=dict)
     body: tuple[Statement, ...] = ()
     premises: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 

@@ -33,7 +33,7 @@ def prove_lemma(
         signs = {sign: value} if sign else {}
         values = function.values(signs)
         solution = dict(zip(lemma.solution, values, strict=False))
-        circle = [f(solution[x]) for x in lemma.pairs for f in (sp.cos, sp.sin)]
+        circle = [f(x.xreplace(solution)) for x in lemma.pairs for f in (sp.cos, sp.sin)]
         named = [a - b for a, b in zip(circle, values[len(solution) :], strict=True)]
         vanishing = sp.Matrix([*(substitute(e, solution) for e in lemma.equations), *named])
         bounds = tuple(substitute(b, given) for b in function.bounds(signs))

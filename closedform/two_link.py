@@ -216,6 +216,6 @@ def _arm(
         ),
         {x: angles[0], y: angles[0] + angles[1] + sp.atan2(lag[1], lag[0])},
         2,
-        pairs={x: (cx, sx), y: (cy, sy)},
+        pairs={x: (cx, sx), y: (cy, sy), y - x: turn},
         body=tuple(program.body[start:]),
     )

@@ -355,9 +355,7 @@ d.function(
 p = Program()
 length, base = wrist_given(p, m, cos(psi))
 middle = solve_mid_plane(p, m, q, length, base)
-upper, fore = middle.posture.upper, middle.posture.fore
-bend = (upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
-bend = Pair(*(p.let(f"{f}_elbow", e) for f, e in zip("cs", bend, strict=True)))
+upper, elbow = middle.posture.upper, middle.elbow
 gap = p.let("ahead", m.d * sin(psi) / cos(psi)), p.let("higher", m.d * sin(phi) / cos(phi))
 size = p.let("size", m.L1 + sqrt(m.L2**2 + m.a3**2))
 # seen from the upper arm, whose sine multiplies (0, L1)
@@ -365,8 +363,8 @@ seen = (
     p.let("p_1", upper.c * gap[0] + upper.s * gap[1]),
     p.let("p_2", upper.c * gap[1] - upper.s * gap[0]),
 )
-v = p.let("v_1", m.L2 * bend.c - m.a3 * bend.s), p.let("v_2", m.L2 * bend.s + m.a3 * bend.c)
-free = free_turn(p, m, bend, size)
+v = p.let("v_1", m.L2 * elbow.c - m.a3 * elbow.s), p.let("v_2", m.L2 * elbow.s + m.a3 * elbow.c)
+free = free_turn(p, m, elbow, size)
 turns, leans = [], []
 for sine in ("alpha", "beta"):
     # by Cramer's rule sin(alpha) = (p x v) / (u x v) and sin(beta) = (u x p) / (u x v)

@@ -376,9 +376,7 @@ wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
 mid = solve_mid_plane(p, m, q, wrist, half_base)
 upper, fore = mid.posture.upper, mid.posture.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
-bend = (upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
-bend = Pair(*(p.let(f"{f}_elbow", e) for f, e in zip("cs", bend, strict=True)))
-(N, M), bent = elbow_squares(p, lengths, second, bend)
+(N, M), bent = elbow_squares(p, lengths, second, mid.elbow)
 side = p.let("sigma_right", sp.Piecewise((1, bent >= 0), (-1, True)))
 opposite = p.let("sigma_other", side * sigma_left)
 by_pairs = {cos(theta23A): fore.c, sin(theta23A): fore.s}
@@ -394,7 +392,7 @@ size = p.let("size", m.L1 + second)
 square = p.let("square", M + (m.L1 - second) ** 2)
 p.vanishes("pole", M * square, 10**4 * gap * size**2, "the virtual arm is folded", (psi, phi))
 p.vanishes("at_shoulder", square, 10**4 * size**2, "the virtual arm has no length", (psi, phi))
-free = free_turn(p, m, bend, size)
+free = free_turn(p, m, mid.elbow, size)
 ends, slopes, turns = {}, {}, []
 for name, sign in (("right", 1), ("left", -1)):
     r, h = (p.let(f"{c}_{name}_0", point[k] + sign * shift[k]) for k, c in enumerate("rh"))

@@ -260,7 +260,8 @@ class MidPlane(NamedTuple):
 
     lemmas: tuple[Lemma, ...]
     posture: Posture
-    sigma_bend: sp.Symbol
+    elbow: Pair
+    """Of the angle from the upper arm to the fore-arm."""
 
 
 def solve_mid_plane(
@@ -303,7 +304,8 @@ def solve_mid_plane(
         base,
     )
     pitched = linear_pair(q.theta, sin(pitch), cos(pitch))
-    return MidPlane((pitched, turn, bend), posture, sigma_bend)
+    elbow = Pair(*bend.pairs[theta23A - theta2A])
+    return MidPlane((pitched, turn, bend), posture, elbow)
 
 
 def tip_system(m: Dimensions, q: Joints, level: sp.Expr) -> tuple[tuple, tuple]:

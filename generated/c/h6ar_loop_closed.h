@@ -11,7 +11,7 @@
  *   jacobian: 208 add, 54 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
  *   determinant: 86 add, 54 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
  *   singularities: 91 add, 54 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
- *   ik: 360 compare and select, 371 add, 28 atan2, 78 divide, 461 multiply, 3 sincos, 41 sqrt
+ *   ik: 360 compare and select, 363 add, 28 atan2, 78 divide, 445 multiply, 3 sincos, 41 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt

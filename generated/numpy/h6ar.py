@@ -10,7 +10,7 @@
 #   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 420 compare and select, 364 add, 26 atan2, 87 divide, 391 multiply, 3 sincos, 33 sqrt
+#   ik: 420 compare and select, 348 add, 26 atan2, 87 divide, 359 multiply, 3 sincos, 33 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -880,562 +880,533 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     stheta2A = t49 + t50
     p_1 = ahead * ctheta2A + higher * stheta2A
     bare = fore <= t41
-    c_lag = _runtime.select(bare, 1.0, a_3W / fore)
+    s_lag = _runtime.select(bare, 0.0, L_2W / fore)
     t51 = A * S
     t52 = C * B
     at_elbow = t51 + t52
     c_bend = _runtime.select(short, 1.0, -((t51 - t52) / at_elbow))
-    t53 = c_lag * c_bend
-    s_lag = _runtime.select(bare, 0.0, L_2W / fore)
+    t53 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W / fore)
     s_bend_front_elbow_down = _runtime.select(short, 0.0, area_front_elbow_down / at_elbow)
-    t54 = s_lag * s_bend_front_elbow_down
-    c_relative = t53 + t54
-    t55 = s_lag * c_bend
-    t56 = c_lag * s_bend_front_elbow_down
-    s_relative = t55 - t56
-    ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
-    stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    t57 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t58 = L2 * t57 - a3 * c_elbow
-    t59 = ahead * stheta2A - higher * ctheta2A
-    v_1 = L2 * c_elbow + a3 * t57
-    part_alpha = p_1 * t58 - t59 * v_1
-    t60 = _runtime.select(0.0 <= part_alpha, 1.0, -1.0)
+    t54 = c_lag * s_bend_front_elbow_down
+    s_relative = t53 - t54
+    t55 = c_lag * c_bend
+    t56 = s_lag * s_bend_front_elbow_down
+    c_relative = t55 + t56
+    v_2 = L2 * s_relative + a3 * c_relative
+    t57 = ahead * stheta2A - higher * ctheta2A
+    v_1 = L2 * c_relative - a3 * s_relative
+    t58 = p_1 * v_2 + t57 * v_1
+    t59 = _runtime.select(0.0 <= -t58, 1.0, -1.0)
     whole_alpha = L1 * v_1
-    t61 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
-    t62 = part_alpha * t60 - whole_alpha * t61
-    t63 = _runtime.VANISHING * t40
-    spent_alpha = -t62 <= t63
-    drawn = L1 - L_2W * t57 + a_3W * c_elbow
-    slope_alpha = t58 * t61 * drawn + t60 * (p_1 * v_1 + t58 * t59)
-    t64 = size / 100000.0
-    t65 = t64 + np.abs(L_2W * c_elbow + a_3W * t57)
-    t66 = _runtime.select(spent_alpha, size * np.abs(slope_alpha) / t65, 0.0)
-    t67 = -(_runtime.FEASIBILITY * (t40 + t66)) <= -t62
+    t60 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
+    room_alpha = t58 * t59 + whole_alpha * t60
+    t61 = _runtime.VANISHING * t40
+    spent_alpha = room_alpha <= t61
+    drawn = L1 + L_2W * s_relative + a_3W * c_relative
+    t62 = v_2 * t60 * drawn - t59 * (p_1 * v_1 - v_2 * t57)
+    t63 = size / 100000.0
+    t64 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t65 = t63 + t64
+    t66 = _runtime.select(spent_alpha, size * np.abs(t62) / t65, 0.0)
+    t67 = -(_runtime.FEASIBILITY * (t40 + t66)) <= room_alpha
     t68 = size * size * size * size / 10000000000.0
-    t69 = slope_alpha * (t62 + np.abs(t62)) / (2.0 * (t68 + slope_alpha * slope_alpha))
+    t69 = t62 * (room_alpha - np.abs(room_alpha)) / (2.0 * (t68 + t62 * t62))
     turn_alpha = _runtime.select(spent_alpha, t69, 0.0)
     lean_alpha = _runtime.select(spent_alpha, turn_alpha - drawn * turn_alpha / L1, 0.0)
-    p_1_alpha = _runtime.select(spent_alpha, p_1 - t59 * lean_alpha, p_1)
+    p_1_alpha = _runtime.select(spent_alpha, p_1 - t57 * lean_alpha, p_1)
     part_beta = L1 * p_1_alpha
     t70 = _runtime.select(0.0 <= part_beta, 1.0, -1.0)
     t71 = turn_alpha - lean_alpha
-    v_1_alpha = _runtime.select(spent_alpha, v_1 + t58 * t71, v_1)
+    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t71, v_1)
     whole_beta = L1 * v_1_alpha
     t72 = _runtime.select(0.0 <= whole_beta, 1.0, -1.0)
     t73 = part_beta * t70 - whole_beta * t72
-    spent_beta = -t73 <= t63
-    t74 = _runtime.select(spent_alpha, t58 - v_1 * t71, t58)
-    t75 = _runtime.select(spent_alpha, t59 + p_1 * lean_alpha, t59)
-    slope_beta = drawn * t72 * t74 + t70 * t75 * (L1 - drawn)
-    t76 = _runtime.select(spent_beta, size * np.abs(slope_beta) / t65, 0.0)
+    spent_beta = -t73 <= t61
+    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t71, v_2)
+    t74 = _runtime.select(spent_alpha, t57 + p_1 * lean_alpha, t57)
+    t75 = drawn * t72 * v_2_alpha - t70 * t74 * (L1 - drawn)
+    t76 = _runtime.select(spent_beta, size * np.abs(t75) / t65, 0.0)
     t77 = -(_runtime.FEASIBILITY * (t40 + t76)) <= -t73
     t78 = np.abs(ahead)
     t79 = np.abs(higher)
     t80 = d + t78 + t79
     t81 = -(_runtime.FEASIBILITY * t80)
-    t82 = slope_beta * (t73 + np.abs(t73)) / (2.0 * (t68 + slope_beta * slope_beta))
-    turn_beta = _runtime.select(spent_beta, t82, 0.0)
+    t82 = t75 * (t73 + np.abs(t73)) / (2.0 * (t68 + t75 * t75))
+    turn_beta = _runtime.select(spent_beta, -t82, 0.0)
     lean_beta = _runtime.select(spent_beta, turn_beta - drawn * turn_beta / L1, 0.0)
     t83 = turn_beta - lean_beta
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha + t74 * t83, v_1_alpha)
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t83, v_1_alpha)
     sigma_uv = _runtime.select(0.0 <= -v_1_beta, 1.0, -1.0)
     t84 = v_1_beta * sigma_uv
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t75 * lean_beta, p_1_alpha)
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t74 * lean_beta, p_1_alpha)
     t85 = sigma_uv * p_1_beta
     t86 = t39 & t67 & t77 & (t81 <= -(t84 + np.abs(t85)))
-    t87 = _runtime.select(spent_beta, t75 + p_1_alpha * lean_beta, t75)
-    t88 = _runtime.select(spent_beta, t74 - v_1_alpha * t83, t74)
-    t89 = np.abs(t88)
-    parallel = -t84 <= _runtime.VANISHING * (64.0 * t89)
-    part_y = _runtime.select(parallel, _runtime.select(0.0 <= -t88, -t87, t87), -t85)
-    whole_y = _runtime.select(parallel, L1 + t89, -t84)
-    t90 = t87 - t88 * part_y / whole_y
-    left_along = L1 - np.abs(t90)
-    t91 = _runtime.VANISHING * t80
-    spent_along = left_along <= t91
-    t92 = L1 / 1000000000.0
-    t93 = _runtime.select(spent_along, t89 / (t92 - t84), 0.0)
-    t94 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t93)))
-    t95 = t88 * (left_along / 2.0 - np.abs(left_along) / 2.0)
-    t96 = t95 / (t84 * t84 + t88 * t88)
-    t97 = whole_y * _runtime.select(0.0 <= -t90, t96, -t96)
-    eased = _runtime.select(spent_along, part_y + t97, part_y)
-    t98 = whole_y - eased
-    t99 = whole_y + eased
-    t100 = t86 & (t94 <= left_along) & (t81 <= t98) & (t81 <= t99)
-    t101 = _runtime.VANISHING * (d * 16.0 + t78 * 16.0 + t79 * 16.0)
-    t102 = _runtime.VANISHING * t101
-    below_beta = np.maximum(t98, t102)
-    above_beta = np.maximum(t99, t102)
+    t87 = _runtime.select(spent_beta, t74 + p_1_alpha * lean_beta, t74)
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t83, v_2_alpha)
+    t88 = np.abs(v_2_beta)
+    parallel = -t84 <= _runtime.VANISHING * (64.0 * t88)
+    part_y = _runtime.select(parallel, _runtime.select(0.0 <= v_2_beta, -t87, t87), -t85)
+    whole_y = _runtime.select(parallel, L1 + t88, -t84)
+    t89 = t87 + v_2_beta * part_y / whole_y
+    left_along = L1 - np.abs(t89)
+    t90 = _runtime.VANISHING * t80
+    spent_along = left_along <= t90
+    t91 = L1 / 1000000000.0
+    t92 = _runtime.select(spent_along, t88 / (t91 - t84), 0.0)
+    t93 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t92)))
+    t94 = v_2_beta * (left_along / 2.0 - np.abs(left_along) / 2.0)
+    t95 = t94 / (t84 * t84 + v_2_beta * v_2_beta)
+    t96 = whole_y * _runtime.select(0.0 <= -t89, -t95, t95)
+    eased = _runtime.select(spent_along, part_y + t96, part_y)
+    t97 = whole_y - eased
+    t98 = whole_y + eased
+    t99 = t86 & (t93 <= left_along) & (t81 <= t97) & (t81 <= t98)
+    t100 = _runtime.VANISHING * (d * 16.0 + t78 * 16.0 + t79 * 16.0)
+    t101 = _runtime.VANISHING * t100
+    below_beta = np.maximum(t97, t101)
+    above_beta = np.maximum(t98, t101)
     total_beta = below_beta + above_beta
-    t103 = (below_beta - above_beta) / total_beta
-    t104 = t87 + t88 * t103
-    t105 = L1 + t104
-    t106 = L1 - t104
-    unreachable = np.logical_not(t100 & (t81 <= t105) & (t81 <= t106))
-    t107 = _runtime.poison(invalid | unreachable)
-    t108 = np.arctan2(lean_alpha + lean_beta, 1.0)
-    below_alpha = np.maximum(t105, t102)
-    above_alpha = np.maximum(t106, t102)
+    t102 = (below_beta - above_beta) / total_beta
+    t103 = t87 - v_2_beta * t102
+    t104 = L1 + t103
+    t105 = L1 - t103
+    unreachable = np.logical_not(t99 & (t81 <= t104) & (t81 <= t105))
+    t106 = _runtime.poison(invalid | unreachable)
+    t107 = np.arctan2(lean_alpha + lean_beta, 1.0)
+    below_alpha = np.maximum(t104, t101)
+    above_alpha = np.maximum(t105, t101)
     total_alpha = below_alpha + above_alpha
-    t109 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t110 = np.arctan2((below_alpha - above_alpha) / total_alpha, t109 / total_alpha)
-    t111 = t108 - t110
-    t112 = _runtime.select(folded, 0.0, np.arctan2(t28, outward))
-    t113 = _runtime.select(t42, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
-    t114 = t112 + t113
-    t115 = _runtime.wrap(_runtime.wrap(t111 + t114)) + t107
-    t116 = np.arctan2(s_lag, c_lag)
-    t117 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t47, t46))
-    t118 = t117 - np.arctan2(turn_alpha + turn_beta, 1.0)
-    t119 = t116 - t118
-    t120 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    t121 = np.arctan2(t103, t120 / total_beta)
-    t122 = _runtime.wrap(_runtime.wrap(-(t111 - t119 + t121)))
-    t123 = t108 + t110
-    t124 = _runtime.wrap(_runtime.wrap(t114 + t123)) + t107
-    t125 = _runtime.wrap(_runtime.wrap(t119 + t121 - t123))
-    t126 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t108 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t109 = np.arctan2((below_alpha - above_alpha) / total_alpha, t108 / total_alpha)
+    t110 = t107 - t109
+    t111 = _runtime.select(folded, 0.0, np.arctan2(t28, outward))
+    t112 = _runtime.select(t42, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
+    t113 = t111 + t112
+    t114 = _runtime.wrap(_runtime.wrap(t110 + t113)) + t106
+    t115 = np.arctan2(s_lag, c_lag)
+    t116 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t47, t46))
+    t117 = t116 - np.arctan2(turn_alpha + turn_beta, 1.0)
+    t118 = t115 - t117
+    t119 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t120 = np.arctan2(t102, t119 / total_beta)
+    t121 = _runtime.wrap(_runtime.wrap(-(t110 - t118 + t120)))
+    t122 = t107 + t109
+    t123 = _runtime.wrap(_runtime.wrap(t113 + t122)) + t106
+    t124 = _runtime.wrap(_runtime.wrap(t118 + t120 - t122))
+    t125 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
     ctheta2A_front_elbow_down = t45 + t48
     stheta2A_front_elbow_down = t49 - t50
     p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + higher * stheta2A_front_elbow_down
-    c_relative_front_elbow_down = t53 - t54
-    t127 = ctheta2A_front_elbow_down * c_relative_front_elbow_down
-    s_relative_front_elbow_down = t55 + t56
-    t128 = stheta2A_front_elbow_down * s_relative_front_elbow_down
-    ctheta23A_front_elbow_down = t127 - t128
-    t129 = stheta2A_front_elbow_down * ctheta23A_front_elbow_down
-    t130 = stheta2A_front_elbow_down * c_relative_front_elbow_down
-    t131 = ctheta2A_front_elbow_down * s_relative_front_elbow_down
-    stheta23A_front_elbow_down = t130 + t131
-    t132 = ctheta2A_front_elbow_down * stheta23A_front_elbow_down
-    t133 = t129 - t132
-    t134 = ctheta2A_front_elbow_down * ctheta23A_front_elbow_down
-    t135 = stheta2A_front_elbow_down * stheta23A_front_elbow_down
-    c_elbow_front_elbow_down = t134 + t135
-    t136 = L2 * t133 - a3 * c_elbow_front_elbow_down
-    t137 = ahead * stheta2A_front_elbow_down - higher * ctheta2A_front_elbow_down
-    v_1_front_elbow_down = L2 * c_elbow_front_elbow_down + a3 * t133
-    part_alpha_front_elbow_down = p_1_front_elbow_down * t136 - t137 * v_1_front_elbow_down
-    t138 = _runtime.select(0.0 <= part_alpha_front_elbow_down, 1.0, -1.0)
+    s_relative_front_elbow_down = t53 + t54
+    c_relative_front_elbow_down = t55 - t56
+    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
+    t126 = ahead * stheta2A_front_elbow_down - higher * ctheta2A_front_elbow_down
+    v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
+    t127 = p_1_front_elbow_down * v_2_front_elbow_down + t126 * v_1_front_elbow_down
+    t128 = _runtime.select(0.0 <= -t127, 1.0, -1.0)
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t139 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
-    t140 = part_alpha_front_elbow_down * t138 - whole_alpha_front_elbow_down * t139
-    spent_alpha_front_elbow_down = -t140 <= t63
-    drawn_front_elbow_down = L1 - L_2W * t133 + a_3W * c_elbow_front_elbow_down
-    t141 = p_1_front_elbow_down * v_1_front_elbow_down + t136 * t137
-    slope_alpha_front_elbow_down = t136 * t139 * drawn_front_elbow_down + t138 * t141
-    tilt_front_elbow_down = L_2W * c_elbow_front_elbow_down + a_3W * t133
-    t142 = t64 + np.abs(tilt_front_elbow_down)
-    t143 = size * np.abs(slope_alpha_front_elbow_down) / t142
-    t144 = _runtime.select(spent_alpha_front_elbow_down, t143, 0.0)
-    t145 = -(_runtime.FEASIBILITY * (t40 + t144)) <= -t140
-    t146 = slope_alpha_front_elbow_down * (t140 + np.abs(t140))
-    t147 = slope_alpha_front_elbow_down * slope_alpha_front_elbow_down
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t146 / (2.0 * (t68 + t147)), 0.0)
-    t148 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t148 / L1, 0.0)
-    t149 = p_1_front_elbow_down - t137 * lean_alpha_front_elbow_down
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t149, p_1_front_elbow_down)
+    t129 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
+    room_alpha_front_elbow_down = t127 * t128 + whole_alpha_front_elbow_down * t129
+    spent_alpha_front_elbow_down = room_alpha_front_elbow_down <= t61
+    drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
+    t130 = v_2_front_elbow_down * t129 * drawn_front_elbow_down
+    t131 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t126
+    t132 = t130 - t128 * t131
+    tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
+    t133 = t63 + np.abs(tilt_front_elbow_down)
+    t134 = _runtime.select(spent_alpha_front_elbow_down, size * np.abs(t132) / t133, 0.0)
+    t135 = -(_runtime.FEASIBILITY * (t40 + t134)) <= room_alpha_front_elbow_down
+    t136 = room_alpha_front_elbow_down - np.abs(room_alpha_front_elbow_down)
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t132 * t136 / (2.0 * (t68 + t132 * t132)), 0.0)
+    t137 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t137 / L1, 0.0)
+    t138 = p_1_front_elbow_down - t126 * lean_alpha_front_elbow_down
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t138, p_1_front_elbow_down)
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t150 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
-    t151 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, v_1_front_elbow_down + t136 * t151, v_1_front_elbow_down)
+    t139 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
+    t140 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
+    t141 = v_1_front_elbow_down - v_2_front_elbow_down * t140
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t141, v_1_front_elbow_down)
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t152 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
-    t153 = part_beta_front_elbow_down * t150 - whole_beta_front_elbow_down * t152
-    spent_beta_front_elbow_down = -t153 <= t63
-    t154 = _runtime.select(spent_alpha_front_elbow_down, t136 - v_1_front_elbow_down * t151, t136)
-    t155 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    t156 = _runtime.select(spent_alpha_front_elbow_down, t137 + t155, t137)
-    slope_beta_front_elbow_down = drawn_front_elbow_down * t152 * t154 + t150 * t156 * (L1 - drawn_front_elbow_down)
-    t157 = size * np.abs(slope_beta_front_elbow_down) / t142
-    t158 = _runtime.select(spent_beta_front_elbow_down, t157, 0.0)
-    t159 = -(_runtime.FEASIBILITY * (t40 + t158)) <= -t153
-    t160 = slope_beta_front_elbow_down * (t153 + np.abs(t153))
-    t161 = slope_beta_front_elbow_down * slope_beta_front_elbow_down
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t160 / (2.0 * (t68 + t161)), 0.0)
-    t162 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t162 / L1, 0.0)
-    t163 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, v_1_alpha_front_elbow_down + t154 * t163, v_1_alpha_front_elbow_down)
+    t142 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
+    t143 = part_beta_front_elbow_down * t139 - whole_beta_front_elbow_down * t142
+    spent_beta_front_elbow_down = -t143 <= t61
+    t144 = v_2_front_elbow_down + v_1_front_elbow_down * t140
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t144, v_2_front_elbow_down)
+    t145 = drawn_front_elbow_down * t142 * v_2_alpha_front_elbow_down
+    t146 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t147 = _runtime.select(spent_alpha_front_elbow_down, t126 + t146, t126)
+    t148 = t145 - t139 * t147 * (L1 - drawn_front_elbow_down)
+    t149 = _runtime.select(spent_beta_front_elbow_down, size * np.abs(t148) / t133, 0.0)
+    t150 = -(_runtime.FEASIBILITY * (t40 + t149)) <= -t143
+    t151 = t148 * (t143 + np.abs(t143)) / (2.0 * (t68 + t148 * t148))
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t151, 0.0)
+    t152 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t152 / L1, 0.0)
+    t153 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
+    t154 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t153
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t154, v_1_alpha_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.select(0.0 <= -v_1_beta_front_elbow_down, 1.0, -1.0)
-    t164 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    t165 = p_1_alpha_front_elbow_down - t156 * lean_beta_front_elbow_down
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t165, p_1_alpha_front_elbow_down)
-    t166 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    t167 = t39 & t145 & t159 & (t81 <= -(t164 + np.abs(t166)))
-    t168 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    t169 = _runtime.select(spent_beta_front_elbow_down, t156 + t168, t156)
-    t170 = _runtime.select(spent_beta_front_elbow_down, t154 - v_1_alpha_front_elbow_down * t163, t154)
-    t171 = np.abs(t170)
-    parallel_front_elbow_down = -t164 <= _runtime.VANISHING * (64.0 * t171)
-    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, _runtime.select(0.0 <= -t170, -t169, t169), -t166)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t171, -t164)
-    t172 = t170 * part_y_front_elbow_down / whole_y_front_elbow_down
-    t173 = t169 - t172
-    left_along_front_elbow_down = L1 - np.abs(t173)
-    spent_along_front_elbow_down = left_along_front_elbow_down <= t91
-    t174 = _runtime.select(spent_along_front_elbow_down, t171 / (t92 - t164), 0.0)
-    t175 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t174)))
-    t176 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
-    t177 = t170 * t176 / (t164 * t164 + t170 * t170)
-    t178 = whole_y_front_elbow_down * _runtime.select(0.0 <= -t173, t177, -t177)
-    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, part_y_front_elbow_down + t178, part_y_front_elbow_down)
-    t179 = whole_y_front_elbow_down - eased_front_elbow_down
-    t180 = t167 & (t175 <= left_along_front_elbow_down) & (t81 <= t179)
-    t181 = whole_y_front_elbow_down + eased_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t179, t102)
-    above_beta_front_elbow_down = np.maximum(t181, t102)
-    t182 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t155 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t156 = p_1_alpha_front_elbow_down - t147 * lean_beta_front_elbow_down
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t156, p_1_alpha_front_elbow_down)
+    t157 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t158 = t39 & t135 & t150 & (t81 <= -(t155 + np.abs(t157)))
+    t159 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t160 = _runtime.select(spent_beta_front_elbow_down, t147 + t159, t147)
+    t161 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t153
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t161, v_2_alpha_front_elbow_down)
+    t162 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t155 <= _runtime.VANISHING * (64.0 * t162)
+    t163 = _runtime.select(0.0 <= v_2_beta_front_elbow_down, -t160, t160)
+    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, t163, -t157)
+    t164 = v_2_beta_front_elbow_down * part_y_front_elbow_down
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t162, -t155)
+    t165 = t160 + t164 / whole_y_front_elbow_down
+    left_along_front_elbow_down = L1 - np.abs(t165)
+    spent_along_front_elbow_down = left_along_front_elbow_down <= t90
+    t166 = _runtime.select(spent_along_front_elbow_down, t162 / (t91 - t155), 0.0)
+    t167 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t166)))
+    t168 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
+    t169 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t170 = v_2_beta_front_elbow_down * t168 / (t155 * t155 + t169)
+    t171 = whole_y_front_elbow_down * _runtime.select(0.0 <= -t165, -t170, t170)
+    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, part_y_front_elbow_down + t171, part_y_front_elbow_down)
+    t172 = whole_y_front_elbow_down - eased_front_elbow_down
+    t173 = t158 & (t167 <= left_along_front_elbow_down) & (t81 <= t172)
+    t174 = whole_y_front_elbow_down + eased_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t172, t101)
+    above_beta_front_elbow_down = np.maximum(t174, t101)
+    t175 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t183 = t182 / total_beta_front_elbow_down
-    t184 = t169 + t170 * t183
-    t185 = L1 + t184
-    t186 = L1 - t184
-    t187 = t180 & (t81 <= t181) & (t81 <= t185) & (t81 <= t186)
-    unreachable_2 = np.logical_not(t187)
-    t188 = _runtime.poison(invalid | unreachable_2)
-    t189 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    t190 = np.arctan2(t189, 1.0)
-    below_alpha_front_elbow_down = np.maximum(t185, t102)
-    above_alpha_front_elbow_down = np.maximum(t186, t102)
-    t191 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t176 = t175 / total_beta_front_elbow_down
+    t177 = t160 - v_2_beta_front_elbow_down * t176
+    t178 = L1 + t177
+    t179 = L1 - t177
+    t180 = t173 & (t81 <= t174) & (t81 <= t178) & (t81 <= t179)
+    unreachable_2 = np.logical_not(t180)
+    t181 = _runtime.poison(invalid | unreachable_2)
+    t182 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t183 = np.arctan2(t182, 1.0)
+    below_alpha_front_elbow_down = np.maximum(t178, t101)
+    above_alpha_front_elbow_down = np.maximum(t179, t101)
+    t184 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t192 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
-    t193 = np.arctan2(t191 / total_alpha_front_elbow_down, t192 / total_alpha_front_elbow_down)
-    t194 = t190 - t193
-    t195 = t112 - t113
-    t196 = _runtime.wrap_up(_runtime.wrap(t194 + t195)) + t188
-    t197 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    t198 = np.arctan2(t197, 1.0) + (t116 + t117)
-    t199 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    t200 = np.arctan2(t183, t199 / total_beta_front_elbow_down)
-    t201 = _runtime.wrap(_runtime.wrap(-(t194 - t198 + t200)))
-    t202 = t190 + t193
-    t203 = _runtime.wrap_up(_runtime.wrap(t195 + t202)) + t188
-    t204 = _runtime.wrap(_runtime.wrap(t198 + t200 - t202))
-    t205 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
+    t185 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t186 = np.arctan2(t184 / total_alpha_front_elbow_down, t185 / total_alpha_front_elbow_down)
+    t187 = t183 - t186
+    t188 = t111 - t112
+    t189 = _runtime.wrap_up(_runtime.wrap(t187 + t188)) + t181
+    t190 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t191 = np.arctan2(t190, 1.0) + (t115 + t116)
+    t192 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t193 = np.arctan2(t176, t192 / total_beta_front_elbow_down)
+    t194 = _runtime.wrap(_runtime.wrap(-(t187 - t191 + t193)))
+    t195 = t183 + t186
+    t196 = _runtime.wrap_up(_runtime.wrap(t188 + t195)) + t181
+    t197 = _runtime.wrap(_runtime.wrap(t191 + t193 - t195))
+    t198 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
     c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t31 + t32) / h))
     s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t33 - t34) / h)
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
-    t206 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t29 + t206)
-    t207 = t26 - reach_rear_elbow_up
-    t208 = reach_rear_elbow_up + t36
-    t209 = reach_rear_elbow_up - t36
-    t210 = t25 & (t27 <= t207) & (t27 <= t208) & (t27 <= t209)
+    t199 = outward_rear_elbow_up * outward_rear_elbow_up
+    reach_rear_elbow_up = np.sqrt(t29 + t199)
+    t200 = t26 - reach_rear_elbow_up
+    t201 = reach_rear_elbow_up + t36
+    t202 = reach_rear_elbow_up - t36
+    t203 = t25 & (t27 <= t200) & (t27 <= t201) & (t27 <= t202)
     folded_rear_elbow_up = reach_rear_elbow_up <= t41
     c_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
-    t211 = folded_rear_elbow_up | short
-    A_rear_elbow_up = np.maximum(t207, 0.0)
-    C_rear_elbow_up = np.maximum(t209, 0.0)
-    t212 = A_rear_elbow_up * C_rear_elbow_up
+    t204 = folded_rear_elbow_up | short
+    A_rear_elbow_up = np.maximum(t200, 0.0)
+    C_rear_elbow_up = np.maximum(t202, 0.0)
+    t205 = A_rear_elbow_up * C_rear_elbow_up
     S_rear_elbow_up = t26 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t208, 0.0)
-    t213 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t212 + t213
-    c_base_rear_elbow_up = _runtime.select(t211, 1.0, -((t212 - t213) / at_base_rear_elbow_up))
-    t214 = c_sight_rear_elbow_up * c_base_rear_elbow_up
+    B_rear_elbow_up = np.maximum(t201, 0.0)
+    t206 = S_rear_elbow_up * B_rear_elbow_up
+    at_base_rear_elbow_up = t205 + t206
+    c_base_rear_elbow_up = _runtime.select(t204, 1.0, -((t205 - t206) / at_base_rear_elbow_up))
+    t207 = c_sight_rear_elbow_up * c_base_rear_elbow_up
     s_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 0.0, t28 / reach_rear_elbow_up)
     rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
     rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t215 = rB_rear_elbow_up * rC_rear_elbow_up
+    t208 = rB_rear_elbow_up * rC_rear_elbow_up
     rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
     rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t216 = rS_rear_elbow_up * rA_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t215 * t216
-    s_base_rear_elbow_up = _runtime.select(t211, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t217 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t214 + t217
-    t218 = s_sight_rear_elbow_up * c_base_rear_elbow_up
-    t219 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t218 - t219
+    t209 = rS_rear_elbow_up * rA_rear_elbow_up
+    area_rear_elbow_up = 2.0 * t208 * t209
+    s_base_rear_elbow_up = _runtime.select(t204, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
+    t210 = s_sight_rear_elbow_up * s_base_rear_elbow_up
+    ctheta2A_rear_elbow_up = t207 + t210
+    t211 = s_sight_rear_elbow_up * c_base_rear_elbow_up
+    t212 = c_sight_rear_elbow_up * s_base_rear_elbow_up
+    stheta2A_rear_elbow_up = t211 - t212
     p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up + higher * stheta2A_rear_elbow_up
-    t220 = A_rear_elbow_up * S_rear_elbow_up
-    t221 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t220 + t221
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t220 - t221) / at_elbow_rear_elbow_up))
-    t222 = c_lag * c_bend_rear_elbow_up
+    t213 = A_rear_elbow_up * S_rear_elbow_up
+    t214 = C_rear_elbow_up * B_rear_elbow_up
+    at_elbow_rear_elbow_up = t213 + t214
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t213 - t214) / at_elbow_rear_elbow_up))
+    t215 = s_lag * c_bend_rear_elbow_up
     s_bend_rear_elbow_up = _runtime.select(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t223 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t222 - t223
-    t224 = ctheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t225 = s_lag * c_bend_rear_elbow_up
-    t226 = c_lag * s_bend_rear_elbow_up
-    s_relative_rear_elbow_up = t225 + t226
-    t227 = stheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    ctheta23A_rear_elbow_up = t224 - t227
-    t228 = stheta2A_rear_elbow_up * ctheta23A_rear_elbow_up
-    t229 = stheta2A_rear_elbow_up * c_relative_rear_elbow_up
-    t230 = ctheta2A_rear_elbow_up * s_relative_rear_elbow_up
-    stheta23A_rear_elbow_up = t229 + t230
-    t231 = ctheta2A_rear_elbow_up * stheta23A_rear_elbow_up
-    t232 = t228 - t231
-    t233 = ctheta2A_rear_elbow_up * ctheta23A_rear_elbow_up
-    t234 = stheta2A_rear_elbow_up * stheta23A_rear_elbow_up
-    c_elbow_rear_elbow_up = t233 + t234
-    t235 = L2 * t232 - a3 * c_elbow_rear_elbow_up
-    t236 = ahead * stheta2A_rear_elbow_up - higher * ctheta2A_rear_elbow_up
-    v_1_rear_elbow_up = L2 * c_elbow_rear_elbow_up + a3 * t232
-    part_alpha_rear_elbow_up = p_1_rear_elbow_up * t235 - t236 * v_1_rear_elbow_up
-    t237 = _runtime.select(0.0 <= part_alpha_rear_elbow_up, 1.0, -1.0)
+    t216 = c_lag * s_bend_rear_elbow_up
+    s_relative_rear_elbow_up = t215 + t216
+    t217 = c_lag * c_bend_rear_elbow_up
+    t218 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t217 - t218
+    v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
+    t219 = ahead * stheta2A_rear_elbow_up - higher * ctheta2A_rear_elbow_up
+    v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
+    t220 = p_1_rear_elbow_up * v_2_rear_elbow_up + t219 * v_1_rear_elbow_up
+    t221 = _runtime.select(0.0 <= -t220, 1.0, -1.0)
     whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
-    t238 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
-    t239 = part_alpha_rear_elbow_up * t237 - whole_alpha_rear_elbow_up * t238
-    spent_alpha_rear_elbow_up = -t239 <= t63
-    drawn_rear_elbow_up = L1 - L_2W * t232 + a_3W * c_elbow_rear_elbow_up
-    t240 = p_1_rear_elbow_up * v_1_rear_elbow_up + t235 * t236
-    slope_alpha_rear_elbow_up = t235 * t238 * drawn_rear_elbow_up + t237 * t240
-    t241 = np.abs(L_2W * c_elbow_rear_elbow_up + a_3W * t232)
-    t242 = t64 + t241
-    t243 = size * np.abs(slope_alpha_rear_elbow_up) / t242
-    t244 = _runtime.select(spent_alpha_rear_elbow_up, t243, 0.0)
-    t245 = -(_runtime.FEASIBILITY * (t40 + t244)) <= -t239
-    t246 = slope_alpha_rear_elbow_up * (t239 + np.abs(t239))
-    t247 = slope_alpha_rear_elbow_up * slope_alpha_rear_elbow_up
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t246 / (2.0 * (t68 + t247)), 0.0)
-    t248 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t248 / L1, 0.0)
-    t249 = p_1_rear_elbow_up - t236 * lean_alpha_rear_elbow_up
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t249, p_1_rear_elbow_up)
+    t222 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
+    room_alpha_rear_elbow_up = t220 * t221 + whole_alpha_rear_elbow_up * t222
+    spent_alpha_rear_elbow_up = room_alpha_rear_elbow_up <= t61
+    drawn_rear_elbow_up = L1 + L_2W * s_relative_rear_elbow_up + a_3W * c_relative_rear_elbow_up
+    t223 = v_2_rear_elbow_up * t222 * drawn_rear_elbow_up
+    t224 = p_1_rear_elbow_up * v_1_rear_elbow_up - v_2_rear_elbow_up * t219
+    t225 = t223 - t221 * t224
+    tilt_rear_elbow_up = L_2W * c_relative_rear_elbow_up - a_3W * s_relative_rear_elbow_up
+    t226 = t63 + np.abs(tilt_rear_elbow_up)
+    t227 = _runtime.select(spent_alpha_rear_elbow_up, size * np.abs(t225) / t226, 0.0)
+    t228 = -(_runtime.FEASIBILITY * (t40 + t227)) <= room_alpha_rear_elbow_up
+    t229 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t225 * t229 / (2.0 * (t68 + t225 * t225)), 0.0)
+    t230 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t230 / L1, 0.0)
+    t231 = p_1_rear_elbow_up - t219 * lean_alpha_rear_elbow_up
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t231, p_1_rear_elbow_up)
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t250 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
-    t251 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up + t235 * t251, v_1_rear_elbow_up)
+    t232 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
+    t233 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t233, v_1_rear_elbow_up)
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t252 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
-    t253 = part_beta_rear_elbow_up * t250 - whole_beta_rear_elbow_up * t252
-    spent_beta_rear_elbow_up = -t253 <= t63
-    t254 = _runtime.select(spent_alpha_rear_elbow_up, t235 - v_1_rear_elbow_up * t251, t235)
-    t255 = t236 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up
-    t256 = _runtime.select(spent_alpha_rear_elbow_up, t255, t236)
-    slope_beta_rear_elbow_up = drawn_rear_elbow_up * t252 * t254 + t250 * t256 * (L1 - drawn_rear_elbow_up)
-    t257 = size * np.abs(slope_beta_rear_elbow_up) / t242
-    t258 = _runtime.select(spent_beta_rear_elbow_up, t257, 0.0)
-    t259 = -(_runtime.FEASIBILITY * (t40 + t258)) <= -t253
-    t260 = slope_beta_rear_elbow_up * (t253 + np.abs(t253))
-    t261 = slope_beta_rear_elbow_up * slope_beta_rear_elbow_up
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t260 / (2.0 * (t68 + t261)), 0.0)
-    t262 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t262 / L1, 0.0)
-    t263 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, v_1_alpha_rear_elbow_up + t254 * t263, v_1_alpha_rear_elbow_up)
+    t234 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
+    t235 = part_beta_rear_elbow_up * t232 - whole_beta_rear_elbow_up * t234
+    spent_beta_rear_elbow_up = -t235 <= t61
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t233, v_2_rear_elbow_up)
+    t236 = drawn_rear_elbow_up * t234 * v_2_alpha_rear_elbow_up
+    t237 = t219 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    t238 = _runtime.select(spent_alpha_rear_elbow_up, t237, t219)
+    t239 = t236 - t232 * t238 * (L1 - drawn_rear_elbow_up)
+    t240 = _runtime.select(spent_beta_rear_elbow_up, size * np.abs(t239) / t226, 0.0)
+    t241 = -(_runtime.FEASIBILITY * (t40 + t240)) <= -t235
+    t242 = t239 * (t235 + np.abs(t235)) / (2.0 * (t68 + t239 * t239))
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t242, 0.0)
+    t243 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t243 / L1, 0.0)
+    t244 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
+    t245 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t244
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t245, v_1_alpha_rear_elbow_up)
     sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -v_1_beta_rear_elbow_up, 1.0, -1.0)
-    t264 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    t265 = p_1_alpha_rear_elbow_up - t256 * lean_beta_rear_elbow_up
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t265, p_1_alpha_rear_elbow_up)
-    t266 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t267 = t210 & t245 & t259 & (t81 <= -(t264 + np.abs(t266)))
-    t268 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    t269 = _runtime.select(spent_beta_rear_elbow_up, t256 + t268, t256)
-    t270 = _runtime.select(spent_beta_rear_elbow_up, t254 - v_1_alpha_rear_elbow_up * t263, t254)
-    t271 = np.abs(t270)
-    parallel_rear_elbow_up = -t264 <= _runtime.VANISHING * (64.0 * t271)
-    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, _runtime.select(0.0 <= -t270, -t269, t269), -t266)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t271, -t264)
-    t272 = t270 * part_y_rear_elbow_up / whole_y_rear_elbow_up
-    t273 = t269 - t272
-    left_along_rear_elbow_up = L1 - np.abs(t273)
-    spent_along_rear_elbow_up = left_along_rear_elbow_up <= t91
-    t274 = _runtime.select(spent_along_rear_elbow_up, t271 / (t92 - t264), 0.0)
-    t275 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t274)))
-    t276 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
-    t277 = t270 * t276 / (t264 * t264 + t270 * t270)
-    t278 = whole_y_rear_elbow_up * _runtime.select(0.0 <= -t273, t277, -t277)
-    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, part_y_rear_elbow_up + t278, part_y_rear_elbow_up)
-    t279 = whole_y_rear_elbow_up - eased_rear_elbow_up
-    t280 = t267 & (t275 <= left_along_rear_elbow_up) & (t81 <= t279)
-    t281 = whole_y_rear_elbow_up + eased_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t279, t102)
-    above_beta_rear_elbow_up = np.maximum(t281, t102)
-    t282 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t246 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t247 = p_1_alpha_rear_elbow_up - t238 * lean_beta_rear_elbow_up
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t247, p_1_alpha_rear_elbow_up)
+    t248 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t249 = t203 & t228 & t241 & (t81 <= -(t246 + np.abs(t248)))
+    t250 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t251 = _runtime.select(spent_beta_rear_elbow_up, t238 + t250, t238)
+    t252 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t244
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t252, v_2_alpha_rear_elbow_up)
+    t253 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t246 <= _runtime.VANISHING * (64.0 * t253)
+    t254 = _runtime.select(0.0 <= v_2_beta_rear_elbow_up, -t251, t251)
+    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, t254, -t248)
+    t255 = v_2_beta_rear_elbow_up * part_y_rear_elbow_up
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t253, -t246)
+    t256 = t251 + t255 / whole_y_rear_elbow_up
+    left_along_rear_elbow_up = L1 - np.abs(t256)
+    spent_along_rear_elbow_up = left_along_rear_elbow_up <= t90
+    t257 = _runtime.select(spent_along_rear_elbow_up, t253 / (t91 - t246), 0.0)
+    t258 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t257)))
+    t259 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
+    t260 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t261 = v_2_beta_rear_elbow_up * t259 / (t246 * t246 + t260)
+    t262 = whole_y_rear_elbow_up * _runtime.select(0.0 <= -t256, -t261, t261)
+    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, part_y_rear_elbow_up + t262, part_y_rear_elbow_up)
+    t263 = whole_y_rear_elbow_up - eased_rear_elbow_up
+    t264 = t249 & (t258 <= left_along_rear_elbow_up) & (t81 <= t263)
+    t265 = whole_y_rear_elbow_up + eased_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t263, t101)
+    above_beta_rear_elbow_up = np.maximum(t265, t101)
+    t266 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t283 = t282 / total_beta_rear_elbow_up
-    t284 = t269 + t270 * t283
-    t285 = L1 + t284
-    t286 = L1 - t284
-    t287 = t280 & (t81 <= t281) & (t81 <= t285) & (t81 <= t286)
-    unreachable_3 = np.logical_not(t287)
-    t288 = _runtime.poison(invalid | unreachable_3)
-    t289 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    t290 = np.arctan2(t289, 1.0)
-    t291 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t28, outward_rear_elbow_up))
-    t292 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
-    t293 = _runtime.select(t211, 0.0, 2.0 * t292)
-    t294 = t290 + (t291 - t293)
-    below_alpha_rear_elbow_up = np.maximum(t285, t102)
-    above_alpha_rear_elbow_up = np.maximum(t286, t102)
-    t295 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t267 = t266 / total_beta_rear_elbow_up
+    t268 = t251 - v_2_beta_rear_elbow_up * t267
+    t269 = L1 + t268
+    t270 = L1 - t268
+    t271 = t264 & (t81 <= t265) & (t81 <= t269) & (t81 <= t270)
+    unreachable_3 = np.logical_not(t271)
+    t272 = _runtime.poison(invalid | unreachable_3)
+    t273 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t274 = np.arctan2(t273, 1.0)
+    t275 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t28, outward_rear_elbow_up))
+    t276 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
+    t277 = _runtime.select(t204, 0.0, 2.0 * t276)
+    t278 = t274 + (t275 - t277)
+    below_alpha_rear_elbow_up = np.maximum(t269, t101)
+    above_alpha_rear_elbow_up = np.maximum(t270, t101)
+    t279 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t296 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    t297 = np.arctan2(t295 / total_alpha_rear_elbow_up, t296 / total_alpha_rear_elbow_up)
-    t298 = _runtime.wrap_up(_runtime.wrap(t294 - t297)) + t288
-    t299 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t216, t215))
-    t300 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
-    t301 = t116 - t290 + (t299 + np.arctan2(t300, 1.0))
-    t302 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    t303 = np.arctan2(t283, t302 / total_beta_rear_elbow_up)
-    t304 = t297 - t303
-    t305 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t301 + t304)))
-    t306 = _runtime.wrap_up(_runtime.wrap(t294 + t297)) + t288
-    t307 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t301 - t304)))
-    ctheta2A_rear_elbow_down = t214 - t217
-    stheta2A_rear_elbow_down = t218 + t219
+    t280 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t281 = np.arctan2(t279 / total_alpha_rear_elbow_up, t280 / total_alpha_rear_elbow_up)
+    t282 = _runtime.wrap_up(_runtime.wrap(t278 - t281)) + t272
+    t283 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t209, t208))
+    t284 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t285 = t115 - t274 + (t283 + np.arctan2(t284, 1.0))
+    t286 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t287 = np.arctan2(t267, t286 / total_beta_rear_elbow_up)
+    t288 = t281 - t287
+    t289 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t285 + t288)))
+    t290 = _runtime.wrap_up(_runtime.wrap(t278 + t281)) + t272
+    t291 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t285 - t288)))
+    ctheta2A_rear_elbow_down = t207 - t210
+    stheta2A_rear_elbow_down = t211 + t212
     p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
-    c_relative_rear_elbow_down = t222 + t223
-    t308 = ctheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    s_relative_rear_elbow_down = t225 - t226
-    t309 = stheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    ctheta23A_rear_elbow_down = t308 - t309
-    t310 = stheta2A_rear_elbow_down * ctheta23A_rear_elbow_down
-    t311 = stheta2A_rear_elbow_down * c_relative_rear_elbow_down
-    t312 = ctheta2A_rear_elbow_down * s_relative_rear_elbow_down
-    stheta23A_rear_elbow_down = t311 + t312
-    t313 = ctheta2A_rear_elbow_down * stheta23A_rear_elbow_down
-    t314 = t310 - t313
-    t315 = ctheta2A_rear_elbow_down * ctheta23A_rear_elbow_down
-    t316 = stheta2A_rear_elbow_down * stheta23A_rear_elbow_down
-    c_elbow_rear_elbow_down = t315 + t316
-    t317 = L2 * t314 - a3 * c_elbow_rear_elbow_down
-    t318 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
-    v_1_rear_elbow_down = L2 * c_elbow_rear_elbow_down + a3 * t314
-    part_alpha_rear_elbow_down = p_1_rear_elbow_down * t317 - t318 * v_1_rear_elbow_down
-    t319 = _runtime.select(0.0 <= part_alpha_rear_elbow_down, 1.0, -1.0)
+    s_relative_rear_elbow_down = t215 - t216
+    c_relative_rear_elbow_down = t217 + t218
+    v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
+    t292 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
+    v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
+    t293 = p_1_rear_elbow_down * v_2_rear_elbow_down + t292 * v_1_rear_elbow_down
+    t294 = _runtime.select(0.0 <= -t293, 1.0, -1.0)
     whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
-    t320 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
-    t321 = part_alpha_rear_elbow_down * t319 - whole_alpha_rear_elbow_down * t320
-    spent_alpha_rear_elbow_down = -t321 <= t63
-    drawn_rear_elbow_down = L1 - L_2W * t314 + a_3W * c_elbow_rear_elbow_down
-    t322 = p_1_rear_elbow_down * v_1_rear_elbow_down + t317 * t318
-    slope_alpha_rear_elbow_down = t317 * t320 * drawn_rear_elbow_down + t319 * t322
-    t323 = np.abs(L_2W * c_elbow_rear_elbow_down + a_3W * t314)
-    t324 = t64 + t323
-    t325 = size * np.abs(slope_alpha_rear_elbow_down) / t324
-    t326 = _runtime.select(spent_alpha_rear_elbow_down, t325, 0.0)
-    t327 = -(_runtime.FEASIBILITY * (t40 + t326)) <= -t321
-    t328 = slope_alpha_rear_elbow_down * (t321 + np.abs(t321))
-    t329 = slope_alpha_rear_elbow_down * slope_alpha_rear_elbow_down
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t328 / (2.0 * (t68 + t329)), 0.0)
-    t330 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t330 / L1, 0.0)
-    t331 = p_1_rear_elbow_down - t318 * lean_alpha_rear_elbow_down
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t331, p_1_rear_elbow_down)
+    t295 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
+    room_alpha_rear_elbow_down = t293 * t294 + whole_alpha_rear_elbow_down * t295
+    spent_alpha_rear_elbow_down = room_alpha_rear_elbow_down <= t61
+    drawn_rear_elbow_down = L1 + L_2W * s_relative_rear_elbow_down + a_3W * c_relative_rear_elbow_down
+    t296 = v_2_rear_elbow_down * t295 * drawn_rear_elbow_down
+    t297 = p_1_rear_elbow_down * v_1_rear_elbow_down - v_2_rear_elbow_down * t292
+    t298 = t296 - t294 * t297
+    tilt_rear_elbow_down = L_2W * c_relative_rear_elbow_down - a_3W * s_relative_rear_elbow_down
+    t299 = t63 + np.abs(tilt_rear_elbow_down)
+    t300 = _runtime.select(spent_alpha_rear_elbow_down, size * np.abs(t298) / t299, 0.0)
+    t301 = -(_runtime.FEASIBILITY * (t40 + t300)) <= room_alpha_rear_elbow_down
+    t302 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t298 * t302 / (2.0 * (t68 + t298 * t298)), 0.0)
+    t303 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t303 / L1, 0.0)
+    t304 = p_1_rear_elbow_down - t292 * lean_alpha_rear_elbow_down
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t304, p_1_rear_elbow_down)
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t332 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
-    t333 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1_rear_elbow_down + t317 * t333, v_1_rear_elbow_down)
+    t305 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
+    t306 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
+    t307 = v_1_rear_elbow_down - v_2_rear_elbow_down * t306
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t307, v_1_rear_elbow_down)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t334 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
-    t335 = part_beta_rear_elbow_down * t332 - whole_beta_rear_elbow_down * t334
-    spent_beta_rear_elbow_down = -t335 <= t63
-    t336 = _runtime.select(spent_alpha_rear_elbow_down, t317 - v_1_rear_elbow_down * t333, t317)
-    t337 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    t338 = _runtime.select(spent_alpha_rear_elbow_down, t318 + t337, t318)
-    slope_beta_rear_elbow_down = drawn_rear_elbow_down * t334 * t336 + t332 * t338 * (L1 - drawn_rear_elbow_down)
-    t339 = size * np.abs(slope_beta_rear_elbow_down) / t324
-    t340 = _runtime.select(spent_beta_rear_elbow_down, t339, 0.0)
-    t341 = -(_runtime.FEASIBILITY * (t40 + t340)) <= -t335
-    t342 = slope_beta_rear_elbow_down * (t335 + np.abs(t335))
-    t343 = slope_beta_rear_elbow_down * slope_beta_rear_elbow_down
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t342 / (2.0 * (t68 + t343)), 0.0)
-    t344 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t344 / L1, 0.0)
-    t345 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, v_1_alpha_rear_elbow_down + t336 * t345, v_1_alpha_rear_elbow_down)
+    t308 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
+    t309 = part_beta_rear_elbow_down * t305 - whole_beta_rear_elbow_down * t308
+    spent_beta_rear_elbow_down = -t309 <= t61
+    t310 = v_2_rear_elbow_down + v_1_rear_elbow_down * t306
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t310, v_2_rear_elbow_down)
+    t311 = drawn_rear_elbow_down * t308 * v_2_alpha_rear_elbow_down
+    t312 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t313 = _runtime.select(spent_alpha_rear_elbow_down, t292 + t312, t292)
+    t314 = t311 - t305 * t313 * (L1 - drawn_rear_elbow_down)
+    t315 = _runtime.select(spent_beta_rear_elbow_down, size * np.abs(t314) / t299, 0.0)
+    t316 = -(_runtime.FEASIBILITY * (t40 + t315)) <= -t309
+    t317 = t314 * (t309 + np.abs(t309)) / (2.0 * (t68 + t314 * t314))
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t317, 0.0)
+    t318 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t318 / L1, 0.0)
+    t319 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
+    t320 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t319
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t320, v_1_alpha_rear_elbow_down)
     sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -v_1_beta_rear_elbow_down, 1.0, -1.0)
-    t346 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    t347 = p_1_alpha_rear_elbow_down - t338 * lean_beta_rear_elbow_down
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t347, p_1_alpha_rear_elbow_down)
-    t348 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t349 = t210 & t327 & t341 & (t81 <= -(t346 + np.abs(t348)))
-    t350 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    t351 = _runtime.select(spent_beta_rear_elbow_down, t338 + t350, t338)
-    t352 = _runtime.select(spent_beta_rear_elbow_down, t336 - v_1_alpha_rear_elbow_down * t345, t336)
-    t353 = np.abs(t352)
-    parallel_rear_elbow_down = -t346 <= _runtime.VANISHING * (64.0 * t353)
-    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, _runtime.select(0.0 <= -t352, -t351, t351), -t348)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t353, -t346)
-    t354 = t352 * part_y_rear_elbow_down / whole_y_rear_elbow_down
-    t355 = t351 - t354
-    left_along_rear_elbow_down = L1 - np.abs(t355)
-    spent_along_rear_elbow_down = left_along_rear_elbow_down <= t91
-    t356 = _runtime.select(spent_along_rear_elbow_down, t353 / (t92 - t346), 0.0)
-    t357 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t356)))
-    t358 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
-    t359 = t352 * t358 / (t346 * t346 + t352 * t352)
-    t360 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t355, t359, -t359)
-    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t360, part_y_rear_elbow_down)
-    t361 = whole_y_rear_elbow_down - eased_rear_elbow_down
-    t362 = t349 & (t357 <= left_along_rear_elbow_down) & (t81 <= t361)
-    t363 = whole_y_rear_elbow_down + eased_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t361, t102)
-    above_beta_rear_elbow_down = np.maximum(t363, t102)
-    t364 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t321 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t322 = p_1_alpha_rear_elbow_down - t313 * lean_beta_rear_elbow_down
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t322, p_1_alpha_rear_elbow_down)
+    t323 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t324 = t203 & t301 & t316 & (t81 <= -(t321 + np.abs(t323)))
+    t325 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t326 = _runtime.select(spent_beta_rear_elbow_down, t313 + t325, t313)
+    t327 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t319
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t327, v_2_alpha_rear_elbow_down)
+    t328 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t321 <= _runtime.VANISHING * (64.0 * t328)
+    t329 = _runtime.select(0.0 <= v_2_beta_rear_elbow_down, -t326, t326)
+    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t329, -t323)
+    t330 = v_2_beta_rear_elbow_down * part_y_rear_elbow_down
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t328, -t321)
+    t331 = t326 + t330 / whole_y_rear_elbow_down
+    left_along_rear_elbow_down = L1 - np.abs(t331)
+    spent_along_rear_elbow_down = left_along_rear_elbow_down <= t90
+    t332 = _runtime.select(spent_along_rear_elbow_down, t328 / (t91 - t321), 0.0)
+    t333 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t332)))
+    t334 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
+    t335 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t336 = v_2_beta_rear_elbow_down * t334 / (t321 * t321 + t335)
+    t337 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t331, -t336, t336)
+    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t337, part_y_rear_elbow_down)
+    t338 = whole_y_rear_elbow_down - eased_rear_elbow_down
+    t339 = t324 & (t333 <= left_along_rear_elbow_down) & (t81 <= t338)
+    t340 = whole_y_rear_elbow_down + eased_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t338, t101)
+    above_beta_rear_elbow_down = np.maximum(t340, t101)
+    t341 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t365 = t364 / total_beta_rear_elbow_down
-    t366 = t351 + t352 * t365
-    t367 = L1 + t366
-    t368 = L1 - t366
-    t369 = t362 & (t81 <= t363) & (t81 <= t367) & (t81 <= t368)
-    unreachable_4 = np.logical_not(t369)
-    t370 = _runtime.poison(invalid | unreachable_4)
-    t371 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    t372 = np.arctan2(t371, 1.0)
-    below_alpha_rear_elbow_down = np.maximum(t367, t102)
-    above_alpha_rear_elbow_down = np.maximum(t368, t102)
-    t373 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t342 = t341 / total_beta_rear_elbow_down
+    t343 = t326 - v_2_beta_rear_elbow_down * t342
+    t344 = L1 + t343
+    t345 = L1 - t343
+    t346 = t339 & (t81 <= t340) & (t81 <= t344) & (t81 <= t345)
+    unreachable_4 = np.logical_not(t346)
+    t347 = _runtime.poison(invalid | unreachable_4)
+    t348 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t349 = np.arctan2(t348, 1.0)
+    below_alpha_rear_elbow_down = np.maximum(t344, t101)
+    above_alpha_rear_elbow_down = np.maximum(t345, t101)
+    t350 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t374 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    t375 = np.arctan2(t373 / total_alpha_rear_elbow_down, t374 / total_alpha_rear_elbow_down)
-    t376 = t372 - t375
-    t377 = t291 + t293
-    t378 = _runtime.wrap(_runtime.wrap(t376 + t377)) + t370
-    t379 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
-    t380 = np.arctan2(t379, 1.0) + (t116 - t299)
-    t381 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    t382 = np.arctan2(t365, t381 / total_beta_rear_elbow_down)
-    t383 = _runtime.wrap(_runtime.wrap(-(t376 - t380 + t382)))
-    t384 = t372 + t375
-    t385 = _runtime.wrap(_runtime.wrap(t377 + t384)) + t370
-    t386 = _runtime.wrap(_runtime.wrap(t380 + t382 - t384))
-    t387 = nowhere | folded | short
-    t388 = _runtime.status(invalid, unreachable, t387 | parallel)
-    t389 = _runtime.status(invalid, unreachable_2, t387 | parallel_front_elbow_down)
-    t390 = nowhere | folded_rear_elbow_up | short
-    t391 = _runtime.status(invalid, unreachable_3, t390 | parallel_rear_elbow_up)
-    t392 = _runtime.status(invalid, unreachable_4, t390 | parallel_rear_elbow_down)
+    t351 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t352 = np.arctan2(t350 / total_alpha_rear_elbow_down, t351 / total_alpha_rear_elbow_down)
+    t353 = t349 - t352
+    t354 = t275 + t277
+    t355 = _runtime.wrap(_runtime.wrap(t353 + t354)) + t347
+    t356 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t357 = np.arctan2(t356, 1.0) + (t115 - t283)
+    t358 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t359 = np.arctan2(t342, t358 / total_beta_rear_elbow_down)
+    t360 = _runtime.wrap(_runtime.wrap(-(t353 - t357 + t359)))
+    t361 = t349 + t352
+    t362 = _runtime.wrap(_runtime.wrap(t354 + t361)) + t347
+    t363 = _runtime.wrap(_runtime.wrap(t357 + t359 - t361))
+    t364 = nowhere | folded | short
+    t365 = _runtime.status(invalid, unreachable, t364 | parallel)
+    t366 = _runtime.status(invalid, unreachable_2, t364 | parallel_front_elbow_down)
+    t367 = nowhere | folded_rear_elbow_up | short
+    t368 = _runtime.status(invalid, unreachable_3, t367 | parallel_rear_elbow_up)
+    t369 = _runtime.status(invalid, unreachable_4, t367 | parallel_rear_elbow_down)
     return (
-        t15 + t107,
-        t115,
-        _runtime.wrap_cut(t122) + t107,
-        t124,
-        _runtime.wrap_cut(t125) + t107,
-        t126 + t107,
-        t15 + t188,
+        t15 + t106,
+        t114,
+        _runtime.wrap_cut(t121) + t106,
+        t123,
+        _runtime.wrap_cut(t124) + t106,
+        t125 + t106,
+        t15 + t181,
+        t189,
+        _runtime.wrap_cut(t194) + t181,
         t196,
-        _runtime.wrap_cut(t201) + t188,
-        t203,
-        _runtime.wrap_cut(t204) + t188,
-        t126 + t188,
-        t205 + t288,
-        t298,
-        t305 + t288,
-        t306,
-        t307 + t288,
-        t126 + t288,
-        t205 + t370,
-        t378,
-        _runtime.wrap_cut(t383) + t370,
-        t385,
-        _runtime.wrap_cut(t386) + t370,
-        t126 + t370,
-        t388,
-        t389,
-        t391,
-        t392,
+        _runtime.wrap_cut(t197) + t181,
+        t125 + t181,
+        t198 + t272,
+        t282,
+        t289 + t272,
+        t290,
+        t291 + t272,
+        t125 + t272,
+        t198 + t347,
+        t355,
+        _runtime.wrap_cut(t360) + t347,
+        t362,
+        _runtime.wrap_cut(t363) + t347,
+        t125 + t347,
+        t365,
+        t366,
+        t368,
+        t369,
     )
 
 

@@ -10,7 +10,7 @@
 #   jacobian: 208 add, 54 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
 #   determinant: 86 add, 54 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
 #   singularities: 91 add, 54 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
-#   ik: 360 compare and select, 371 add, 28 atan2, 78 divide, 461 multiply, 3 sincos, 41 sqrt
+#   ik: 360 compare and select, 363 add, 28 atan2, 78 divide, 445 multiply, 3 sincos, 41 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -1208,679 +1208,664 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t41 = d * size
     t42 = L1 * 2.0
     t43 = _runtime.VANISHING * t27
-    folded = reach <= t43
-    s_sight = _runtime.select(folded, 0.0, t29 / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t27 * t27)
-    t44 = folded | short
-    A = np.maximum(t36, 0.0)
-    C = np.maximum(t39, 0.0)
-    t45 = A * C
-    S = t27 + reach
-    B = np.maximum(t38, 0.0)
-    t46 = S * B
-    at_base = t45 + t46
-    c_base = _runtime.select(t44, 1.0, -((t45 - t46) / at_base))
-    t47 = s_sight * c_base
-    c_sight = _runtime.select(folded, 1.0, outward / reach)
-    area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_base_front_elbow_down_alike = _runtime.select(t44, 0.0, area_front_elbow_down_alike / at_base)
-    t48 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t47 + t48
-    t49 = c_sight * c_base
-    t50 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t49 - t50
     bare = fore <= t43
-    c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    t51 = A * S
-    t52 = C * B
-    at_elbow = t51 + t52
-    c_bend = _runtime.select(short, 1.0, -((t51 - t52) / at_elbow))
-    t53 = c_lag * c_bend
     s_lag = _runtime.select(bare, 0.0, L_2W / fore)
+    short = L1 * fore <= _runtime.VANISHING * (t27 * t27)
+    S = t27 + reach
+    A = np.maximum(t36, 0.0)
+    t44 = S * A
+    B = np.maximum(t38, 0.0)
+    C = np.maximum(t39, 0.0)
+    t45 = B * C
+    at_elbow = t44 + t45
+    c_bend = _runtime.select(short, 1.0, -((t44 - t45) / at_elbow))
+    t46 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W / fore)
+    area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
     s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t54 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t53 + t54
-    t55 = s_lag * c_bend
-    t56 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t55 - t56
-    ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
-    stheta23A = stheta2A * c_relative + ctheta2A * s_relative
-    t57 = stheta2A * ctheta23A - ctheta2A * stheta23A
-    c_elbow = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t58 = L2 * t57 - a3 * c_elbow
-    t59 = 0.0 <= -t58
-    t60 = L2 * c_elbow + a3 * t57
-    large = fore_arm + _runtime.select(t59, -t58, t58)
-    small = t60 * t60 / large
-    t61 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t47 = c_lag * s_bend_front_elbow_down_alike
+    s_relative = t46 - t47
+    t48 = c_lag * c_bend
+    t49 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t48 + t49
+    straight = L2 * s_relative + a3 * c_relative
+    t50 = 0.0 <= straight
+    t51 = L2 * c_relative - a3 * s_relative
+    large = fore_arm + _runtime.select(t50, straight, -straight)
+    small = t51 * t51 / large
+    folded = reach <= t43
+    c_sight = _runtime.select(folded, 1.0, outward / reach)
+    t52 = folded | short
+    t53 = A * C
+    t54 = S * B
+    at_base = t53 + t54
+    c_base = _runtime.select(t52, 1.0, -((t53 - t54) / at_base))
+    t55 = c_sight * c_base
+    s_sight = _runtime.select(folded, 0.0, t29 / reach)
+    s_base_front_elbow_down_alike = _runtime.select(t52, 0.0, area_front_elbow_down_alike / at_base)
+    t56 = s_sight * s_base_front_elbow_down_alike
+    ctheta2A = t55 - t56
+    t57 = s_sight * c_base
+    t58 = c_sight * s_base_front_elbow_down_alike
+    stheta2A = t57 + t58
+    ctheta23A = c_relative * ctheta2A - s_relative * stheta2A
+    stheta23A = c_relative * stheta2A + s_relative * ctheta2A
+    t59 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t60 = d * t59
+    t61 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
     t62 = d * t61
-    t63 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t64 = d * t63
-    gap = t62 * t62 + t64 * t64
-    t65 = t42 * _runtime.select(t59, small, large) - gap
+    gap = t60 * t60 + t62 * t62
+    t63 = t42 * _runtime.select(t50, small, large) - gap
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t66 = 2.0 * t62 * point_11 + 2.0 * t64 * point_21
-    room_right = t65 + t66
-    t67 = _runtime.VANISHING * t41
-    spent_right = room_right <= t67
-    drawn = L1 - L_2W * t57 + a_3W * c_elbow
-    t68 = 2.0 * drawn
-    t69 = t64 - point_21
-    t70 = t62 - point_11
-    t71 = t68 * (ctheta2A * t69 - stheta2A * t70)
-    t72 = size / 100000.0
-    t73 = t72 + np.abs(L_2W * c_elbow + a_3W * t57)
-    t74 = _runtime.select(spent_right, size * np.abs(-t71) / t73, 0.0)
-    t75 = -(_runtime.FEASIBILITY * (t41 + t74)) <= room_right
-    room_left = t65 - t66
-    spent_left = room_left <= t67
-    h_left_0 = t64 + point_21
-    r_left_0 = t62 + point_11
-    slope_left = t68 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
-    t76 = _runtime.select(spent_left, size * np.abs(slope_left) / t73, 0.0)
-    t77 = -(_runtime.FEASIBILITY * (t41 + t76)) <= room_left
-    t78 = -(_runtime.FEASIBILITY * t41)
-    t79 = size * size
-    t80 = t79 * t79 / 10000000000.0
-    t81 = t71 * (room_right - np.abs(room_right)) / (2.0 * (t80 + t71 * t71))
-    t82 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t80 + slope_left * slope_left))
-    turn = _runtime.select(spent_right, t81, 0.0) + _runtime.select(spent_left, -t82, 0.0)
-    t83 = t66 - t71 * turn
-    t84 = t65 + t83
-    t85 = drawn * turn
-    t86 = ctheta2A * t85
-    t87 = t69 + t86 + t70 * turn
-    t88 = stheta2A * t85
-    t89 = t70 - t69 * turn - t88
-    t90 = t87 * t87 + t89 * t89
-    t91 = gap * gap
-    t92 = L1 - fore_arm
-    t93 = t92 * t92
-    M = t42 * _runtime.select(t59, large, small)
-    t94 = gap + M
-    t95 = _runtime.select(t79 * t90 < t91, t93 - t90, t83 - t94)
-    t96 = t40 & t75 & t77 & (t78 <= t84) & (t78 <= -t95)
-    t97 = t66 - slope_left * turn
-    t98 = t65 - t97
-    h_left = h_left_0 - t86 + r_left_0 * turn
-    r_left = r_left_0 + t88 - h_left_0 * turn
-    t99 = h_left * h_left + r_left * r_left
-    t100 = _runtime.select(t79 * t99 < t91, t99 - t93, t94 + t97)
-    unreachable = np.logical_not(t96 & (t78 <= t98) & (t78 <= t100))
-    t101 = _runtime.poison(invalid | unreachable)
-    t102 = t16 + t101
-    t103 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.sqrt(t90) <= t103
-    t104 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t79
-    t105 = 2.0 * _runtime.select(0.0 <= -t60, 1.0, -1.0)
-    t106 = _runtime.VANISHING * (_runtime.VANISHING * (t41 * 16.0))
-    N_right = np.maximum(t84, t106)
+    t64 = 2.0 * t60 * point_11 + 2.0 * t62 * point_21
+    room_right = t63 + t64
+    t65 = _runtime.VANISHING * t41
+    spent_right = room_right <= t65
+    drawn = L1 + L_2W * s_relative + a_3W * c_relative
+    t66 = 2.0 * drawn
+    t67 = t62 - point_21
+    t68 = t60 - point_11
+    t69 = t66 * (ctheta2A * t67 - stheta2A * t68)
+    t70 = size / 100000.0
+    t71 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t72 = t70 + t71
+    t73 = _runtime.select(spent_right, size * np.abs(-t69) / t72, 0.0)
+    t74 = -(_runtime.FEASIBILITY * (t41 + t73)) <= room_right
+    room_left = t63 - t64
+    spent_left = room_left <= t65
+    h_left_0 = t62 + point_21
+    r_left_0 = t60 + point_11
+    slope_left = t66 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    t75 = _runtime.select(spent_left, size * np.abs(slope_left) / t72, 0.0)
+    t76 = -(_runtime.FEASIBILITY * (t41 + t75)) <= room_left
+    t77 = -(_runtime.FEASIBILITY * t41)
+    t78 = size * size
+    t79 = t78 * t78 / 10000000000.0
+    t80 = t69 * (room_right - np.abs(room_right)) / (2.0 * (t79 + t69 * t69))
+    t81 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t79 + slope_left * slope_left))
+    turn = _runtime.select(spent_right, t80, 0.0) + _runtime.select(spent_left, -t81, 0.0)
+    t82 = t64 - t69 * turn
+    t83 = t63 + t82
+    t84 = drawn * turn
+    t85 = ctheta2A * t84
+    t86 = t67 + t85 + t68 * turn
+    t87 = stheta2A * t84
+    t88 = t68 - t67 * turn - t87
+    t89 = t86 * t86 + t88 * t88
+    t90 = gap * gap
+    t91 = L1 - fore_arm
+    t92 = t91 * t91
+    M = t42 * _runtime.select(t50, large, small)
+    t93 = gap + M
+    t94 = _runtime.select(t78 * t89 < t90, t92 - t89, t82 - t93)
+    t95 = t40 & t74 & t76 & (t77 <= t83) & (t77 <= -t94)
+    t96 = t64 - slope_left * turn
+    t97 = t63 - t96
+    h_left = h_left_0 - t85 + r_left_0 * turn
+    r_left = r_left_0 + t87 - h_left_0 * turn
+    t98 = h_left * h_left + r_left * r_left
+    t99 = _runtime.select(t78 * t98 < t90, t98 - t92, t93 + t96)
+    unreachable = np.logical_not(t95 & (t77 <= t97) & (t77 <= t99))
+    t100 = _runtime.poison(invalid | unreachable)
+    t101 = t16 + t100
+    t102 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.sqrt(t89) <= t102
+    t103 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t78
+    t104 = 2.0 * _runtime.select(0.0 <= -t51, 1.0, -1.0)
+    t105 = _runtime.VANISHING * (_runtime.VANISHING * (t41 * 16.0))
+    N_right = np.maximum(t83, t105)
     rN_right = np.sqrt(N_right)
-    M_right = np.maximum(-t95, t106)
+    M_right = np.maximum(-t94, t105)
     rM_right = np.sqrt(M_right)
     whole_right = M_right + N_right
-    s_bend_right = _runtime.select(short_right, 0.0, t105 * rN_right * rM_right / whole_right)
-    t107 = fore_arm * s_bend_right
-    t108 = 2.0 * fore_arm
-    ahead_1_right = _runtime.select(short_right, size, t92 + t108 * M_right / whole_right)
-    t109 = np.arctan2(t89 * t107 - t87 * ahead_1_right, -(t89 * ahead_1_right + t87 * t107))
-    t110 = _runtime.wrap_cut(_runtime.select(folded_right, t104, t109))
-    t111 = t110 + t101
+    s_bend_right = _runtime.select(short_right, 0.0, t104 * rN_right * rM_right / whole_right)
+    t106 = fore_arm * s_bend_right
+    t107 = 2.0 * fore_arm
+    ahead_1_right = _runtime.select(short_right, size, t91 + t107 * M_right / whole_right)
+    t108 = np.arctan2(t88 * t106 - t86 * ahead_1_right, -(t88 * ahead_1_right + t86 * t106))
+    t109 = _runtime.wrap_cut(_runtime.select(folded_right, t103, t108))
+    t110 = t109 + t100
     bare_right = fore_arm <= _runtime.VANISHING * size
     s_lag_right = _runtime.select(bare_right, 0.0, L2 / fore_arm)
     c_lag_right = _runtime.select(bare_right, 1.0, a3 / fore_arm)
-    t112 = np.arctan2(s_lag_right, c_lag_right)
-    t113 = _runtime.select(short_right, 0.0, t105 * np.arctan2(rN_right, rM_right))
-    t114 = _runtime.wrap_cut(_runtime.wrap(t112 + t113))
-    t115 = t114 + t101
-    folded_left = np.sqrt(t99) <= t103
-    M_left = np.maximum(t100, 0.0)
-    N_left = np.maximum(t98, 0.0)
+    t111 = np.arctan2(s_lag_right, c_lag_right)
+    t112 = _runtime.select(short_right, 0.0, t104 * np.arctan2(rN_right, rM_right))
+    t113 = _runtime.wrap_cut(_runtime.wrap(t111 + t112))
+    t114 = t113 + t100
+    folded_left = np.sqrt(t98) <= t102
+    M_left = np.maximum(t99, 0.0)
+    N_left = np.maximum(t97, 0.0)
     whole_left = M_left + N_left
-    ahead_1_left = _runtime.select(short_right, size, t92 + t108 * M_left / whole_left)
-    t116 = h_left * ahead_1_left
+    ahead_1_left = _runtime.select(short_right, size, t91 + t107 * M_left / whole_left)
+    t115 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t105 * rN_left * rM_left / whole_left)
-    t117 = fore_arm * s_bend_left
-    t118 = r_left * t117
-    t119 = r_left * ahead_1_left
-    t120 = h_left * t117
-    t121 = _runtime.select(folded_left, t104, np.arctan2(t116 - t118, t119 + t120))
-    t122 = _runtime.select(short_right, 0.0, t105 * np.arctan2(rN_left, rM_left))
-    t123 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    t124 = t123 + t101
-    t125 = _runtime.select(folded_left, t104, np.arctan2(t116 + t118, t119 - t120))
-    stheta2A_front_elbow_down_alike = t47 - t48
-    ctheta2A_front_elbow_down_alike = t49 + t50
-    c_relative_front_elbow_down_alike = t53 - t54
-    t126 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t55 + t56
-    t127 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t126 - t127
-    t128 = stheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t129 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t130 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t129 + t130
-    t131 = ctheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    t132 = t128 - t131
-    t133 = ctheta2A_front_elbow_down_alike * ctheta23A_front_elbow_down_alike
-    t134 = stheta2A_front_elbow_down_alike * stheta23A_front_elbow_down_alike
-    c_elbow_front_elbow_down_alike = t133 + t134
-    t135 = L2 * t132 - a3 * c_elbow_front_elbow_down_alike
-    t136 = 0.0 <= -t135
-    t137 = L2 * c_elbow_front_elbow_down_alike + a3 * t132
-    large_front_elbow_down_alike = fore_arm + _runtime.select(t136, -t135, t135)
-    small_front_elbow_down_alike = t137 * t137 / large_front_elbow_down_alike
-    t138 = _runtime.select(t136, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    t139 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t140 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t141 = d * (t139 - t140)
-    t142 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t143 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t144 = d * (t142 + t143)
-    gap_front_elbow_down_alike = t141 * t141 + t144 * t144
-    t145 = t42 * t138 - gap_front_elbow_down_alike
-    t146 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t146 + a3 * ctheta23A_front_elbow_down_alike
-    t147 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t147 + a3 * stheta23A_front_elbow_down_alike
-    t148 = 2.0 * t141 * point_11_front_elbow_down_alike + 2.0 * t144 * point_21_front_elbow_down_alike
-    room_right_front_elbow_down_alike = t145 + t148
-    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t67
-    drawn_front_elbow_down_alike = L1 - L_2W * t132 + a_3W * c_elbow_front_elbow_down_alike
-    t149 = 2.0 * drawn_front_elbow_down_alike
-    t150 = t144 - point_21_front_elbow_down_alike
-    t151 = t141 - point_11_front_elbow_down_alike
-    t152 = ctheta2A_front_elbow_down_alike * t150 - stheta2A_front_elbow_down_alike * t151
-    t153 = t149 * t152
-    tilt_front_elbow_down_alike = L_2W * c_elbow_front_elbow_down_alike + a_3W * t132
-    t154 = t72 + np.abs(tilt_front_elbow_down_alike)
-    t155 = _runtime.select(spent_right_front_elbow_down_alike, size * np.abs(-t153) / t154, 0.0)
-    t156 = -(_runtime.FEASIBILITY * (t41 + t155)) <= room_right_front_elbow_down_alike
-    room_left_front_elbow_down_alike = t145 - t148
-    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t67
-    h_left_0_front_elbow_down_alike = t144 + point_21_front_elbow_down_alike
-    t157 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = t141 + point_11_front_elbow_down_alike
-    t158 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    slope_left_front_elbow_down_alike = t149 * (t157 - t158)
-    t159 = size * np.abs(slope_left_front_elbow_down_alike)
-    t160 = _runtime.select(spent_left_front_elbow_down_alike, t159 / t154, 0.0)
-    t161 = -(_runtime.FEASIBILITY * (t41 + t160)) <= room_left_front_elbow_down_alike
-    t162 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
-    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t153 * t162 / (2.0 * (t80 + t153 * t153)), 0.0)
-    t163 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
-    t164 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t165 = slope_left_front_elbow_down_alike * t163 / (2.0 * (t80 + t164))
-    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t165, 0.0)
+    s_bend_left = _runtime.select(short_right, 0.0, t104 * rN_left * rM_left / whole_left)
+    t116 = fore_arm * s_bend_left
+    t117 = r_left * t116
+    t118 = r_left * ahead_1_left
+    t119 = h_left * t116
+    t120 = _runtime.select(folded_left, t103, np.arctan2(t115 - t117, t118 + t119))
+    t121 = _runtime.select(short_right, 0.0, t104 * np.arctan2(rN_left, rM_left))
+    t122 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t123 = t122 + t100
+    t124 = _runtime.select(folded_left, t103, np.arctan2(t115 + t117, t118 - t119))
+    s_relative_front_elbow_down_alike = t46 + t47
+    c_relative_front_elbow_down_alike = t48 - t49
+    straight_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
+    t125 = 0.0 <= straight_front_elbow_down_alike
+    t126 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    t127 = _runtime.select(t125, straight_front_elbow_down_alike, -straight_front_elbow_down_alike)
+    large_front_elbow_down_alike = fore_arm + t127
+    small_front_elbow_down_alike = t126 * t126 / large_front_elbow_down_alike
+    t128 = _runtime.select(t125, small_front_elbow_down_alike, large_front_elbow_down_alike)
+    ctheta2A_front_elbow_down_alike = t55 + t56
+    t129 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    stheta2A_front_elbow_down_alike = t57 - t58
+    t130 = s_relative_front_elbow_down_alike * stheta2A_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t129 - t130
+    t131 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t132 = c_relative_front_elbow_down_alike * stheta2A_front_elbow_down_alike
+    t133 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t132 + t133
+    t134 = s_psi * stheta23A_front_elbow_down_alike / t4
+    t135 = d * (t131 - t134)
+    t136 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t137 = s_phi * stheta23A_front_elbow_down_alike / c_phi
+    t138 = d * (t136 + t137)
+    gap_front_elbow_down_alike = t135 * t135 + t138 * t138
+    t139 = t42 * t128 - gap_front_elbow_down_alike
+    t140 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t140 + a3 * ctheta23A_front_elbow_down_alike
+    t141 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    point_21_front_elbow_down_alike = t141 + a3 * stheta23A_front_elbow_down_alike
+    t142 = 2.0 * t135 * point_11_front_elbow_down_alike + 2.0 * t138 * point_21_front_elbow_down_alike
+    room_right_front_elbow_down_alike = t139 + t142
+    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t65
+    t143 = L1 + L_2W * s_relative_front_elbow_down_alike
+    drawn_front_elbow_down_alike = t143 + a_3W * c_relative_front_elbow_down_alike
+    t144 = 2.0 * drawn_front_elbow_down_alike
+    t145 = t138 - point_21_front_elbow_down_alike
+    t146 = t135 - point_11_front_elbow_down_alike
+    t147 = ctheta2A_front_elbow_down_alike * t145 - stheta2A_front_elbow_down_alike * t146
+    t148 = t144 * t147
+    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
+    t149 = t70 + np.abs(tilt_front_elbow_down_alike)
+    t150 = _runtime.select(spent_right_front_elbow_down_alike, size * np.abs(-t148) / t149, 0.0)
+    t151 = -(_runtime.FEASIBILITY * (t41 + t150)) <= room_right_front_elbow_down_alike
+    room_left_front_elbow_down_alike = t139 - t142
+    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t65
+    h_left_0_front_elbow_down_alike = t138 + point_21_front_elbow_down_alike
+    t152 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = t135 + point_11_front_elbow_down_alike
+    t153 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    slope_left_front_elbow_down_alike = t144 * (t152 - t153)
+    t154 = size * np.abs(slope_left_front_elbow_down_alike)
+    t155 = _runtime.select(spent_left_front_elbow_down_alike, t154 / t149, 0.0)
+    t156 = -(_runtime.FEASIBILITY * (t41 + t155)) <= room_left_front_elbow_down_alike
+    t157 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
+    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t148 * t157 / (2.0 * (t79 + t148 * t148)), 0.0)
+    t158 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
+    t159 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t160 = slope_left_front_elbow_down_alike * t158 / (2.0 * (t79 + t159))
+    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t160, 0.0)
     turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
-    t166 = t148 - t153 * turn_front_elbow_down_alike
-    t167 = t145 + t166
-    t168 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
-    t169 = ctheta2A_front_elbow_down_alike * t168
-    t170 = t150 + t169 + t151 * turn_front_elbow_down_alike
-    t171 = stheta2A_front_elbow_down_alike * t168
-    t172 = t151 - t150 * turn_front_elbow_down_alike - t171
-    t173 = t170 * t170 + t172 * t172
-    t174 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t175 = _runtime.select(t136, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    M_front_elbow_down_alike = t42 * t175
-    t176 = gap_front_elbow_down_alike + M_front_elbow_down_alike
-    t177 = _runtime.select(t79 * t173 < t174, t93 - t173, t166 - t176)
-    t178 = t40 & t156 & t161 & (t78 <= t167) & (t78 <= -t177)
-    t179 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
-    t180 = t148 - t179
-    t181 = t145 - t180
-    t182 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t169 + t182
-    t183 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    t184 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike + t171 - t184
-    t185 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t186 = t183 + t185
-    t187 = _runtime.select(t79 * t186 < t174, t186 - t93, t176 + t180)
-    unreachable_2 = np.logical_not(t178 & (t78 <= t181) & (t78 <= t187))
-    t188 = _runtime.poison(invalid | unreachable_2)
-    t189 = t16 + t188
-    folded_right_front_elbow_down_alike = np.sqrt(t173) <= t103
-    t190 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    t191 = 2.0 * _runtime.select(0.0 <= -t137, 1.0, -1.0)
-    N_right_front_elbow_down_alike = np.maximum(t167, t106)
+    t161 = t142 - t148 * turn_front_elbow_down_alike
+    t162 = t139 + t161
+    t163 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    t164 = ctheta2A_front_elbow_down_alike * t163
+    t165 = t145 + t164 + t146 * turn_front_elbow_down_alike
+    t166 = stheta2A_front_elbow_down_alike * t163
+    t167 = t146 - t145 * turn_front_elbow_down_alike - t166
+    t168 = t165 * t165 + t167 * t167
+    t169 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t170 = _runtime.select(t125, large_front_elbow_down_alike, small_front_elbow_down_alike)
+    M_front_elbow_down_alike = t42 * t170
+    t171 = gap_front_elbow_down_alike + M_front_elbow_down_alike
+    t172 = _runtime.select(t78 * t168 < t169, t92 - t168, t161 - t171)
+    t173 = t40 & t151 & t156 & (t77 <= t162) & (t77 <= -t172)
+    t174 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
+    t175 = t142 - t174
+    t176 = t139 - t175
+    t177 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t164 + t177
+    t178 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    t179 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike + t166 - t179
+    t180 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t181 = t178 + t180
+    t182 = _runtime.select(t78 * t181 < t169, t181 - t92, t171 + t175)
+    unreachable_2 = np.logical_not(t173 & (t77 <= t176) & (t77 <= t182))
+    t183 = _runtime.poison(invalid | unreachable_2)
+    t184 = t16 + t183
+    folded_right_front_elbow_down_alike = np.sqrt(t168) <= t102
+    t185 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    t186 = 2.0 * _runtime.select(0.0 <= -t126, 1.0, -1.0)
+    N_right_front_elbow_down_alike = np.maximum(t162, t105)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(-t177, t106)
+    M_right_front_elbow_down_alike = np.maximum(-t172, t105)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t192 = t191 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    t187 = t186 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t192 / whole_right_front_elbow_down_alike)
-    t193 = fore_arm * s_bend_right_front_elbow_down_alike
-    t194 = t108 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t92 + t194)
-    up_right_front_elbow_down_alike = t172 * t193 - t170 * ahead_1_right_front_elbow_down_alike
-    t195 = t172 * ahead_1_right_front_elbow_down_alike + t170 * t193
-    t196 = np.arctan2(up_right_front_elbow_down_alike, -t195)
-    t197 = _runtime.select(folded_right_front_elbow_down_alike, t190, t196)
-    t198 = _runtime.wrap_cut(t197) + t188
-    t199 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t200 = _runtime.select(short_right, 0.0, t191 * t199)
-    t201 = _runtime.wrap_cut(_runtime.wrap(t112 + t200))
-    t202 = t201 + t188
-    folded_left_front_elbow_down_alike = np.sqrt(t186) <= t103
-    M_left_front_elbow_down_alike = np.maximum(t187, 0.0)
-    N_left_front_elbow_down_alike = np.maximum(t181, 0.0)
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t187 / whole_right_front_elbow_down_alike)
+    t188 = fore_arm * s_bend_right_front_elbow_down_alike
+    t189 = t107 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t91 + t189)
+    up_right_front_elbow_down_alike = t167 * t188 - t165 * ahead_1_right_front_elbow_down_alike
+    t190 = t167 * ahead_1_right_front_elbow_down_alike + t165 * t188
+    t191 = np.arctan2(up_right_front_elbow_down_alike, -t190)
+    t192 = _runtime.select(folded_right_front_elbow_down_alike, t185, t191)
+    t193 = _runtime.wrap_cut(t192) + t183
+    t194 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t195 = _runtime.select(short_right, 0.0, t186 * t194)
+    t196 = _runtime.wrap_cut(_runtime.wrap(t111 + t195))
+    t197 = t196 + t183
+    folded_left_front_elbow_down_alike = np.sqrt(t181) <= t102
+    M_left_front_elbow_down_alike = np.maximum(t182, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t176, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t203 = t108 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t92 + t203)
-    t204 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t198 = t107 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t91 + t198)
+    t199 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t205 = t191 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t205 / whole_left_front_elbow_down_alike)
-    t206 = fore_arm * s_bend_left_front_elbow_down_alike
-    t207 = r_left_front_elbow_down_alike * t206
-    t208 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t209 = h_left_front_elbow_down_alike * t206
-    t210 = _runtime.select(folded_left_front_elbow_down_alike, t190, np.arctan2(t204 - t207, t208 + t209))
-    t211 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t212 = _runtime.select(short_right, 0.0, t191 * t211)
-    t213 = t123 + t188
-    t214 = _runtime.select(folded_left_front_elbow_down_alike, t190, np.arctan2(t204 + t207, t208 - t209))
-    t215 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    t200 = t186 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t200 / whole_left_front_elbow_down_alike)
+    t201 = fore_arm * s_bend_left_front_elbow_down_alike
+    t202 = r_left_front_elbow_down_alike * t201
+    t203 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t204 = h_left_front_elbow_down_alike * t201
+    t205 = _runtime.select(folded_left_front_elbow_down_alike, t185, np.arctan2(t199 - t202, t203 + t204))
+    t206 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t207 = _runtime.select(short_right, 0.0, t186 * t206)
+    t208 = t122 + t183
+    t209 = _runtime.select(folded_left_front_elbow_down_alike, t185, np.arctan2(t199 + t202, t203 - t204))
+    t210 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
     c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t32 + t33) / h))
     s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t34 - t35) / h)
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
-    t216 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t30 + t216)
-    t217 = t27 - reach_rear_elbow_up_alike
-    t218 = reach_rear_elbow_up_alike + t37
-    t219 = reach_rear_elbow_up_alike - t37
-    t220 = t26 & (t28 <= t217) & (t28 <= t218) & (t28 <= t219)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t43
-    s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t29 / reach_rear_elbow_up_alike)
-    t221 = folded_rear_elbow_up_alike | short
-    A_rear_elbow_up_alike = np.maximum(t217, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t219, 0.0)
-    t222 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    t211 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    reach_rear_elbow_up_alike = np.sqrt(t30 + t211)
+    t212 = t27 - reach_rear_elbow_up_alike
+    t213 = reach_rear_elbow_up_alike + t37
+    t214 = reach_rear_elbow_up_alike - t37
+    t215 = t26 & (t28 <= t212) & (t28 <= t213) & (t28 <= t214)
     S_rear_elbow_up_alike = t27 + reach_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t218, 0.0)
-    t223 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t222 + t223
-    t224 = -((t222 - t223) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = _runtime.select(t221, 1.0, t224)
-    t225 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t226 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t226)
-    t227 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t227 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t228 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = _runtime.select(t221, 0.0, t228)
-    t229 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t225 - t229
-    t230 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t231 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t230 + t231
-    t232 = A_rear_elbow_up_alike * S_rear_elbow_up_alike
-    t233 = C_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t232 + t233
-    t234 = -((t232 - t233) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t234)
-    t235 = c_lag * c_bend_rear_elbow_up_alike
-    t236 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t236)
-    t237 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t235 - t237
-    t238 = ctheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t239 = s_lag * c_bend_rear_elbow_up_alike
-    t240 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t239 + t240
-    t241 = stheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t238 - t241
-    t242 = stheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t243 = stheta2A_rear_elbow_up_alike * c_relative_rear_elbow_up_alike
-    t244 = ctheta2A_rear_elbow_up_alike * s_relative_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t243 + t244
-    t245 = ctheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    t246 = t242 - t245
-    t247 = ctheta2A_rear_elbow_up_alike * ctheta23A_rear_elbow_up_alike
-    t248 = stheta2A_rear_elbow_up_alike * stheta23A_rear_elbow_up_alike
-    c_elbow_rear_elbow_up_alike = t247 + t248
-    t249 = L2 * t246 - a3 * c_elbow_rear_elbow_up_alike
-    t250 = 0.0 <= -t249
-    t251 = L2 * c_elbow_rear_elbow_up_alike + a3 * t246
-    large_rear_elbow_up_alike = fore_arm + _runtime.select(t250, -t249, t249)
-    small_rear_elbow_up_alike = t251 * t251 / large_rear_elbow_up_alike
-    t252 = _runtime.select(t250, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    t253 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t254 = t253 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t255 = d * t254
-    t256 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t257 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t256
-    t258 = d * t257
-    gap_rear_elbow_up_alike = t255 * t255 + t258 * t258
-    t259 = t42 * t252 - gap_rear_elbow_up_alike
-    t260 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t260 + a3 * ctheta23A_rear_elbow_up_alike
-    t261 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t261 + a3 * stheta23A_rear_elbow_up_alike
-    t262 = 2.0 * t255 * point_11_rear_elbow_up_alike + 2.0 * t258 * point_21_rear_elbow_up_alike
-    room_right_rear_elbow_up_alike = t259 + t262
-    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t67
-    drawn_rear_elbow_up_alike = L1 - L_2W * t246 + a_3W * c_elbow_rear_elbow_up_alike
-    t263 = 2.0 * drawn_rear_elbow_up_alike
-    t264 = t258 - point_21_rear_elbow_up_alike
-    t265 = t255 - point_11_rear_elbow_up_alike
-    t266 = ctheta2A_rear_elbow_up_alike * t264 - stheta2A_rear_elbow_up_alike * t265
-    t267 = t263 * t266
-    tilt_rear_elbow_up_alike = L_2W * c_elbow_rear_elbow_up_alike + a_3W * t246
-    t268 = t72 + np.abs(tilt_rear_elbow_up_alike)
-    t269 = _runtime.select(spent_right_rear_elbow_up_alike, size * np.abs(-t267) / t268, 0.0)
-    t270 = -(_runtime.FEASIBILITY * (t41 + t269)) <= room_right_rear_elbow_up_alike
-    room_left_rear_elbow_up_alike = t259 - t262
-    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t67
-    h_left_0_rear_elbow_up_alike = t258 + point_21_rear_elbow_up_alike
-    t271 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t255 + point_11_rear_elbow_up_alike
-    t272 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    slope_left_rear_elbow_up_alike = t263 * (t271 - t272)
-    t273 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t274 = _runtime.select(spent_left_rear_elbow_up_alike, t273 / t268, 0.0)
-    t275 = -(_runtime.FEASIBILITY * (t41 + t274)) <= room_left_rear_elbow_up_alike
-    t276 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
-    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t267 * t276 / (2.0 * (t80 + t267 * t267)), 0.0)
-    t277 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
-    t278 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t279 = slope_left_rear_elbow_up_alike * t277 / (2.0 * (t80 + t278))
-    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t279, 0.0)
+    A_rear_elbow_up_alike = np.maximum(t212, 0.0)
+    t216 = S_rear_elbow_up_alike * A_rear_elbow_up_alike
+    B_rear_elbow_up_alike = np.maximum(t213, 0.0)
+    C_rear_elbow_up_alike = np.maximum(t214, 0.0)
+    t217 = B_rear_elbow_up_alike * C_rear_elbow_up_alike
+    at_elbow_rear_elbow_up_alike = t216 + t217
+    t218 = -((t216 - t217) / at_elbow_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t218)
+    t219 = s_lag * c_bend_rear_elbow_up_alike
+    t220 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
+    area_rear_elbow_up_alike = t220 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
+    t221 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t221)
+    t222 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t219 + t222
+    t223 = c_lag * c_bend_rear_elbow_up_alike
+    t224 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t223 - t224
+    straight_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
+    t225 = 0.0 <= straight_rear_elbow_up_alike
+    t226 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
+    t227 = _runtime.select(t225, straight_rear_elbow_up_alike, -straight_rear_elbow_up_alike)
+    large_rear_elbow_up_alike = fore_arm + t227
+    small_rear_elbow_up_alike = t226 * t226 / large_rear_elbow_up_alike
+    t228 = _runtime.select(t225, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
+    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t43
+    t229 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
+    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t229)
+    t230 = folded_rear_elbow_up_alike | short
+    t231 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
+    t232 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
+    at_base_rear_elbow_up_alike = t231 + t232
+    t233 = -((t231 - t232) / at_base_rear_elbow_up_alike)
+    c_base_rear_elbow_up_alike = _runtime.select(t230, 1.0, t233)
+    t234 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t29 / reach_rear_elbow_up_alike)
+    t235 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
+    s_base_rear_elbow_up_alike = _runtime.select(t230, 0.0, t235)
+    t236 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = t234 + t236
+    t237 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t238 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
+    t239 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
+    stheta2A_rear_elbow_up_alike = t238 - t239
+    t240 = s_relative_rear_elbow_up_alike * stheta2A_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t237 - t240
+    t241 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t242 = c_relative_rear_elbow_up_alike * stheta2A_rear_elbow_up_alike
+    t243 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    stheta23A_rear_elbow_up_alike = t242 + t243
+    t244 = t241 - s_psi * stheta23A_rear_elbow_up_alike / t4
+    t245 = d * t244
+    t246 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
+    t247 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t246
+    t248 = d * t247
+    gap_rear_elbow_up_alike = t245 * t245 + t248 * t248
+    t249 = t42 * t228 - gap_rear_elbow_up_alike
+    t250 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t250 + a3 * ctheta23A_rear_elbow_up_alike
+    t251 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = t251 + a3 * stheta23A_rear_elbow_up_alike
+    t252 = 2.0 * t245 * point_11_rear_elbow_up_alike + 2.0 * t248 * point_21_rear_elbow_up_alike
+    room_right_rear_elbow_up_alike = t249 + t252
+    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t65
+    drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
+    t253 = 2.0 * drawn_rear_elbow_up_alike
+    t254 = t248 - point_21_rear_elbow_up_alike
+    t255 = t245 - point_11_rear_elbow_up_alike
+    t256 = ctheta2A_rear_elbow_up_alike * t254 - stheta2A_rear_elbow_up_alike * t255
+    t257 = t253 * t256
+    tilt_rear_elbow_up_alike = L_2W * c_relative_rear_elbow_up_alike - a_3W * s_relative_rear_elbow_up_alike
+    t258 = t70 + np.abs(tilt_rear_elbow_up_alike)
+    t259 = _runtime.select(spent_right_rear_elbow_up_alike, size * np.abs(-t257) / t258, 0.0)
+    t260 = -(_runtime.FEASIBILITY * (t41 + t259)) <= room_right_rear_elbow_up_alike
+    room_left_rear_elbow_up_alike = t249 - t252
+    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t65
+    h_left_0_rear_elbow_up_alike = t248 + point_21_rear_elbow_up_alike
+    t261 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t245 + point_11_rear_elbow_up_alike
+    t262 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t253 * (t261 - t262)
+    t263 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t264 = _runtime.select(spent_left_rear_elbow_up_alike, t263 / t258, 0.0)
+    t265 = -(_runtime.FEASIBILITY * (t41 + t264)) <= room_left_rear_elbow_up_alike
+    t266 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
+    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t257 * t266 / (2.0 * (t79 + t257 * t257)), 0.0)
+    t267 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
+    t268 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t269 = slope_left_rear_elbow_up_alike * t267 / (2.0 * (t79 + t268))
+    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t269, 0.0)
     turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
-    t280 = t262 - t267 * turn_rear_elbow_up_alike
-    t281 = t259 + t280
-    t282 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t283 = ctheta2A_rear_elbow_up_alike * t282
-    t284 = t264 + t283 + t265 * turn_rear_elbow_up_alike
-    t285 = stheta2A_rear_elbow_up_alike * t282
-    t286 = t265 - t264 * turn_rear_elbow_up_alike - t285
-    t287 = t284 * t284 + t286 * t286
-    t288 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t289 = _runtime.select(t250, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    M_rear_elbow_up_alike = t42 * t289
-    t290 = gap_rear_elbow_up_alike + M_rear_elbow_up_alike
-    t291 = _runtime.select(t79 * t287 < t288, t93 - t287, t280 - t290)
-    t292 = t220 & t270 & t275 & (t78 <= t281) & (t78 <= -t291)
-    t293 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t294 = t262 - t293
-    t295 = t259 - t294
-    t296 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t283 + t296
-    t297 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    t298 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t285 - t298
-    t299 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t300 = t297 + t299
-    t301 = _runtime.select(t79 * t300 < t288, t300 - t93, t290 + t294)
-    unreachable_3 = np.logical_not(t292 & (t78 <= t295) & (t78 <= t301))
-    t302 = _runtime.poison(invalid | unreachable_3)
-    t303 = t215 + t302
-    folded_right_rear_elbow_up_alike = np.sqrt(t287) <= t103
-    t304 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    t305 = 2.0 * _runtime.select(0.0 <= -t251, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t281, t106)
+    t270 = t252 - t257 * turn_rear_elbow_up_alike
+    t271 = t249 + t270
+    t272 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t273 = ctheta2A_rear_elbow_up_alike * t272
+    t274 = t254 + t273 + t255 * turn_rear_elbow_up_alike
+    t275 = stheta2A_rear_elbow_up_alike * t272
+    t276 = t255 - t254 * turn_rear_elbow_up_alike - t275
+    t277 = t274 * t274 + t276 * t276
+    t278 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t279 = _runtime.select(t225, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
+    M_rear_elbow_up_alike = t42 * t279
+    t280 = gap_rear_elbow_up_alike + M_rear_elbow_up_alike
+    t281 = _runtime.select(t78 * t277 < t278, t92 - t277, t270 - t280)
+    t282 = t215 & t260 & t265 & (t77 <= t271) & (t77 <= -t281)
+    t283 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t284 = t252 - t283
+    t285 = t249 - t284
+    t286 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t273 + t286
+    t287 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    t288 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t275 - t288
+    t289 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t290 = t287 + t289
+    t291 = _runtime.select(t78 * t290 < t278, t290 - t92, t280 + t284)
+    unreachable_3 = np.logical_not(t282 & (t77 <= t285) & (t77 <= t291))
+    t292 = _runtime.poison(invalid | unreachable_3)
+    t293 = t210 + t292
+    folded_right_rear_elbow_up_alike = np.sqrt(t277) <= t102
+    t294 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
+    t295 = 2.0 * _runtime.select(0.0 <= -t226, 1.0, -1.0)
+    N_right_rear_elbow_up_alike = np.maximum(t271, t105)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(-t291, t106)
+    M_right_rear_elbow_up_alike = np.maximum(-t281, t105)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t306 = t305 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    t296 = t295 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t306 / whole_right_rear_elbow_up_alike)
-    t307 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t308 = t108 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t92 + t308)
-    up_right_rear_elbow_up_alike = t286 * t307 - t284 * ahead_1_right_rear_elbow_up_alike
-    t309 = t286 * ahead_1_right_rear_elbow_up_alike + t284 * t307
-    t310 = np.arctan2(up_right_rear_elbow_up_alike, -t309)
-    t311 = _runtime.select(folded_right_rear_elbow_up_alike, t304, t310)
-    t312 = _runtime.wrap_cut(t311) + t302
-    t313 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t314 = _runtime.select(short_right, 0.0, t305 * t313)
-    t315 = _runtime.wrap_cut(_runtime.wrap(t112 + t314))
-    t316 = t315 + t302
-    folded_left_rear_elbow_up_alike = np.sqrt(t300) <= t103
-    M_left_rear_elbow_up_alike = np.maximum(t301, 0.0)
-    N_left_rear_elbow_up_alike = np.maximum(t295, 0.0)
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t296 / whole_right_rear_elbow_up_alike)
+    t297 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t298 = t107 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t91 + t298)
+    up_right_rear_elbow_up_alike = t276 * t297 - t274 * ahead_1_right_rear_elbow_up_alike
+    t299 = t276 * ahead_1_right_rear_elbow_up_alike + t274 * t297
+    t300 = np.arctan2(up_right_rear_elbow_up_alike, -t299)
+    t301 = _runtime.select(folded_right_rear_elbow_up_alike, t294, t300)
+    t302 = _runtime.wrap_cut(t301) + t292
+    t303 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t304 = _runtime.select(short_right, 0.0, t295 * t303)
+    t305 = _runtime.wrap_cut(_runtime.wrap(t111 + t304))
+    t306 = t305 + t292
+    folded_left_rear_elbow_up_alike = np.sqrt(t290) <= t102
+    M_left_rear_elbow_up_alike = np.maximum(t291, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t285, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t317 = t108 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t92 + t317)
-    t318 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t307 = t107 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t91 + t307)
+    t308 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t319 = t305 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t319 / whole_left_rear_elbow_up_alike)
-    t320 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t321 = r_left_rear_elbow_up_alike * t320
-    t322 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t323 = h_left_rear_elbow_up_alike * t320
-    t324 = _runtime.select(folded_left_rear_elbow_up_alike, t304, np.arctan2(t318 - t321, t322 + t323))
-    t325 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t326 = _runtime.select(short_right, 0.0, t305 * t325)
-    t327 = t123 + t302
-    t328 = _runtime.select(folded_left_rear_elbow_up_alike, t304, np.arctan2(t318 + t321, t322 - t323))
-    stheta2A_rear_elbow_down_alike = t225 + t229
-    ctheta2A_rear_elbow_down_alike = t230 - t231
-    c_relative_rear_elbow_down_alike = t235 + t237
-    t329 = ctheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    s_relative_rear_elbow_down_alike = t239 - t240
-    t330 = stheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t329 - t330
-    t331 = stheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t332 = stheta2A_rear_elbow_down_alike * c_relative_rear_elbow_down_alike
-    t333 = ctheta2A_rear_elbow_down_alike * s_relative_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t332 + t333
-    t334 = ctheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    t335 = t331 - t334
-    t336 = ctheta2A_rear_elbow_down_alike * ctheta23A_rear_elbow_down_alike
-    t337 = stheta2A_rear_elbow_down_alike * stheta23A_rear_elbow_down_alike
-    c_elbow_rear_elbow_down_alike = t336 + t337
-    t338 = L2 * t335 - a3 * c_elbow_rear_elbow_down_alike
-    t339 = 0.0 <= -t338
-    t340 = L2 * c_elbow_rear_elbow_down_alike + a3 * t335
-    large_rear_elbow_down_alike = fore_arm + _runtime.select(t339, -t338, t338)
-    small_rear_elbow_down_alike = t340 * t340 / large_rear_elbow_down_alike
-    t341 = _runtime.select(t339, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    t342 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t343 = t342 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t344 = d * t343
-    t345 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t346 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t345
-    t347 = d * t346
-    gap_rear_elbow_down_alike = t344 * t344 + t347 * t347
-    t348 = t42 * t341 - gap_rear_elbow_down_alike
-    t349 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t349 + a3 * ctheta23A_rear_elbow_down_alike
-    t350 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t350 + a3 * stheta23A_rear_elbow_down_alike
-    t351 = 2.0 * t344 * point_11_rear_elbow_down_alike + 2.0 * t347 * point_21_rear_elbow_down_alike
-    room_right_rear_elbow_down_alike = t348 + t351
-    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t67
-    drawn_rear_elbow_down_alike = L1 - L_2W * t335 + a_3W * c_elbow_rear_elbow_down_alike
-    t352 = 2.0 * drawn_rear_elbow_down_alike
-    t353 = t347 - point_21_rear_elbow_down_alike
-    t354 = t344 - point_11_rear_elbow_down_alike
-    t355 = ctheta2A_rear_elbow_down_alike * t353 - stheta2A_rear_elbow_down_alike * t354
-    t356 = t352 * t355
-    tilt_rear_elbow_down_alike = L_2W * c_elbow_rear_elbow_down_alike + a_3W * t335
-    t357 = t72 + np.abs(tilt_rear_elbow_down_alike)
-    t358 = _runtime.select(spent_right_rear_elbow_down_alike, size * np.abs(-t356) / t357, 0.0)
-    t359 = -(_runtime.FEASIBILITY * (t41 + t358)) <= room_right_rear_elbow_down_alike
-    room_left_rear_elbow_down_alike = t348 - t351
-    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t67
-    h_left_0_rear_elbow_down_alike = t347 + point_21_rear_elbow_down_alike
-    t360 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t344 + point_11_rear_elbow_down_alike
-    t361 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t352 * (t360 - t361)
-    t362 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t363 = _runtime.select(spent_left_rear_elbow_down_alike, t362 / t357, 0.0)
-    t364 = -(_runtime.FEASIBILITY * (t41 + t363)) <= room_left_rear_elbow_down_alike
-    t365 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
-    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t356 * t365 / (2.0 * (t80 + t356 * t356)), 0.0)
-    t366 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
-    t367 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t368 = slope_left_rear_elbow_down_alike * t366 / (2.0 * (t80 + t367))
-    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t368, 0.0)
+    t309 = t295 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t309 / whole_left_rear_elbow_up_alike)
+    t310 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t311 = r_left_rear_elbow_up_alike * t310
+    t312 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t313 = h_left_rear_elbow_up_alike * t310
+    t314 = _runtime.select(folded_left_rear_elbow_up_alike, t294, np.arctan2(t308 - t311, t312 + t313))
+    t315 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t316 = _runtime.select(short_right, 0.0, t295 * t315)
+    t317 = t122 + t292
+    t318 = _runtime.select(folded_left_rear_elbow_up_alike, t294, np.arctan2(t308 + t311, t312 - t313))
+    s_relative_rear_elbow_down_alike = t219 - t222
+    c_relative_rear_elbow_down_alike = t223 + t224
+    straight_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
+    t319 = 0.0 <= straight_rear_elbow_down_alike
+    t320 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
+    t321 = _runtime.select(t319, straight_rear_elbow_down_alike, -straight_rear_elbow_down_alike)
+    large_rear_elbow_down_alike = fore_arm + t321
+    small_rear_elbow_down_alike = t320 * t320 / large_rear_elbow_down_alike
+    t322 = _runtime.select(t319, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
+    ctheta2A_rear_elbow_down_alike = t234 - t236
+    t323 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta2A_rear_elbow_down_alike = t238 + t239
+    t324 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t323 - t324
+    t325 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t326 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t327 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t326 + t327
+    t328 = t325 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t329 = d * t328
+    t330 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t331 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t330
+    t332 = d * t331
+    gap_rear_elbow_down_alike = t329 * t329 + t332 * t332
+    t333 = t42 * t322 - gap_rear_elbow_down_alike
+    t334 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t334 + a3 * ctheta23A_rear_elbow_down_alike
+    t335 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t335 + a3 * stheta23A_rear_elbow_down_alike
+    t336 = 2.0 * t329 * point_11_rear_elbow_down_alike + 2.0 * t332 * point_21_rear_elbow_down_alike
+    room_right_rear_elbow_down_alike = t333 + t336
+    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t65
+    drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
+    t337 = 2.0 * drawn_rear_elbow_down_alike
+    t338 = t332 - point_21_rear_elbow_down_alike
+    t339 = t329 - point_11_rear_elbow_down_alike
+    t340 = ctheta2A_rear_elbow_down_alike * t338 - stheta2A_rear_elbow_down_alike * t339
+    t341 = t337 * t340
+    tilt_rear_elbow_down_alike = L_2W * c_relative_rear_elbow_down_alike - a_3W * s_relative_rear_elbow_down_alike
+    t342 = t70 + np.abs(tilt_rear_elbow_down_alike)
+    t343 = _runtime.select(spent_right_rear_elbow_down_alike, size * np.abs(-t341) / t342, 0.0)
+    t344 = -(_runtime.FEASIBILITY * (t41 + t343)) <= room_right_rear_elbow_down_alike
+    room_left_rear_elbow_down_alike = t333 - t336
+    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t65
+    h_left_0_rear_elbow_down_alike = t332 + point_21_rear_elbow_down_alike
+    t345 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t329 + point_11_rear_elbow_down_alike
+    t346 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t337 * (t345 - t346)
+    t347 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t348 = _runtime.select(spent_left_rear_elbow_down_alike, t347 / t342, 0.0)
+    t349 = -(_runtime.FEASIBILITY * (t41 + t348)) <= room_left_rear_elbow_down_alike
+    t350 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
+    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t341 * t350 / (2.0 * (t79 + t341 * t341)), 0.0)
+    t351 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
+    t352 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t353 = slope_left_rear_elbow_down_alike * t351 / (2.0 * (t79 + t352))
+    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t353, 0.0)
     turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
-    t369 = t351 - t356 * turn_rear_elbow_down_alike
-    t370 = t348 + t369
-    t371 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t372 = ctheta2A_rear_elbow_down_alike * t371
-    t373 = t353 + t372 + t354 * turn_rear_elbow_down_alike
-    t374 = stheta2A_rear_elbow_down_alike * t371
-    t375 = t354 - t353 * turn_rear_elbow_down_alike - t374
-    t376 = t373 * t373 + t375 * t375
-    t377 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t378 = _runtime.select(t339, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    M_rear_elbow_down_alike = t42 * t378
-    t379 = gap_rear_elbow_down_alike + M_rear_elbow_down_alike
-    t380 = _runtime.select(t79 * t376 < t377, t93 - t376, t369 - t379)
-    t381 = t220 & t359 & t364 & (t78 <= t370) & (t78 <= -t380)
-    t382 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t383 = t351 - t382
-    t384 = t348 - t383
-    t385 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t372 + t385
-    t386 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    t387 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t374 - t387
-    t388 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t389 = t386 + t388
-    t390 = _runtime.select(t79 * t389 < t377, t389 - t93, t379 + t383)
-    unreachable_4 = np.logical_not(t381 & (t78 <= t384) & (t78 <= t390))
-    t391 = _runtime.poison(invalid | unreachable_4)
-    t392 = t215 + t391
-    folded_right_rear_elbow_down_alike = np.sqrt(t376) <= t103
-    t393 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    t394 = 2.0 * _runtime.select(0.0 <= -t340, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t370, t106)
+    t354 = t336 - t341 * turn_rear_elbow_down_alike
+    t355 = t333 + t354
+    t356 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t357 = ctheta2A_rear_elbow_down_alike * t356
+    t358 = t338 + t357 + t339 * turn_rear_elbow_down_alike
+    t359 = stheta2A_rear_elbow_down_alike * t356
+    t360 = t339 - t338 * turn_rear_elbow_down_alike - t359
+    t361 = t358 * t358 + t360 * t360
+    t362 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t363 = _runtime.select(t319, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
+    M_rear_elbow_down_alike = t42 * t363
+    t364 = gap_rear_elbow_down_alike + M_rear_elbow_down_alike
+    t365 = _runtime.select(t78 * t361 < t362, t92 - t361, t354 - t364)
+    t366 = t215 & t344 & t349 & (t77 <= t355) & (t77 <= -t365)
+    t367 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t368 = t336 - t367
+    t369 = t333 - t368
+    t370 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t357 + t370
+    t371 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    t372 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t359 - t372
+    t373 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t374 = t371 + t373
+    t375 = _runtime.select(t78 * t374 < t362, t374 - t92, t364 + t368)
+    unreachable_4 = np.logical_not(t366 & (t77 <= t369) & (t77 <= t375))
+    t376 = _runtime.poison(invalid | unreachable_4)
+    t377 = t210 + t376
+    folded_right_rear_elbow_down_alike = np.sqrt(t361) <= t102
+    t378 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    t379 = 2.0 * _runtime.select(0.0 <= -t320, 1.0, -1.0)
+    N_right_rear_elbow_down_alike = np.maximum(t355, t105)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(-t380, t106)
+    M_right_rear_elbow_down_alike = np.maximum(-t365, t105)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t395 = t394 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    t380 = t379 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t395 / whole_right_rear_elbow_down_alike)
-    t396 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t397 = t108 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t92 + t397)
-    up_right_rear_elbow_down_alike = t375 * t396 - t373 * ahead_1_right_rear_elbow_down_alike
-    t398 = t375 * ahead_1_right_rear_elbow_down_alike + t373 * t396
-    t399 = np.arctan2(up_right_rear_elbow_down_alike, -t398)
-    t400 = _runtime.select(folded_right_rear_elbow_down_alike, t393, t399)
-    t401 = _runtime.wrap_cut(t400) + t391
-    t402 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t403 = _runtime.select(short_right, 0.0, t394 * t402)
-    t404 = _runtime.wrap_cut(_runtime.wrap(t112 + t403))
-    t405 = t404 + t391
-    folded_left_rear_elbow_down_alike = np.sqrt(t389) <= t103
-    M_left_rear_elbow_down_alike = np.maximum(t390, 0.0)
-    N_left_rear_elbow_down_alike = np.maximum(t384, 0.0)
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t380 / whole_right_rear_elbow_down_alike)
+    t381 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t382 = t107 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t91 + t382)
+    up_right_rear_elbow_down_alike = t360 * t381 - t358 * ahead_1_right_rear_elbow_down_alike
+    t383 = t360 * ahead_1_right_rear_elbow_down_alike + t358 * t381
+    t384 = np.arctan2(up_right_rear_elbow_down_alike, -t383)
+    t385 = _runtime.select(folded_right_rear_elbow_down_alike, t378, t384)
+    t386 = _runtime.wrap_cut(t385) + t376
+    t387 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t388 = _runtime.select(short_right, 0.0, t379 * t387)
+    t389 = _runtime.wrap_cut(_runtime.wrap(t111 + t388))
+    t390 = t389 + t376
+    folded_left_rear_elbow_down_alike = np.sqrt(t374) <= t102
+    M_left_rear_elbow_down_alike = np.maximum(t375, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t369, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t406 = t108 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t92 + t406)
-    t407 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t391 = t107 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t91 + t391)
+    t392 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t408 = t394 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t408 / whole_left_rear_elbow_down_alike)
-    t409 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t410 = r_left_rear_elbow_down_alike * t409
-    t411 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t412 = h_left_rear_elbow_down_alike * t409
-    t413 = _runtime.select(folded_left_rear_elbow_down_alike, t393, np.arctan2(t407 - t410, t411 + t412))
-    t414 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t415 = _runtime.select(short_right, 0.0, t394 * t414)
-    t416 = t123 + t391
-    t417 = _runtime.select(folded_left_rear_elbow_down_alike, t393, np.arctan2(t407 + t410, t411 - t412))
-    t418 = nowhere | folded | short
-    square = t93 + M
-    t419 = 10000.0 * t79
-    pole = M * square <= _runtime.VANISHING * (t419 * gap)
-    t420 = _runtime.VANISHING * t419
-    t421 = t418 | pole | (square <= t420) | folded_right
-    t422 = _runtime.status(invalid, unreachable, t421 | short_right | folded_left)
-    square_front_elbow_down_alike = t93 + M_front_elbow_down_alike
-    t423 = M_front_elbow_down_alike * square_front_elbow_down_alike
-    t424 = _runtime.VANISHING * (t419 * gap_front_elbow_down_alike)
-    t425 = t418 | (t423 <= t424) | (square_front_elbow_down_alike <= t420)
-    t426 = t425 | folded_right_front_elbow_down_alike | short_right
-    t427 = _runtime.status(invalid, unreachable_2, t426 | folded_left_front_elbow_down_alike)
-    t428 = nowhere | folded_rear_elbow_up_alike | short
-    square_rear_elbow_up_alike = t93 + M_rear_elbow_up_alike
-    t429 = M_rear_elbow_up_alike * square_rear_elbow_up_alike
-    t430 = _runtime.VANISHING * (t419 * gap_rear_elbow_up_alike)
-    t431 = t428 | (t429 <= t430) | (square_rear_elbow_up_alike <= t420)
-    t432 = t431 | folded_right_rear_elbow_up_alike | short_right
-    t433 = _runtime.status(invalid, unreachable_3, t432 | folded_left_rear_elbow_up_alike)
-    square_rear_elbow_down_alike = t93 + M_rear_elbow_down_alike
-    t434 = M_rear_elbow_down_alike * square_rear_elbow_down_alike
-    t435 = _runtime.VANISHING * (t419 * gap_rear_elbow_down_alike)
-    t436 = t428 | (t434 <= t435) | (square_rear_elbow_down_alike <= t420)
-    t437 = t436 | folded_right_rear_elbow_down_alike | short_right
-    t438 = _runtime.status(invalid, unreachable_4, t437 | folded_left_rear_elbow_down_alike)
+    t393 = t379 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t393 / whole_left_rear_elbow_down_alike)
+    t394 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t395 = r_left_rear_elbow_down_alike * t394
+    t396 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t397 = h_left_rear_elbow_down_alike * t394
+    t398 = _runtime.select(folded_left_rear_elbow_down_alike, t378, np.arctan2(t392 - t395, t396 + t397))
+    t399 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t400 = _runtime.select(short_right, 0.0, t379 * t399)
+    t401 = t122 + t376
+    t402 = _runtime.select(folded_left_rear_elbow_down_alike, t378, np.arctan2(t392 + t395, t396 - t397))
+    t403 = nowhere | folded | short
+    square = t92 + M
+    t404 = 10000.0 * t78
+    pole = M * square <= _runtime.VANISHING * (t404 * gap)
+    t405 = _runtime.VANISHING * t404
+    t406 = t403 | pole | (square <= t405) | folded_right
+    t407 = _runtime.status(invalid, unreachable, t406 | short_right | folded_left)
+    square_front_elbow_down_alike = t92 + M_front_elbow_down_alike
+    t408 = M_front_elbow_down_alike * square_front_elbow_down_alike
+    t409 = _runtime.VANISHING * (t404 * gap_front_elbow_down_alike)
+    t410 = t403 | (t408 <= t409) | (square_front_elbow_down_alike <= t405)
+    t411 = t410 | folded_right_front_elbow_down_alike | short_right
+    t412 = _runtime.status(invalid, unreachable_2, t411 | folded_left_front_elbow_down_alike)
+    t413 = nowhere | folded_rear_elbow_up_alike | short
+    square_rear_elbow_up_alike = t92 + M_rear_elbow_up_alike
+    t414 = M_rear_elbow_up_alike * square_rear_elbow_up_alike
+    t415 = _runtime.VANISHING * (t404 * gap_rear_elbow_up_alike)
+    t416 = t413 | (t414 <= t415) | (square_rear_elbow_up_alike <= t405)
+    t417 = t416 | folded_right_rear_elbow_up_alike | short_right
+    t418 = _runtime.status(invalid, unreachable_3, t417 | folded_left_rear_elbow_up_alike)
+    square_rear_elbow_down_alike = t92 + M_rear_elbow_down_alike
+    t419 = M_rear_elbow_down_alike * square_rear_elbow_down_alike
+    t420 = _runtime.VANISHING * (t404 * gap_rear_elbow_down_alike)
+    t421 = t413 | (t419 <= t420) | (square_rear_elbow_down_alike <= t405)
+    t422 = t421 | folded_right_rear_elbow_down_alike | short_right
+    t423 = _runtime.status(invalid, unreachable_4, t422 | folded_left_rear_elbow_down_alike)
     return (
-        t102,
-        t111,
-        t115,
-        _runtime.wrap_cut(t121) + t101,
-        _runtime.wrap(t112 + t122) + t101,
-        t124,
-        t102,
-        t111,
-        t115,
-        _runtime.wrap_cut(t125) + t101,
-        _runtime.wrap(t112 - t122) + t101,
-        t124,
-        t189,
-        t198,
-        t202,
-        _runtime.wrap_cut(t210) + t188,
-        _runtime.wrap(t112 + t212) + t188,
-        t213,
-        t189,
-        t198,
-        t202,
-        _runtime.wrap_cut(t214) + t188,
-        _runtime.wrap(t112 - t212) + t188,
-        t213,
-        t303,
-        t312,
-        t316,
-        _runtime.wrap_cut(t324) + t302,
-        _runtime.wrap(t112 + t326) + t302,
-        t327,
-        t303,
-        t312,
-        t316,
-        _runtime.wrap_cut(t328) + t302,
-        _runtime.wrap(t112 - t326) + t302,
-        t327,
-        t392,
+        t101,
+        t110,
+        t114,
+        _runtime.wrap_cut(t120) + t100,
+        _runtime.wrap(t111 + t121) + t100,
+        t123,
+        t101,
+        t110,
+        t114,
+        _runtime.wrap_cut(t124) + t100,
+        _runtime.wrap(t111 - t121) + t100,
+        t123,
+        t184,
+        t193,
+        t197,
+        _runtime.wrap_cut(t205) + t183,
+        _runtime.wrap(t111 + t207) + t183,
+        t208,
+        t184,
+        t193,
+        t197,
+        _runtime.wrap_cut(t209) + t183,
+        _runtime.wrap(t111 - t207) + t183,
+        t208,
+        t293,
+        t302,
+        t306,
+        _runtime.wrap_cut(t314) + t292,
+        _runtime.wrap(t111 + t316) + t292,
+        t317,
+        t293,
+        t302,
+        t306,
+        _runtime.wrap_cut(t318) + t292,
+        _runtime.wrap(t111 - t316) + t292,
+        t317,
+        t377,
+        t386,
+        t390,
+        _runtime.wrap_cut(t398) + t376,
+        _runtime.wrap(t111 + t400) + t376,
         t401,
-        t405,
-        _runtime.wrap_cut(t413) + t391,
-        _runtime.wrap(t112 + t415) + t391,
-        t416,
-        t392,
+        t377,
+        t386,
+        t390,
+        _runtime.wrap_cut(t402) + t376,
+        _runtime.wrap(t111 - t400) + t376,
         t401,
-        t405,
-        _runtime.wrap_cut(t417) + t391,
-        _runtime.wrap(t112 - t415) + t391,
-        t416,
-        t422,
-        t422,
-        t427,
-        t427,
-        t433,
-        t433,
-        t438,
-        t438,
+        t407,
+        t407,
+        t412,
+        t412,
+        t418,
+        t418,
+        t423,
+        t423,
     )
 
 

@@ -135,6 +135,32 @@ def heron_factors(
     )
 
 
+def square_factors(
+    program: Program,
+    first: sp.Expr,
+    second: sp.Expr,
+    square: sp.Expr,
+    scale: sp.Expr,
+    *,
+    suffix: str = "",
+) -> tuple[sp.Symbol, sp.Symbol]:
+    """N and M of :func:`two_link_triangle_by_square`; a triangle exists where none is negative.
+
+    A fold of some 2^-44 of the links is none: there M may be missed by its own square.
+    """
+    total, apart = first + second, first - second
+    N = program.bound(
+        f"N{suffix}", total**2 - square, 2 * total * scale, "nearer than full stretch"
+    )
+    M = program.bound(
+        f"M{suffix}",
+        square - apart**2,
+        2 * (sp.Abs(apart) + total / 2**44) * scale,
+        "farther than the fold",
+    )
+    return N, M
+
+
 def triangle_equations(
     first: sp.Expr, second: sp.Expr, reach: sp.Expr, elbow: sp.Symbol, base: sp.Symbol
 ) -> tuple[sp.Expr, sp.Expr]:
@@ -221,22 +247,13 @@ def two_link_triangle_by_square(
     turns with it.  Both angles rest on the same N and M, whose rounding counts as some of R; so
     the links end where they should even where their angles are ill-conditioned.
 
-    A fold of some 2^-44 of the links is none: there M may be missed by its own square.
-
     The elbow is free where a link has no length: the convention is a stretched one, and the
     ``free`` joints get the status for it.  The base is free where R = 0.  ``scale`` is the natural
     scale of the lengths: by default that of the links, more where R comes from larger ones.
     """
-    total, apart = first + second, first - second
-    scale = total if scale is None else scale
-    N = program.bound(
-        f"N{suffix}", total**2 - square, 2 * total * scale, "nearer than full stretch"
-    )
-    M = program.bound(
-        f"M{suffix}",
-        square - apart**2,
-        2 * (sp.Abs(apart) + total / 2**44) * scale,
-        "farther than the fold",
+    total = first + second
+    N, M = square_factors(
+        program, first, second, square, total if scale is None else scale, suffix=suffix
     )
     bend, lead = triangle_angles(first, second, N, M, sigma)
     no_link = program.vanishes(

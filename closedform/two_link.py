@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import sympy as sp
 
-from closedform.functions import Number, Program, choose, real
-from closedform.lemmas import Lemma, two_link_triangle
+from closedform.functions import Number, Program, choose
+from closedform.lemmas import Lemma, square_factors
 
 
 def two_link_arm(
@@ -32,38 +32,15 @@ def two_link_arm(
     turn together where r = h = 0, and one of them is free where a link has no length.
     """
     upper, along, across = lengths
+    r, h = target
     start = len(program.body)
     second = program.let(f"fore{suffix}", sp.sqrt(along**2 + across**2), nonnegative=True)
-    reach = program.let(
-        f"reach{suffix}", sp.sqrt(target[0] ** 2 + target[1] ** 2), nonnegative=True
+    square = program.let(f"square{suffix}", r**2 + h**2, nonnegative=True)
+    squares = square_factors(program, upper, second, square, upper + second, suffix=suffix)
+    flags = _degenerate(program, upper, second, sp.Abs(r) + sp.Abs(h), suffix, free)
+    return _arm(
+        program, lengths, second, target, unknowns, sigma, squares, flags, suffix, start, (1, 0)
     )
-    triangle = two_link_triangle(
-        program, upper, second, reach, real("elbow"), real("base"), sigma, suffix=suffix
-    )
-    S, A, B, C, rS, rA, rB, rC = (
-        real(f"{root}{name}{suffix}", nonnegative=True) for root in ("", "r") for name in "SABC"
-    )
-    folded, short = _degenerate(program, upper, second, reach, suffix, free)
-    at_elbow = program.let(f"at_elbow{suffix}", B * C + S * A)
-    at_base = program.let(f"at_base{suffix}", S * B + A * C)
-    area = program.let(f"area{suffix}", 2 * sigma * (rS * rA) * (rB * rC))
-    bend = (choose(short, 1, (B * C - S * A) / at_elbow), choose(short, 0, area / at_elbow))
-    lost = sp.Or(folded, short)
-    base = (choose(lost, 1, (S * B - A * C) / at_base), choose(lost, 0, area / at_base))
-    sight = tuple(choose(folded, k, e / reach) for k, e in zip((1, 0), target, strict=True))
-    sight, base, bend = (
-        tuple(program.let(f"{f}_{name}{suffix}", e) for f, e in zip("cs", pair, strict=True))
-        for name, pair in (("sight", sight), ("base", base), ("bend", bend))
-    )
-    direction = (
-        sight[0] * base[0] + sight[1] * base[1],
-        sight[1] * base[0] - sight[0] * base[1],
-    )
-    angles = (
-        choose(folded, 0, sp.atan2(*reversed(target))) - choose(lost, 0, triangle[real("base")]),
-        choose(short, 0, triangle[real("elbow")]),
-    )
-    return _arm(program, lengths, target, unknowns, suffix, start, direction, bend, angles)
 
 
 def two_link_arm_beside(
@@ -109,26 +86,10 @@ def two_link_arm_beside(
         )
     )
     start = len(program.body)
-    reach = program.let(f"reach{suffix}", sp.sqrt(r**2 + h**2), nonnegative=True)
-    folded, short = _degenerate(program, upper, second, reach, suffix, free, roundings=64)
-    rN, rM = (program.let(f"r{e.name}", sp.sqrt(e), nonnegative=True) for e in (N, M))
-    whole = program.let(f"whole{suffix}", N + M)
-    bend = (
-        program.let(f"c_bend{suffix}", choose(short, 1, (M - N) / whole)),
-        program.let(f"s_bend{suffix}", choose(short, 0, 2 * sigma * rN * rM / whole)),
+    flags = _degenerate(program, upper, second, sp.Abs(r) + sp.Abs(h), suffix, free, roundings=64)
+    lemma = _arm(
+        program, lengths, second, target, unknowns, sigma, (N, M), flags, suffix, start, rest
     )
-    # 1 + cos(bend) = 2 M / (N + M): without a difference of nearly equal lengths at the fold
-    ahead = choose(short, upper + second, upper - second + 2 * second * (M / whole))
-    beyond = (program.let(f"ahead_1{suffix}", ahead), second * bend[1])
-    out = program.let(f"out{suffix}", r * beyond[0] + h * beyond[1])
-    up = program.let(f"up{suffix}", h * beyond[0] - r * beyond[1])
-    norm = program.let(f"norm{suffix}", sp.sqrt(out**2 + up**2), nonnegative=True)
-    direction = (choose(folded, rest[0], out / norm), choose(folded, rest[1], up / norm))
-    angles = (
-        choose(folded, sp.atan2(rest[1], rest[0]), sp.atan2(up, out)),
-        choose(short, 0, 2 * sigma * sp.atan2(rN, rM)),
-    )
-    lemma = _arm(program, lengths, target, unknowns, suffix, start, direction, bend, angles)
     premises = {
         second: sp.sqrt(along**2 + across**2),
         N: (upper + second) ** 2 - squared,
@@ -186,25 +147,43 @@ def _degenerate(
 def _arm(
     program: Program,
     lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    second: sp.Symbol,
     target: tuple[sp.Expr, sp.Expr],
     unknowns: tuple[sp.Symbol, sp.Symbol],
+    sigma: sp.Symbol,
+    squares: tuple[sp.Symbol, sp.Symbol],
+    flags: tuple[sp.Symbol, sp.Symbol],
     suffix: str,
     start: int,
-    direction: tuple[sp.Expr, sp.Expr],
-    bend: tuple[sp.Expr, sp.Expr],
-    angles: tuple[sp.Expr, sp.Expr],
+    rest: tuple[Number, Number],
 ) -> Lemma:
-    """The lemma of an arm from the pairs and the angles of its upper arm and of its bend."""
-    (upper, along, across), (r, h), (x, y) = lengths, target, unknowns
-    length = program.let(f"length{suffix}", sp.sqrt(along**2 + across**2), nonnegative=True)
-    bare = program.vanishes(f"bare{suffix}", length, upper + length, "the fore-arm has no length")
-    cx, sx = (program.let(f"{f}{x.name}", e) for f, e in zip("cs", direction, strict=True))
-    lag = (choose(bare, 1, across / length), choose(bare, 0, along / length))
+    """The lemma of an arm from N and M, the flags of :func:`_degenerate`, and what they free."""
+    (upper, along, across), (r, h), (x, y), (N, M) = lengths, target, unknowns, squares
+    folded, short = flags
+    rN, rM = (program.let(f"r{e.name}", sp.sqrt(e), nonnegative=True) for e in (N, M))
+    whole = program.let(f"whole{suffix}", N + M)
+    bend = (
+        program.let(f"c_bend{suffix}", choose(short, 1, (M - N) / whole)),
+        program.let(f"s_bend{suffix}", choose(short, 0, 2 * sigma * rN * rM / whole)),
+    )
+    # 1 + cos(bend) = 2 M / (N + M): without a difference of nearly equal lengths at the fold
+    ahead = choose(short, upper + second, upper - second + 2 * second * (M / whole))
+    beyond = (program.let(f"ahead_1{suffix}", ahead), second * bend[1])
+    out = program.let(f"out{suffix}", r * beyond[0] + h * beyond[1])
+    up = program.let(f"up{suffix}", h * beyond[0] - r * beyond[1])
+    norm = program.let(f"norm{suffix}", sp.sqrt(out**2 + up**2), nonnegative=True)
+    cx = program.let(f"c{x.name}", choose(folded, rest[0], out / norm))
+    sx = program.let(f"s{x.name}", choose(folded, rest[1], up / norm))
+    size = upper + second
+    bare = program.vanishes(f"bare{suffix}", second, size, "the fore-arm has no length")
+    lag = (choose(bare, 1, across / second), choose(bare, 0, along / second))
     lag = tuple(program.let(f"{f}_lag{suffix}", e) for f, e in zip("cs", lag, strict=True))
     turn = (bend[0] * lag[0] - bend[1] * lag[1], bend[1] * lag[0] + bend[0] * lag[1])
     turn = tuple(program.let(f"{f}_relative{suffix}", e) for f, e in zip("cs", turn, strict=True))
     cy = program.let(f"c{y.name}", cx * turn[0] - sx * turn[1])
     sy = program.let(f"s{y.name}", sx * turn[0] + cx * turn[1])
+    upwards = choose(folded, sp.atan2(rest[1], rest[0]), sp.atan2(up, out))
+    elbow = choose(short, 0, 2 * sigma * sp.atan2(rN, rM))
     return Lemma(
         "two-link arm",
         r"l e^{ix} + (b - ia) e^{iy} = r + ih \;\Rightarrow\; x = \operatorname{atan2}(h, r) - "
@@ -214,7 +193,7 @@ def _arm(
             upper * sp.cos(x) + along * sp.sin(y) + across * sp.cos(y) - r,
             upper * sp.sin(x) - along * sp.cos(y) + across * sp.sin(y) - h,
         ),
-        {x: angles[0], y: angles[0] + angles[1] + sp.atan2(lag[1], lag[0])},
+        {x: upwards, y: upwards + elbow + sp.atan2(lag[1], lag[0])},
         2,
         pairs={x: (cx, sx), y: (cy, sy), y - x: turn},
         body=tuple(program.body[start:]),

@@ -376,7 +376,7 @@ wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
 mid = solve_mid_plane(p, m, q, wrist, half_base)
 upper, fore = mid.posture.upper, mid.posture.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
-(N, M), bent = elbow_squares(p, lengths, second, mid.elbow)
+(N, M), bent = elbow_squares(p, lengths, second, mid.elbow, suffix="_mid")
 side = p.let("sigma_right", sp.Piecewise((1, bent >= 0), (-1, True)))
 opposite = p.let("sigma_other", side * sigma_left)
 by_pairs = {cos(theta23A): fore.c, sin(theta23A): fore.s}
@@ -389,7 +389,7 @@ cross = p.let("twice", 2 * point.dot(shift))
 # The direction of a virtual arm that is nearly folded, or ends close to the shoulder, is more than
 # joints in double precision tell: they then hold yaw and roll to less than twelve digits.
 size = p.let("size", m.L1 + second)
-square = p.let("square", M + (m.L1 - second) ** 2)
+square = p.let("square_mid", M + (m.L1 - second) ** 2)
 p.vanishes("pole", M * square, 10**4 * gap * size**2, "the virtual arm is folded", (psi, phi))
 p.vanishes("at_shoulder", square, 10**4 * size**2, "the virtual arm has no length", (psi, phi))
 free = free_turn(p, m, mid.elbow, size)

@@ -4,14 +4,14 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 81 add, 59 compare and select, 3 atan2, 21 divide, 123 multiply, 6 sincos, 9 sqrt
- *   pose: 108 add, 56 compare and select, 21 divide, 164 multiply, 6 sincos, 9 sqrt
+ *   fk: 61 compare and select, 81 add, 3 atan2, 21 divide, 121 multiply, 6 sincos, 8 sqrt
+ *   pose: 58 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 8 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
- *   jacobian: 208 add, 54 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
- *   determinant: 86 add, 54 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
- *   singularities: 91 add, 54 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
- *   ik: 360 compare and select, 363 add, 28 atan2, 78 divide, 445 multiply, 3 sincos, 41 sqrt
+ *   jacobian: 56 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
+ *   determinant: 56 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
+ *   singularities: 56 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
+ *   ik: 374 compare and select, 374 add, 28 atan2, 82 divide, 452 multiply, 3 sincos, 31 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt

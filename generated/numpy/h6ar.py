@@ -10,7 +10,7 @@
 #   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 420 compare and select, 348 add, 26 atan2, 87 divide, 359 multiply, 3 sincos, 33 sqrt
+#   ik: 418 compare and select, 344 add, 26 atan2, 91 divide, 361 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -827,94 +827,87 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     a_3W = a3 + c_phi * t3 + s_phi * t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
     t26 = L1 + fore
-    t27 = -(_runtime.FEASIBILITY * t26)
-    t28 = z - d1
-    t29 = t28 * t28
+    t27 = 2.0 * fore
+    t28 = _runtime.FEASIBILITY * (t26 * (L1 * 2.0 + t27))
+    t29 = t26 * t26
+    t30 = z - d1
+    t31 = t30 * t30
     total = below + above
-    t30 = (below - above) / total
-    t31 = y * t30
+    t32 = (below - above) / total
+    t33 = y * t32
     s_turn = 2.0 * t11 * t13 / total
-    t32 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -((t31 - t32) / h))
-    t33 = x * t30
-    t34 = y * s_turn
-    s1 = _runtime.select(nowhere, 0.0, (t33 + t34) / h)
+    t34 = x * s_turn
+    c1 = _runtime.select(nowhere, 1.0, -((t33 - t34) / h))
+    t35 = x * t32
+    t36 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, (t35 + t36) / h)
     outward = x * c1 + y * s1
-    reach = np.sqrt(t29 + outward * outward)
-    t35 = t26 - reach
-    t36 = L1 - fore
-    t37 = reach + t36
-    t38 = reach - t36
-    t39 = t25 & (t27 <= t35) & (t27 <= t37) & (t27 <= t38)
+    square = t31 + outward * outward
+    t37 = t29 - square
+    t38 = L1 / 8796093022208.0 + fore / 8796093022208.0
+    t39 = L1 - fore
+    t40 = _runtime.FEASIBILITY * (t26 * (t38 + 2.0 * np.abs(t39)))
+    t41 = t39 * t39
+    t42 = square - t41
+    t43 = t25 & (-t28 <= t37) & (-t40 <= t42)
     size = L1 + np.sqrt(L2 * L2 + a3 * a3)
-    t40 = d * size
-    ahead = d * s_psi / c_psi
-    t41 = _runtime.VANISHING * t26
-    folded = reach <= t41
-    c_sight = _runtime.select(folded, 1.0, outward / reach)
-    short = L1 * fore <= _runtime.VANISHING * (t26 * t26)
-    t42 = folded | short
-    A = np.maximum(t35, 0.0)
-    C = np.maximum(t38, 0.0)
-    t43 = A * C
-    S = t26 + reach
-    B = np.maximum(t37, 0.0)
-    t44 = S * B
-    at_base = t43 + t44
-    c_base = _runtime.select(t42, 1.0, -((t43 - t44) / at_base))
-    t45 = c_sight * c_base
-    s_sight = _runtime.select(folded, 0.0, t28 / reach)
-    rB = np.sqrt(B)
-    rC = np.sqrt(C)
-    t46 = rB * rC
-    rS = np.sqrt(S)
-    rA = np.sqrt(A)
-    t47 = rS * rA
-    area_front_elbow_down = 2.0 * t46 * t47
-    s_base_front_elbow_down = _runtime.select(t42, 0.0, area_front_elbow_down / at_base)
-    t48 = s_sight * s_base_front_elbow_down
-    ctheta2A = t45 - t48
-    higher = d * s_phi / c_phi
-    t49 = s_sight * c_base
-    t50 = c_sight * s_base_front_elbow_down
-    stheta2A = t49 + t50
-    p_1 = ahead * ctheta2A + higher * stheta2A
-    bare = fore <= t41
-    s_lag = _runtime.select(bare, 0.0, L_2W / fore)
-    t51 = A * S
-    t52 = C * B
-    at_elbow = t51 + t52
-    c_bend = _runtime.select(short, 1.0, -((t51 - t52) / at_elbow))
-    t53 = s_lag * c_bend
+    t44 = d * size
+    short = L1 * fore <= _runtime.VANISHING * t29
+    M = np.maximum(t42, 0.0)
+    N = np.maximum(t37, 0.0)
+    whole = M + N
+    c_bend = _runtime.select(short, 1.0, (M - N) / whole)
+    t45 = _runtime.VANISHING * t26
+    bare = fore <= t45
     c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, area_front_elbow_down / at_elbow)
-    t54 = c_lag * s_bend_front_elbow_down
-    s_relative = t53 - t54
-    t55 = c_lag * c_bend
-    t56 = s_lag * s_bend_front_elbow_down
-    c_relative = t55 + t56
-    v_2 = L2 * s_relative + a3 * c_relative
-    t57 = ahead * stheta2A - higher * ctheta2A
+    t46 = c_bend * c_lag
+    rN = np.sqrt(N)
+    rM = np.sqrt(M)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, 2.0 * rN * rM / whole)
+    s_lag = _runtime.select(bare, 0.0, L_2W / fore)
+    t47 = s_bend_front_elbow_down * s_lag
+    c_relative = t46 + t47
+    t48 = c_bend * s_lag
+    t49 = s_bend_front_elbow_down * c_lag
+    s_relative = t48 - t49
     v_1 = L2 * c_relative - a3 * s_relative
-    t58 = p_1 * v_2 + t57 * v_1
-    t59 = _runtime.select(0.0 <= -t58, 1.0, -1.0)
     whole_alpha = L1 * v_1
-    t60 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
-    room_alpha = t58 * t59 + whole_alpha * t60
-    t61 = _runtime.VANISHING * t40
+    t50 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
+    v_2 = L2 * s_relative + a3 * c_relative
+    ahead = d * s_psi / c_psi
+    t51 = np.abs(t30)
+    folded = t51 + np.abs(outward) <= t45
+    t52 = t30 * fore
+    t53 = t52 * s_bend_front_elbow_down
+    ahead_1 = _runtime.select(short, t26, t39 + t27 * M / whole)
+    t54 = outward * ahead_1
+    t55 = t53 - t54
+    t56 = fore * outward * s_bend_front_elbow_down
+    t57 = t30 * ahead_1
+    up = t56 + t57
+    norm = np.sqrt(t55 * t55 + up * up)
+    ctheta2A = _runtime.select(folded, 1.0, -(t55 / norm))
+    higher = d * s_phi / c_phi
+    stheta2A = _runtime.select(folded, 0.0, up / norm)
+    p_1 = ahead * ctheta2A + higher * stheta2A
+    t58 = ahead * stheta2A - higher * ctheta2A
+    t59 = v_2 * p_1 + v_1 * t58
+    t60 = _runtime.select(0.0 <= -t59, 1.0, -1.0)
+    room_alpha = whole_alpha * t50 + t59 * t60
+    t61 = _runtime.VANISHING * t44
     spent_alpha = room_alpha <= t61
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t62 = v_2 * t60 * drawn - t59 * (p_1 * v_1 - v_2 * t57)
+    t62 = v_2 * t50 * drawn - t60 * (v_1 * p_1 - v_2 * t58)
     t63 = size / 100000.0
     t64 = np.abs(L_2W * c_relative - a_3W * s_relative)
     t65 = t63 + t64
     t66 = _runtime.select(spent_alpha, size * np.abs(t62) / t65, 0.0)
-    t67 = -(_runtime.FEASIBILITY * (t40 + t66)) <= room_alpha
+    t67 = -(_runtime.FEASIBILITY * (t44 + t66)) <= room_alpha
     t68 = size * size * size * size / 10000000000.0
     t69 = t62 * (room_alpha - np.abs(room_alpha)) / (2.0 * (t68 + t62 * t62))
     turn_alpha = _runtime.select(spent_alpha, t69, 0.0)
     lean_alpha = _runtime.select(spent_alpha, turn_alpha - drawn * turn_alpha / L1, 0.0)
-    p_1_alpha = _runtime.select(spent_alpha, p_1 - t57 * lean_alpha, p_1)
+    p_1_alpha = _runtime.select(spent_alpha, p_1 - t58 * lean_alpha, p_1)
     part_beta = L1 * p_1_alpha
     t70 = _runtime.select(0.0 <= part_beta, 1.0, -1.0)
     t71 = turn_alpha - lean_alpha
@@ -924,10 +917,10 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t73 = part_beta * t70 - whole_beta * t72
     spent_beta = -t73 <= t61
     v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t71, v_2)
-    t74 = _runtime.select(spent_alpha, t57 + p_1 * lean_alpha, t57)
-    t75 = drawn * t72 * v_2_alpha - t70 * t74 * (L1 - drawn)
+    t74 = _runtime.select(spent_alpha, t58 + p_1 * lean_alpha, t58)
+    t75 = drawn * t72 * v_2_alpha - (L1 - drawn) * t70 * t74
     t76 = _runtime.select(spent_beta, size * np.abs(t75) / t65, 0.0)
-    t77 = -(_runtime.FEASIBILITY * (t40 + t76)) <= -t73
+    t77 = -(_runtime.FEASIBILITY * (t44 + t76)) <= -t73
     t78 = np.abs(ahead)
     t79 = np.abs(higher)
     t80 = d + t78 + t79
@@ -941,7 +934,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t84 = v_1_beta * sigma_uv
     p_1_beta = _runtime.select(spent_beta, p_1_alpha - t74 * lean_beta, p_1_alpha)
     t85 = sigma_uv * p_1_beta
-    t86 = t39 & t67 & t77 & (t81 <= -(t84 + np.abs(t85)))
+    t86 = t43 & t67 & t77 & (t81 <= -(t84 + np.abs(t85)))
     t87 = _runtime.select(spent_beta, t74 + p_1_alpha * lean_beta, t74)
     v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t83, v_2_alpha)
     t88 = np.abs(v_2_beta)
@@ -973,55 +966,56 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t105 = L1 - t103
     unreachable = np.logical_not(t99 & (t81 <= t104) & (t81 <= t105))
     t106 = _runtime.poison(invalid | unreachable)
-    t107 = np.arctan2(lean_alpha + lean_beta, 1.0)
+    t107 = _runtime.select(folded, 0.0, np.arctan2(up, -t55))
+    t108 = np.arctan2(lean_alpha + lean_beta, 1.0)
+    t109 = t107 + t108
     below_alpha = np.maximum(t104, t101)
     above_alpha = np.maximum(t105, t101)
     total_alpha = below_alpha + above_alpha
-    t108 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t109 = np.arctan2((below_alpha - above_alpha) / total_alpha, t108 / total_alpha)
-    t110 = t107 - t109
-    t111 = _runtime.select(folded, 0.0, np.arctan2(t28, outward))
-    t112 = _runtime.select(t42, 0.0, 2.0 * np.arctan2(rC * rA, rB * rS))
-    t113 = t111 + t112
-    t114 = _runtime.wrap(_runtime.wrap(t110 + t113)) + t106
-    t115 = np.arctan2(s_lag, c_lag)
-    t116 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t47, t46))
-    t117 = t116 - np.arctan2(turn_alpha + turn_beta, 1.0)
-    t118 = t115 - t117
-    t119 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    t120 = np.arctan2(t102, t119 / total_beta)
-    t121 = _runtime.wrap(_runtime.wrap(-(t110 - t118 + t120)))
-    t122 = t107 + t109
-    t123 = _runtime.wrap(_runtime.wrap(t113 + t122)) + t106
-    t124 = _runtime.wrap(_runtime.wrap(t118 + t120 - t122))
-    t125 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    ctheta2A_front_elbow_down = t45 + t48
-    stheta2A_front_elbow_down = t49 - t50
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + higher * stheta2A_front_elbow_down
-    s_relative_front_elbow_down = t53 + t54
-    c_relative_front_elbow_down = t55 - t56
-    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t126 = ahead * stheta2A_front_elbow_down - higher * ctheta2A_front_elbow_down
+    t110 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t111 = np.arctan2((below_alpha - above_alpha) / total_alpha, t110 / total_alpha)
+    t112 = _runtime.wrap_cut(_runtime.wrap(t109 - t111))
+    t113 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t114 = t111 - np.arctan2(t102, t113 / total_beta)
+    t115 = _runtime.select(short, 0.0, 2.0 * np.arctan2(rN, rM))
+    t116 = np.arctan2(s_lag, c_lag)
+    t117 = t116 + np.arctan2(turn_alpha + turn_beta, 1.0)
+    t118 = t115 + t108 - t117
+    t119 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t114 - t118)))
+    t120 = _runtime.wrap_cut(_runtime.wrap(t109 + t111))
+    t121 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(-(t118 + t114))))
+    t122 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    c_relative_front_elbow_down = t46 - t47
+    s_relative_front_elbow_down = t48 + t49
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t127 = p_1_front_elbow_down * v_2_front_elbow_down + t126 * v_1_front_elbow_down
-    t128 = _runtime.select(0.0 <= -t127, 1.0, -1.0)
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t129 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
-    room_alpha_front_elbow_down = t127 * t128 + whole_alpha_front_elbow_down * t129
+    t123 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
+    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
+    out_front_elbow_down = t53 + t54
+    t124 = t56 - t57
+    t125 = out_front_elbow_down * out_front_elbow_down + t124 * t124
+    norm_front_elbow_down = np.sqrt(t125)
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down / norm_front_elbow_down)
+    t126 = _runtime.select(folded, 0.0, t124 / norm_front_elbow_down)
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t126
+    t127 = ahead * t126 + higher * ctheta2A_front_elbow_down
+    t128 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t127
+    t129 = _runtime.select(0.0 <= -t128, 1.0, -1.0)
+    room_alpha_front_elbow_down = whole_alpha_front_elbow_down * t123 + t128 * t129
     spent_alpha_front_elbow_down = room_alpha_front_elbow_down <= t61
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    t130 = v_2_front_elbow_down * t129 * drawn_front_elbow_down
-    t131 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t126
-    t132 = t130 - t128 * t131
+    t130 = v_2_front_elbow_down * t123 * drawn_front_elbow_down
+    t131 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t127
+    t132 = t130 - t129 * t131
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
     t133 = t63 + np.abs(tilt_front_elbow_down)
     t134 = _runtime.select(spent_alpha_front_elbow_down, size * np.abs(t132) / t133, 0.0)
-    t135 = -(_runtime.FEASIBILITY * (t40 + t134)) <= room_alpha_front_elbow_down
+    t135 = -(_runtime.FEASIBILITY * (t44 + t134)) <= room_alpha_front_elbow_down
     t136 = room_alpha_front_elbow_down - np.abs(room_alpha_front_elbow_down)
     turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t132 * t136 / (2.0 * (t68 + t132 * t132)), 0.0)
     t137 = drawn_front_elbow_down * turn_alpha_front_elbow_down
     lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t137 / L1, 0.0)
-    t138 = p_1_front_elbow_down - t126 * lean_alpha_front_elbow_down
+    t138 = p_1_front_elbow_down + t127 * lean_alpha_front_elbow_down
     p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t138, p_1_front_elbow_down)
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
     t139 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
@@ -1036,10 +1030,10 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t144, v_2_front_elbow_down)
     t145 = drawn_front_elbow_down * t142 * v_2_alpha_front_elbow_down
     t146 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    t147 = _runtime.select(spent_alpha_front_elbow_down, t126 + t146, t126)
-    t148 = t145 - t139 * t147 * (L1 - drawn_front_elbow_down)
+    t147 = _runtime.select(spent_alpha_front_elbow_down, t127 - t146, t127)
+    t148 = t145 + (L1 - drawn_front_elbow_down) * t139 * t147
     t149 = _runtime.select(spent_beta_front_elbow_down, size * np.abs(t148) / t133, 0.0)
-    t150 = -(_runtime.FEASIBILITY * (t40 + t149)) <= -t143
+    t150 = -(_runtime.FEASIBILITY * (t44 + t149)) <= -t143
     t151 = t148 * (t143 + np.abs(t143)) / (2.0 * (t68 + t148 * t148))
     turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t151, 0.0)
     t152 = drawn_front_elbow_down * turn_beta_front_elbow_down
@@ -1049,364 +1043,359 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t154, v_1_alpha_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.select(0.0 <= -v_1_beta_front_elbow_down, 1.0, -1.0)
     t155 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    t156 = p_1_alpha_front_elbow_down - t147 * lean_beta_front_elbow_down
+    t156 = p_1_alpha_front_elbow_down + t147 * lean_beta_front_elbow_down
     p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t156, p_1_alpha_front_elbow_down)
     t157 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    t158 = t39 & t135 & t150 & (t81 <= -(t155 + np.abs(t157)))
+    t158 = t43 & t135 & t150 & (t81 <= -(t155 + np.abs(t157)))
     t159 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    t160 = _runtime.select(spent_beta_front_elbow_down, t147 + t159, t147)
-    t161 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t153
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t161, v_2_alpha_front_elbow_down)
-    t162 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t155 <= _runtime.VANISHING * (64.0 * t162)
-    t163 = _runtime.select(0.0 <= v_2_beta_front_elbow_down, -t160, t160)
-    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, t163, -t157)
-    t164 = v_2_beta_front_elbow_down * part_y_front_elbow_down
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t162, -t155)
-    t165 = t160 + t164 / whole_y_front_elbow_down
-    left_along_front_elbow_down = L1 - np.abs(t165)
+    p_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t147 - t159, t147)
+    t160 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t153
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t160, v_2_alpha_front_elbow_down)
+    t161 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t155 <= _runtime.VANISHING * (64.0 * t161)
+    t162 = _runtime.select(0.0 <= v_2_beta_front_elbow_down, p_2_beta_front_elbow_down, -p_2_beta_front_elbow_down)
+    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, t162, -t157)
+    t163 = v_2_beta_front_elbow_down * part_y_front_elbow_down
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t161, -t155)
+    rest_front_elbow_down = p_2_beta_front_elbow_down - t163 / whole_y_front_elbow_down
+    left_along_front_elbow_down = L1 - np.abs(-rest_front_elbow_down)
     spent_along_front_elbow_down = left_along_front_elbow_down <= t90
-    t166 = _runtime.select(spent_along_front_elbow_down, t162 / (t91 - t155), 0.0)
-    t167 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t166)))
-    t168 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
-    t169 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t170 = v_2_beta_front_elbow_down * t168 / (t155 * t155 + t169)
-    t171 = whole_y_front_elbow_down * _runtime.select(0.0 <= -t165, -t170, t170)
-    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, part_y_front_elbow_down + t171, part_y_front_elbow_down)
-    t172 = whole_y_front_elbow_down - eased_front_elbow_down
-    t173 = t158 & (t167 <= left_along_front_elbow_down) & (t81 <= t172)
-    t174 = whole_y_front_elbow_down + eased_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t172, t101)
-    above_beta_front_elbow_down = np.maximum(t174, t101)
-    t175 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t164 = _runtime.select(spent_along_front_elbow_down, t161 / (t91 - t155), 0.0)
+    t165 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t164)))
+    t166 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
+    t167 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t168 = v_2_beta_front_elbow_down * t166 / (t155 * t155 + t167)
+    t169 = _runtime.select(0.0 <= rest_front_elbow_down, -t168, t168)
+    t170 = part_y_front_elbow_down + whole_y_front_elbow_down * t169
+    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, t170, part_y_front_elbow_down)
+    t171 = whole_y_front_elbow_down - eased_front_elbow_down
+    t172 = t158 & (t165 <= left_along_front_elbow_down) & (t81 <= t171)
+    t173 = whole_y_front_elbow_down + eased_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t171, t101)
+    above_beta_front_elbow_down = np.maximum(t173, t101)
+    t174 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t176 = t175 / total_beta_front_elbow_down
-    t177 = t160 - v_2_beta_front_elbow_down * t176
-    t178 = L1 + t177
-    t179 = L1 - t177
-    t180 = t173 & (t81 <= t174) & (t81 <= t178) & (t81 <= t179)
-    unreachable_2 = np.logical_not(t180)
-    t181 = _runtime.poison(invalid | unreachable_2)
-    t182 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    t183 = np.arctan2(t182, 1.0)
-    below_alpha_front_elbow_down = np.maximum(t178, t101)
-    above_alpha_front_elbow_down = np.maximum(t179, t101)
+    t175 = t174 / total_beta_front_elbow_down
+    along_u_front_elbow_down = p_2_beta_front_elbow_down + v_2_beta_front_elbow_down * t175
+    t176 = L1 - along_u_front_elbow_down
+    t177 = L1 + along_u_front_elbow_down
+    t178 = t172 & (t81 <= t173) & (t81 <= t176) & (t81 <= t177)
+    unreachable_2 = np.logical_not(t178)
+    t179 = _runtime.poison(invalid | unreachable_2)
+    t180 = _runtime.select(folded, 0.0, np.arctan2(-t124, out_front_elbow_down))
+    t181 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t182 = np.arctan2(t181, 1.0)
+    t183 = t180 + t182
+    below_alpha_front_elbow_down = np.maximum(t176, t101)
+    above_alpha_front_elbow_down = np.maximum(t177, t101)
     t184 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
     t185 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     t186 = np.arctan2(t184 / total_alpha_front_elbow_down, t185 / total_alpha_front_elbow_down)
-    t187 = t183 - t186
-    t188 = t111 - t112
-    t189 = _runtime.wrap_up(_runtime.wrap(t187 + t188)) + t181
-    t190 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    t191 = np.arctan2(t190, 1.0) + (t115 + t116)
-    t192 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    t193 = np.arctan2(t176, t192 / total_beta_front_elbow_down)
-    t194 = _runtime.wrap(_runtime.wrap(-(t187 - t191 + t193)))
-    t195 = t183 + t186
-    t196 = _runtime.wrap_up(_runtime.wrap(t188 + t195)) + t181
-    t197 = _runtime.wrap(_runtime.wrap(t191 + t193 - t195))
-    t198 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
-    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t31 + t32) / h))
-    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t33 - t34) / h)
+    t187 = _runtime.wrap_cut(_runtime.wrap(t183 - t186))
+    t188 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t189 = t115 + t116 - (t182 - np.arctan2(t188, 1.0))
+    t190 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t191 = np.arctan2(t175, t190 / total_beta_front_elbow_down)
+    t192 = t186 - t191
+    t193 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t189 + t192)))
+    t194 = _runtime.wrap_cut(_runtime.wrap(t183 + t186))
+    t195 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t189 - t192)))
+    t196 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
+    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t33 + t34) / h))
+    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t35 - t36) / h)
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
-    t199 = outward_rear_elbow_up * outward_rear_elbow_up
-    reach_rear_elbow_up = np.sqrt(t29 + t199)
-    t200 = t26 - reach_rear_elbow_up
-    t201 = reach_rear_elbow_up + t36
-    t202 = reach_rear_elbow_up - t36
-    t203 = t25 & (t27 <= t200) & (t27 <= t201) & (t27 <= t202)
-    folded_rear_elbow_up = reach_rear_elbow_up <= t41
-    c_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, outward_rear_elbow_up / reach_rear_elbow_up)
-    t204 = folded_rear_elbow_up | short
-    A_rear_elbow_up = np.maximum(t200, 0.0)
-    C_rear_elbow_up = np.maximum(t202, 0.0)
-    t205 = A_rear_elbow_up * C_rear_elbow_up
-    S_rear_elbow_up = t26 + reach_rear_elbow_up
-    B_rear_elbow_up = np.maximum(t201, 0.0)
-    t206 = S_rear_elbow_up * B_rear_elbow_up
-    at_base_rear_elbow_up = t205 + t206
-    c_base_rear_elbow_up = _runtime.select(t204, 1.0, -((t205 - t206) / at_base_rear_elbow_up))
-    t207 = c_sight_rear_elbow_up * c_base_rear_elbow_up
-    s_sight_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 0.0, t28 / reach_rear_elbow_up)
-    rB_rear_elbow_up = np.sqrt(B_rear_elbow_up)
-    rC_rear_elbow_up = np.sqrt(C_rear_elbow_up)
-    t208 = rB_rear_elbow_up * rC_rear_elbow_up
-    rS_rear_elbow_up = np.sqrt(S_rear_elbow_up)
-    rA_rear_elbow_up = np.sqrt(A_rear_elbow_up)
-    t209 = rS_rear_elbow_up * rA_rear_elbow_up
-    area_rear_elbow_up = 2.0 * t208 * t209
-    s_base_rear_elbow_up = _runtime.select(t204, 0.0, area_rear_elbow_up / at_base_rear_elbow_up)
-    t210 = s_sight_rear_elbow_up * s_base_rear_elbow_up
-    ctheta2A_rear_elbow_up = t207 + t210
-    t211 = s_sight_rear_elbow_up * c_base_rear_elbow_up
-    t212 = c_sight_rear_elbow_up * s_base_rear_elbow_up
-    stheta2A_rear_elbow_up = t211 - t212
-    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up + higher * stheta2A_rear_elbow_up
-    t213 = A_rear_elbow_up * S_rear_elbow_up
-    t214 = C_rear_elbow_up * B_rear_elbow_up
-    at_elbow_rear_elbow_up = t213 + t214
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, -((t213 - t214) / at_elbow_rear_elbow_up))
-    t215 = s_lag * c_bend_rear_elbow_up
-    s_bend_rear_elbow_up = _runtime.select(short, 0.0, area_rear_elbow_up / at_elbow_rear_elbow_up)
-    t216 = c_lag * s_bend_rear_elbow_up
-    s_relative_rear_elbow_up = t215 + t216
-    t217 = c_lag * c_bend_rear_elbow_up
-    t218 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t217 - t218
-    v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
-    t219 = ahead * stheta2A_rear_elbow_up - higher * ctheta2A_rear_elbow_up
+    t197 = outward_rear_elbow_up * outward_rear_elbow_up
+    square_rear_elbow_up = t31 + t197
+    t198 = t29 - square_rear_elbow_up
+    t199 = square_rear_elbow_up - t41
+    t200 = t25 & (-t28 <= t198) & (-t40 <= t199)
+    M_rear_elbow_up = np.maximum(t199, 0.0)
+    N_rear_elbow_up = np.maximum(t198, 0.0)
+    whole_rear_elbow_up = M_rear_elbow_up + N_rear_elbow_up
+    t201 = (M_rear_elbow_up - N_rear_elbow_up) / whole_rear_elbow_up
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t201)
+    t202 = c_lag * c_bend_rear_elbow_up
+    rN_rear_elbow_up = np.sqrt(N_rear_elbow_up)
+    rM_rear_elbow_up = np.sqrt(M_rear_elbow_up)
+    t203 = 2.0 * rN_rear_elbow_up * rM_rear_elbow_up / whole_rear_elbow_up
+    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t203)
+    t204 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t202 - t204
+    t205 = s_lag * c_bend_rear_elbow_up
+    t206 = c_lag * s_bend_rear_elbow_up
+    s_relative_rear_elbow_up = t205 + t206
     v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
-    t220 = p_1_rear_elbow_up * v_2_rear_elbow_up + t219 * v_1_rear_elbow_up
-    t221 = _runtime.select(0.0 <= -t220, 1.0, -1.0)
     whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
-    t222 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
-    room_alpha_rear_elbow_up = t220 * t221 + whole_alpha_rear_elbow_up * t222
+    t207 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
+    v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
+    folded_rear_elbow_up = t51 + np.abs(outward_rear_elbow_up) <= t45
+    t208 = t52 * s_bend_rear_elbow_up
+    t209 = t39 + t27 * M_rear_elbow_up / whole_rear_elbow_up
+    ahead_1_rear_elbow_up = _runtime.select(short, t26, t209)
+    t210 = outward_rear_elbow_up * ahead_1_rear_elbow_up
+    out_rear_elbow_up = t208 + t210
+    t211 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
+    t212 = t30 * ahead_1_rear_elbow_up
+    t213 = t211 - t212
+    t214 = out_rear_elbow_up * out_rear_elbow_up + t213 * t213
+    norm_rear_elbow_up = np.sqrt(t214)
+    ctheta2A_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, out_rear_elbow_up / norm_rear_elbow_up)
+    t215 = _runtime.select(folded_rear_elbow_up, 0.0, t213 / norm_rear_elbow_up)
+    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up - higher * t215
+    t216 = ahead * t215 + higher * ctheta2A_rear_elbow_up
+    t217 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t216
+    t218 = _runtime.select(0.0 <= -t217, 1.0, -1.0)
+    room_alpha_rear_elbow_up = whole_alpha_rear_elbow_up * t207 + t217 * t218
     spent_alpha_rear_elbow_up = room_alpha_rear_elbow_up <= t61
     drawn_rear_elbow_up = L1 + L_2W * s_relative_rear_elbow_up + a_3W * c_relative_rear_elbow_up
-    t223 = v_2_rear_elbow_up * t222 * drawn_rear_elbow_up
-    t224 = p_1_rear_elbow_up * v_1_rear_elbow_up - v_2_rear_elbow_up * t219
-    t225 = t223 - t221 * t224
+    t219 = v_2_rear_elbow_up * t207 * drawn_rear_elbow_up
+    t220 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t216
+    t221 = t219 - t218 * t220
     tilt_rear_elbow_up = L_2W * c_relative_rear_elbow_up - a_3W * s_relative_rear_elbow_up
-    t226 = t63 + np.abs(tilt_rear_elbow_up)
-    t227 = _runtime.select(spent_alpha_rear_elbow_up, size * np.abs(t225) / t226, 0.0)
-    t228 = -(_runtime.FEASIBILITY * (t40 + t227)) <= room_alpha_rear_elbow_up
-    t229 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t225 * t229 / (2.0 * (t68 + t225 * t225)), 0.0)
-    t230 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t230 / L1, 0.0)
-    t231 = p_1_rear_elbow_up - t219 * lean_alpha_rear_elbow_up
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t231, p_1_rear_elbow_up)
+    t222 = t63 + np.abs(tilt_rear_elbow_up)
+    t223 = _runtime.select(spent_alpha_rear_elbow_up, size * np.abs(t221) / t222, 0.0)
+    t224 = -(_runtime.FEASIBILITY * (t44 + t223)) <= room_alpha_rear_elbow_up
+    t225 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t221 * t225 / (2.0 * (t68 + t221 * t221)), 0.0)
+    t226 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t226 / L1, 0.0)
+    t227 = p_1_rear_elbow_up + t216 * lean_alpha_rear_elbow_up
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t227, p_1_rear_elbow_up)
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t232 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
-    t233 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t233, v_1_rear_elbow_up)
+    t228 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
+    t229 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t229, v_1_rear_elbow_up)
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t234 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
-    t235 = part_beta_rear_elbow_up * t232 - whole_beta_rear_elbow_up * t234
-    spent_beta_rear_elbow_up = -t235 <= t61
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t233, v_2_rear_elbow_up)
-    t236 = drawn_rear_elbow_up * t234 * v_2_alpha_rear_elbow_up
-    t237 = t219 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up
-    t238 = _runtime.select(spent_alpha_rear_elbow_up, t237, t219)
-    t239 = t236 - t232 * t238 * (L1 - drawn_rear_elbow_up)
-    t240 = _runtime.select(spent_beta_rear_elbow_up, size * np.abs(t239) / t226, 0.0)
-    t241 = -(_runtime.FEASIBILITY * (t40 + t240)) <= -t235
-    t242 = t239 * (t235 + np.abs(t235)) / (2.0 * (t68 + t239 * t239))
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t242, 0.0)
-    t243 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t243 / L1, 0.0)
-    t244 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
-    t245 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t244
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t245, v_1_alpha_rear_elbow_up)
+    t230 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
+    t231 = part_beta_rear_elbow_up * t228 - whole_beta_rear_elbow_up * t230
+    spent_beta_rear_elbow_up = -t231 <= t61
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t229, v_2_rear_elbow_up)
+    t232 = drawn_rear_elbow_up * t230 * v_2_alpha_rear_elbow_up
+    t233 = t216 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    t234 = _runtime.select(spent_alpha_rear_elbow_up, t233, t216)
+    t235 = t232 + (L1 - drawn_rear_elbow_up) * t228 * t234
+    t236 = _runtime.select(spent_beta_rear_elbow_up, size * np.abs(t235) / t222, 0.0)
+    t237 = -(_runtime.FEASIBILITY * (t44 + t236)) <= -t231
+    t238 = t235 * (t231 + np.abs(t231)) / (2.0 * (t68 + t235 * t235))
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t238, 0.0)
+    t239 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t239 / L1, 0.0)
+    t240 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
+    t241 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t240
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t241, v_1_alpha_rear_elbow_up)
     sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -v_1_beta_rear_elbow_up, 1.0, -1.0)
-    t246 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    t247 = p_1_alpha_rear_elbow_up - t238 * lean_beta_rear_elbow_up
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t247, p_1_alpha_rear_elbow_up)
-    t248 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t249 = t203 & t228 & t241 & (t81 <= -(t246 + np.abs(t248)))
-    t250 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    t251 = _runtime.select(spent_beta_rear_elbow_up, t238 + t250, t238)
-    t252 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t244
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t252, v_2_alpha_rear_elbow_up)
-    t253 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t246 <= _runtime.VANISHING * (64.0 * t253)
-    t254 = _runtime.select(0.0 <= v_2_beta_rear_elbow_up, -t251, t251)
-    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, t254, -t248)
-    t255 = v_2_beta_rear_elbow_up * part_y_rear_elbow_up
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t253, -t246)
-    t256 = t251 + t255 / whole_y_rear_elbow_up
-    left_along_rear_elbow_up = L1 - np.abs(t256)
+    t242 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t243 = p_1_alpha_rear_elbow_up + t234 * lean_beta_rear_elbow_up
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t243, p_1_alpha_rear_elbow_up)
+    t244 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t245 = t200 & t224 & t237 & (t81 <= -(t242 + np.abs(t244)))
+    t246 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    p_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t234 - t246, t234)
+    t247 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t240
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t247, v_2_alpha_rear_elbow_up)
+    t248 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t242 <= _runtime.VANISHING * (64.0 * t248)
+    t249 = _runtime.select(0.0 <= v_2_beta_rear_elbow_up, p_2_beta_rear_elbow_up, -p_2_beta_rear_elbow_up)
+    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, t249, -t244)
+    t250 = v_2_beta_rear_elbow_up * part_y_rear_elbow_up
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t248, -t242)
+    rest_rear_elbow_up = p_2_beta_rear_elbow_up - t250 / whole_y_rear_elbow_up
+    left_along_rear_elbow_up = L1 - np.abs(-rest_rear_elbow_up)
     spent_along_rear_elbow_up = left_along_rear_elbow_up <= t90
-    t257 = _runtime.select(spent_along_rear_elbow_up, t253 / (t91 - t246), 0.0)
-    t258 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t257)))
-    t259 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
-    t260 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t261 = v_2_beta_rear_elbow_up * t259 / (t246 * t246 + t260)
-    t262 = whole_y_rear_elbow_up * _runtime.select(0.0 <= -t256, -t261, t261)
-    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, part_y_rear_elbow_up + t262, part_y_rear_elbow_up)
-    t263 = whole_y_rear_elbow_up - eased_rear_elbow_up
-    t264 = t249 & (t258 <= left_along_rear_elbow_up) & (t81 <= t263)
-    t265 = whole_y_rear_elbow_up + eased_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t263, t101)
-    above_beta_rear_elbow_up = np.maximum(t265, t101)
-    t266 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t251 = _runtime.select(spent_along_rear_elbow_up, t248 / (t91 - t242), 0.0)
+    t252 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t251)))
+    t253 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
+    t254 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t255 = v_2_beta_rear_elbow_up * t253 / (t242 * t242 + t254)
+    t256 = _runtime.select(0.0 <= rest_rear_elbow_up, -t255, t255)
+    t257 = part_y_rear_elbow_up + whole_y_rear_elbow_up * t256
+    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, t257, part_y_rear_elbow_up)
+    t258 = whole_y_rear_elbow_up - eased_rear_elbow_up
+    t259 = t245 & (t252 <= left_along_rear_elbow_up) & (t81 <= t258)
+    t260 = whole_y_rear_elbow_up + eased_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t258, t101)
+    above_beta_rear_elbow_up = np.maximum(t260, t101)
+    t261 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t267 = t266 / total_beta_rear_elbow_up
-    t268 = t251 - v_2_beta_rear_elbow_up * t267
-    t269 = L1 + t268
-    t270 = L1 - t268
-    t271 = t264 & (t81 <= t265) & (t81 <= t269) & (t81 <= t270)
-    unreachable_3 = np.logical_not(t271)
-    t272 = _runtime.poison(invalid | unreachable_3)
-    t273 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    t274 = np.arctan2(t273, 1.0)
-    t275 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(t28, outward_rear_elbow_up))
-    t276 = np.arctan2(rC_rear_elbow_up * rA_rear_elbow_up, rB_rear_elbow_up * rS_rear_elbow_up)
-    t277 = _runtime.select(t204, 0.0, 2.0 * t276)
-    t278 = t274 + (t275 - t277)
-    below_alpha_rear_elbow_up = np.maximum(t269, t101)
-    above_alpha_rear_elbow_up = np.maximum(t270, t101)
-    t279 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t262 = t261 / total_beta_rear_elbow_up
+    along_u_rear_elbow_up = p_2_beta_rear_elbow_up + v_2_beta_rear_elbow_up * t262
+    t263 = L1 - along_u_rear_elbow_up
+    t264 = L1 + along_u_rear_elbow_up
+    t265 = t259 & (t81 <= t260) & (t81 <= t263) & (t81 <= t264)
+    unreachable_3 = np.logical_not(t265)
+    t266 = _runtime.poison(invalid | unreachable_3)
+    t267 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t213, out_rear_elbow_up))
+    t268 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t269 = np.arctan2(t268, 1.0)
+    t270 = t267 + t269
+    below_alpha_rear_elbow_up = np.maximum(t263, t101)
+    above_alpha_rear_elbow_up = np.maximum(t264, t101)
+    t271 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t280 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    t281 = np.arctan2(t279 / total_alpha_rear_elbow_up, t280 / total_alpha_rear_elbow_up)
-    t282 = _runtime.wrap_up(_runtime.wrap(t278 - t281)) + t272
-    t283 = _runtime.select(short, 0.0, 2.0 * np.arctan2(t209, t208))
-    t284 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
-    t285 = t115 - t274 + (t283 + np.arctan2(t284, 1.0))
-    t286 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    t287 = np.arctan2(t267, t286 / total_beta_rear_elbow_up)
-    t288 = t281 - t287
-    t289 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t285 + t288)))
-    t290 = _runtime.wrap_up(_runtime.wrap(t278 + t281)) + t272
-    t291 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t285 - t288)))
-    ctheta2A_rear_elbow_down = t207 - t210
-    stheta2A_rear_elbow_down = t211 + t212
-    p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
-    s_relative_rear_elbow_down = t215 - t216
-    c_relative_rear_elbow_down = t217 + t218
-    v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
-    t292 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
+    t272 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t273 = np.arctan2(t271 / total_alpha_rear_elbow_up, t272 / total_alpha_rear_elbow_up)
+    t274 = _runtime.wrap_cut(_runtime.wrap(t270 - t273))
+    t275 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
+    t276 = _runtime.select(short, 0.0, 2.0 * t275)
+    t277 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t278 = t116 - t269 + (t276 + np.arctan2(t277, 1.0))
+    t279 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t280 = np.arctan2(t262, t279 / total_beta_rear_elbow_up)
+    t281 = t273 - t280
+    t282 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t278 + t281)))
+    t283 = _runtime.wrap_cut(_runtime.wrap(t270 + t273))
+    t284 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t278 - t281)))
+    c_relative_rear_elbow_down = t202 + t204
+    s_relative_rear_elbow_down = t205 - t206
     v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
-    t293 = p_1_rear_elbow_down * v_2_rear_elbow_down + t292 * v_1_rear_elbow_down
-    t294 = _runtime.select(0.0 <= -t293, 1.0, -1.0)
     whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
-    t295 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
-    room_alpha_rear_elbow_down = t293 * t294 + whole_alpha_rear_elbow_down * t295
+    t285 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
+    v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
+    t286 = t208 - t210
+    up_rear_elbow_down = t211 + t212
+    t287 = t286 * t286 + up_rear_elbow_down * up_rear_elbow_down
+    norm_rear_elbow_down = np.sqrt(t287)
+    ctheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 1.0, -(t286 / norm_rear_elbow_down))
+    stheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 0.0, up_rear_elbow_down / norm_rear_elbow_down)
+    p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
+    t288 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
+    t289 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t288
+    t290 = _runtime.select(0.0 <= -t289, 1.0, -1.0)
+    room_alpha_rear_elbow_down = whole_alpha_rear_elbow_down * t285 + t289 * t290
     spent_alpha_rear_elbow_down = room_alpha_rear_elbow_down <= t61
     drawn_rear_elbow_down = L1 + L_2W * s_relative_rear_elbow_down + a_3W * c_relative_rear_elbow_down
-    t296 = v_2_rear_elbow_down * t295 * drawn_rear_elbow_down
-    t297 = p_1_rear_elbow_down * v_1_rear_elbow_down - v_2_rear_elbow_down * t292
-    t298 = t296 - t294 * t297
+    t291 = v_2_rear_elbow_down * t285 * drawn_rear_elbow_down
+    t292 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t288
+    t293 = t291 - t290 * t292
     tilt_rear_elbow_down = L_2W * c_relative_rear_elbow_down - a_3W * s_relative_rear_elbow_down
-    t299 = t63 + np.abs(tilt_rear_elbow_down)
-    t300 = _runtime.select(spent_alpha_rear_elbow_down, size * np.abs(t298) / t299, 0.0)
-    t301 = -(_runtime.FEASIBILITY * (t40 + t300)) <= room_alpha_rear_elbow_down
-    t302 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t298 * t302 / (2.0 * (t68 + t298 * t298)), 0.0)
-    t303 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t303 / L1, 0.0)
-    t304 = p_1_rear_elbow_down - t292 * lean_alpha_rear_elbow_down
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t304, p_1_rear_elbow_down)
+    t294 = t63 + np.abs(tilt_rear_elbow_down)
+    t295 = _runtime.select(spent_alpha_rear_elbow_down, size * np.abs(t293) / t294, 0.0)
+    t296 = -(_runtime.FEASIBILITY * (t44 + t295)) <= room_alpha_rear_elbow_down
+    t297 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t293 * t297 / (2.0 * (t68 + t293 * t293)), 0.0)
+    t298 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t298 / L1, 0.0)
+    t299 = p_1_rear_elbow_down - t288 * lean_alpha_rear_elbow_down
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t299, p_1_rear_elbow_down)
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t305 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
-    t306 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
-    t307 = v_1_rear_elbow_down - v_2_rear_elbow_down * t306
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t307, v_1_rear_elbow_down)
+    t300 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
+    t301 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
+    t302 = v_1_rear_elbow_down - v_2_rear_elbow_down * t301
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t302, v_1_rear_elbow_down)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t308 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
-    t309 = part_beta_rear_elbow_down * t305 - whole_beta_rear_elbow_down * t308
-    spent_beta_rear_elbow_down = -t309 <= t61
-    t310 = v_2_rear_elbow_down + v_1_rear_elbow_down * t306
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t310, v_2_rear_elbow_down)
-    t311 = drawn_rear_elbow_down * t308 * v_2_alpha_rear_elbow_down
-    t312 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    t313 = _runtime.select(spent_alpha_rear_elbow_down, t292 + t312, t292)
-    t314 = t311 - t305 * t313 * (L1 - drawn_rear_elbow_down)
-    t315 = _runtime.select(spent_beta_rear_elbow_down, size * np.abs(t314) / t299, 0.0)
-    t316 = -(_runtime.FEASIBILITY * (t40 + t315)) <= -t309
-    t317 = t314 * (t309 + np.abs(t309)) / (2.0 * (t68 + t314 * t314))
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t317, 0.0)
-    t318 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t318 / L1, 0.0)
-    t319 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
-    t320 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t319
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t320, v_1_alpha_rear_elbow_down)
+    t303 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
+    t304 = part_beta_rear_elbow_down * t300 - whole_beta_rear_elbow_down * t303
+    spent_beta_rear_elbow_down = -t304 <= t61
+    t305 = v_2_rear_elbow_down + v_1_rear_elbow_down * t301
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t305, v_2_rear_elbow_down)
+    t306 = drawn_rear_elbow_down * t303 * v_2_alpha_rear_elbow_down
+    t307 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t308 = _runtime.select(spent_alpha_rear_elbow_down, t288 + t307, t288)
+    t309 = t306 - (L1 - drawn_rear_elbow_down) * t300 * t308
+    t310 = _runtime.select(spent_beta_rear_elbow_down, size * np.abs(t309) / t294, 0.0)
+    t311 = -(_runtime.FEASIBILITY * (t44 + t310)) <= -t304
+    t312 = t309 * (t304 + np.abs(t304)) / (2.0 * (t68 + t309 * t309))
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t312, 0.0)
+    t313 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t313 / L1, 0.0)
+    t314 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
+    t315 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t314
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t315, v_1_alpha_rear_elbow_down)
     sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -v_1_beta_rear_elbow_down, 1.0, -1.0)
-    t321 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    t322 = p_1_alpha_rear_elbow_down - t313 * lean_beta_rear_elbow_down
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t322, p_1_alpha_rear_elbow_down)
-    t323 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t324 = t203 & t301 & t316 & (t81 <= -(t321 + np.abs(t323)))
-    t325 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    t326 = _runtime.select(spent_beta_rear_elbow_down, t313 + t325, t313)
-    t327 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t319
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t327, v_2_alpha_rear_elbow_down)
-    t328 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t321 <= _runtime.VANISHING * (64.0 * t328)
-    t329 = _runtime.select(0.0 <= v_2_beta_rear_elbow_down, -t326, t326)
-    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t329, -t323)
-    t330 = v_2_beta_rear_elbow_down * part_y_rear_elbow_down
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t328, -t321)
-    t331 = t326 + t330 / whole_y_rear_elbow_down
-    left_along_rear_elbow_down = L1 - np.abs(t331)
+    t316 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t317 = p_1_alpha_rear_elbow_down - t308 * lean_beta_rear_elbow_down
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t317, p_1_alpha_rear_elbow_down)
+    t318 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t319 = t200 & t296 & t311 & (t81 <= -(t316 + np.abs(t318)))
+    t320 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t321 = _runtime.select(spent_beta_rear_elbow_down, t308 + t320, t308)
+    t322 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t314
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t322, v_2_alpha_rear_elbow_down)
+    t323 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t316 <= _runtime.VANISHING * (64.0 * t323)
+    t324 = _runtime.select(0.0 <= v_2_beta_rear_elbow_down, -t321, t321)
+    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t324, -t318)
+    t325 = v_2_beta_rear_elbow_down * part_y_rear_elbow_down
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t323, -t316)
+    t326 = t321 + t325 / whole_y_rear_elbow_down
+    left_along_rear_elbow_down = L1 - np.abs(t326)
     spent_along_rear_elbow_down = left_along_rear_elbow_down <= t90
-    t332 = _runtime.select(spent_along_rear_elbow_down, t328 / (t91 - t321), 0.0)
-    t333 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t332)))
-    t334 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
-    t335 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t336 = v_2_beta_rear_elbow_down * t334 / (t321 * t321 + t335)
-    t337 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t331, -t336, t336)
-    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t337, part_y_rear_elbow_down)
-    t338 = whole_y_rear_elbow_down - eased_rear_elbow_down
-    t339 = t324 & (t333 <= left_along_rear_elbow_down) & (t81 <= t338)
-    t340 = whole_y_rear_elbow_down + eased_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t338, t101)
-    above_beta_rear_elbow_down = np.maximum(t340, t101)
-    t341 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t327 = _runtime.select(spent_along_rear_elbow_down, t323 / (t91 - t316), 0.0)
+    t328 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t327)))
+    t329 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
+    t330 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t331 = v_2_beta_rear_elbow_down * t329 / (t316 * t316 + t330)
+    t332 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t326, -t331, t331)
+    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t332, part_y_rear_elbow_down)
+    t333 = whole_y_rear_elbow_down - eased_rear_elbow_down
+    t334 = t319 & (t328 <= left_along_rear_elbow_down) & (t81 <= t333)
+    t335 = whole_y_rear_elbow_down + eased_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t333, t101)
+    above_beta_rear_elbow_down = np.maximum(t335, t101)
+    t336 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t342 = t341 / total_beta_rear_elbow_down
-    t343 = t326 - v_2_beta_rear_elbow_down * t342
-    t344 = L1 + t343
-    t345 = L1 - t343
-    t346 = t339 & (t81 <= t340) & (t81 <= t344) & (t81 <= t345)
-    unreachable_4 = np.logical_not(t346)
-    t347 = _runtime.poison(invalid | unreachable_4)
-    t348 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    t349 = np.arctan2(t348, 1.0)
-    below_alpha_rear_elbow_down = np.maximum(t344, t101)
-    above_alpha_rear_elbow_down = np.maximum(t345, t101)
-    t350 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t337 = t336 / total_beta_rear_elbow_down
+    t338 = t321 - v_2_beta_rear_elbow_down * t337
+    t339 = L1 + t338
+    t340 = L1 - t338
+    t341 = t334 & (t81 <= t335) & (t81 <= t339) & (t81 <= t340)
+    unreachable_4 = np.logical_not(t341)
+    t342 = _runtime.poison(invalid | unreachable_4)
+    t343 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t286))
+    t344 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t345 = np.arctan2(t344, 1.0)
+    t346 = t343 + t345
+    below_alpha_rear_elbow_down = np.maximum(t339, t101)
+    above_alpha_rear_elbow_down = np.maximum(t340, t101)
+    t347 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t351 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    t352 = np.arctan2(t350 / total_alpha_rear_elbow_down, t351 / total_alpha_rear_elbow_down)
-    t353 = t349 - t352
-    t354 = t275 + t277
-    t355 = _runtime.wrap(_runtime.wrap(t353 + t354)) + t347
-    t356 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
-    t357 = np.arctan2(t356, 1.0) + (t115 - t283)
-    t358 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    t359 = np.arctan2(t342, t358 / total_beta_rear_elbow_down)
-    t360 = _runtime.wrap(_runtime.wrap(-(t353 - t357 + t359)))
-    t361 = t349 + t352
-    t362 = _runtime.wrap(_runtime.wrap(t354 + t361)) + t347
-    t363 = _runtime.wrap(_runtime.wrap(t357 + t359 - t361))
-    t364 = nowhere | folded | short
-    t365 = _runtime.status(invalid, unreachable, t364 | parallel)
-    t366 = _runtime.status(invalid, unreachable_2, t364 | parallel_front_elbow_down)
-    t367 = nowhere | folded_rear_elbow_up | short
-    t368 = _runtime.status(invalid, unreachable_3, t367 | parallel_rear_elbow_up)
-    t369 = _runtime.status(invalid, unreachable_4, t367 | parallel_rear_elbow_down)
+    t348 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t349 = np.arctan2(t347 / total_alpha_rear_elbow_down, t348 / total_alpha_rear_elbow_down)
+    t350 = _runtime.wrap_cut(_runtime.wrap(t346 - t349))
+    t351 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t352 = t116 - t276 - (t345 - np.arctan2(t351, 1.0))
+    t353 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t354 = np.arctan2(t337, t353 / total_beta_rear_elbow_down)
+    t355 = t349 - t354
+    t356 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t352 + t355)))
+    t357 = _runtime.wrap_cut(_runtime.wrap(t346 + t349))
+    t358 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t352 - t355)))
+    t359 = nowhere | folded | short
+    t360 = _runtime.status(invalid, unreachable, t359 | parallel)
+    t361 = _runtime.status(invalid, unreachable_2, t359 | parallel_front_elbow_down)
+    t362 = nowhere | folded_rear_elbow_up | short
+    t363 = _runtime.status(invalid, unreachable_3, t362 | parallel_rear_elbow_up)
+    t364 = _runtime.status(invalid, unreachable_4, t362 | parallel_rear_elbow_down)
     return (
         t15 + t106,
-        t114,
-        _runtime.wrap_cut(t121) + t106,
-        t123,
-        _runtime.wrap_cut(t124) + t106,
-        t125 + t106,
-        t15 + t181,
-        t189,
-        _runtime.wrap_cut(t194) + t181,
-        t196,
-        _runtime.wrap_cut(t197) + t181,
-        t125 + t181,
-        t198 + t272,
-        t282,
-        t289 + t272,
-        t290,
-        t291 + t272,
-        t125 + t272,
-        t198 + t347,
-        t355,
-        _runtime.wrap_cut(t360) + t347,
-        t362,
-        _runtime.wrap_cut(t363) + t347,
-        t125 + t347,
-        t365,
-        t366,
-        t368,
-        t369,
+        t112 + t106,
+        t119 + t106,
+        t120 + t106,
+        t121 + t106,
+        t122 + t106,
+        t15 + t179,
+        t187 + t179,
+        t193 + t179,
+        t194 + t179,
+        t195 + t179,
+        t122 + t179,
+        t196 + t266,
+        t274 + t266,
+        t282 + t266,
+        t283 + t266,
+        t284 + t266,
+        t122 + t266,
+        t196 + t342,
+        t350 + t342,
+        t356 + t342,
+        t357 + t342,
+        t358 + t342,
+        t122 + t342,
+        t360,
+        t361,
+        t363,
+        t364,
     )
 
 

@@ -3,14 +3,14 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 81 add, 59 compare and select, 3 atan2, 21 divide, 123 multiply, 6 sincos, 9 sqrt
-#   pose: 108 add, 56 compare and select, 21 divide, 164 multiply, 6 sincos, 9 sqrt
+#   fk: 61 compare and select, 81 add, 3 atan2, 21 divide, 121 multiply, 6 sincos, 8 sqrt
+#   pose: 58 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 8 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 208 add, 54 compare and select, 53 divide, 322 multiply, 6 sincos, 9 sqrt
-#   determinant: 86 add, 54 compare and select, 22 divide, 155 multiply, 5 sincos, 9 sqrt
-#   singularities: 91 add, 54 compare and select, 21 divide, 145 multiply, 5 sincos, 9 sqrt
-#   ik: 360 compare and select, 363 add, 28 atan2, 78 divide, 445 multiply, 3 sincos, 41 sqrt
+#   jacobian: 56 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
+#   determinant: 56 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
+#   singularities: 56 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
+#   ik: 374 compare and select, 374 add, 28 atan2, 82 divide, 452 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -174,7 +174,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t50 = t48 * t17 - t20 * t49
     r_I = t32 * t48 + t35 * t49
     t51 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t50 * t50 + r_I * r_I) <= t51
+    folded_virtual = np.abs(-t50) + np.abs(r_I) <= t51
     t52 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t23, t52)
     t53 = fore * s_bend_virtual
@@ -289,7 +289,7 @@ def _pose(
     r_I = t24 * t9 + t25 * t22
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t26 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t26
+    folded_virtual = np.abs(-t23) + np.abs(r_I) <= t26
     t27 = L1 + fore
     short_virtual = L1 * fore <= _runtime.VANISHING * (t27 * t27)
     t28 = s3R_half * c3R_half
@@ -618,7 +618,7 @@ def _jacobian(
     t50 = t48 * t17 - t20 * t49
     r_I = t32 * t48 + t35 * t49
     t51 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t50 * t50 + r_I * r_I) <= t51
+    folded_virtual = np.abs(-t50) + np.abs(r_I) <= t51
     t52 = c2R_half * c2R_half - s2R_half * s2R_half
     t53 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t23, t53)
@@ -881,7 +881,7 @@ def _determinant(
     r_I = t38 * t23 + t39 * t36
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t40 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t37 * t37 + r_I * r_I) <= t40
+    folded_virtual = np.abs(-t37) + np.abs(r_I) <= t40
     t41 = L1 + fore
     short_virtual = L1 * fore <= _runtime.VANISHING * (t41 * t41)
     straight_right = L2 * t12 + a3 * t10
@@ -1020,7 +1020,7 @@ def _singularities(
     r_I = t24 * t9 + t25 * t22
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t26 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.sqrt(t23 * t23 + r_I * r_I) <= t26
+    folded_virtual = np.abs(-t23) + np.abs(r_I) <= t26
     t27 = c2R_half * c2R_half - s2R_half * s2R_half
     t28 = L1 + fore
     short_virtual = L1 * fore <= _runtime.VANISHING * (t28 * t28)
@@ -1184,688 +1184,680 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     a_3W = a3 + c_phi * t3 + s_phi * t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
     t27 = L1 + fore
-    t28 = -(_runtime.FEASIBILITY * t27)
-    t29 = z - d1
-    t30 = t29 * t29
+    t28 = L1 * 2.0
+    t29 = 2.0 * fore
+    t30 = -(_runtime.FEASIBILITY * (t27 * (t28 + t29)))
+    t31 = t27 * t27
+    t32 = z - d1
+    t33 = t32 * t32
     total = below + above
-    t31 = (below - above) / total
-    t32 = y * t31
+    t34 = (below - above) / total
+    t35 = y * t34
     s_turn = 2.0 * t12 * t14 / total
-    t33 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -((t32 - t33) / h))
-    t34 = x * t31
-    t35 = y * s_turn
-    s1 = _runtime.select(nowhere, 0.0, (t34 + t35) / h)
+    t36 = x * s_turn
+    c1 = _runtime.select(nowhere, 1.0, -((t35 - t36) / h))
+    t37 = x * t34
+    t38 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, (t37 + t38) / h)
     outward = x * c1 + y * s1
-    reach = np.sqrt(t30 + outward * outward)
-    t36 = t27 - reach
-    t37 = L1 - fore
-    t38 = reach + t37
-    t39 = reach - t37
-    t40 = t26 & (t28 <= t36) & (t28 <= t38) & (t28 <= t39)
+    square = t33 + outward * outward
+    t39 = t31 - square
+    t40 = L1 / 8796093022208.0 + fore / 8796093022208.0
+    t41 = L1 - fore
+    t42 = _runtime.FEASIBILITY * (t27 * (t40 + 2.0 * np.abs(t41)))
+    t43 = t41 * t41
+    t44 = square - t43
+    t45 = t26 & (t30 <= t39) & (-t42 <= t44)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    t41 = d * size
-    t42 = L1 * 2.0
-    t43 = _runtime.VANISHING * t27
-    bare = fore <= t43
+    t46 = d * size
+    short = L1 * fore <= _runtime.VANISHING * t31
+    N = np.maximum(t39, 0.0)
+    M = np.maximum(t44, 0.0)
+    whole = N + M
+    c_bend = _runtime.select(short, 1.0, -((N - M) / whole))
+    t47 = _runtime.VANISHING * t27
+    bare = fore <= t47
     s_lag = _runtime.select(bare, 0.0, L_2W / fore)
-    short = L1 * fore <= _runtime.VANISHING * (t27 * t27)
-    S = t27 + reach
-    A = np.maximum(t36, 0.0)
-    t44 = S * A
-    B = np.maximum(t38, 0.0)
-    C = np.maximum(t39, 0.0)
-    t45 = B * C
-    at_elbow = t44 + t45
-    c_bend = _runtime.select(short, 1.0, -((t44 - t45) / at_elbow))
-    t46 = s_lag * c_bend
+    t48 = c_bend * s_lag
+    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, 2.0 * np.sqrt(N) * np.sqrt(M) / whole)
     c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    area_front_elbow_down_alike = 2.0 * np.sqrt(S) * np.sqrt(A) * np.sqrt(B) * np.sqrt(C)
-    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, area_front_elbow_down_alike / at_elbow)
-    t47 = c_lag * s_bend_front_elbow_down_alike
-    s_relative = t46 - t47
-    t48 = c_lag * c_bend
-    t49 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t48 + t49
-    straight = L2 * s_relative + a3 * c_relative
-    t50 = 0.0 <= straight
-    t51 = L2 * c_relative - a3 * s_relative
-    large = fore_arm + _runtime.select(t50, straight, -straight)
-    small = t51 * t51 / large
-    folded = reach <= t43
-    c_sight = _runtime.select(folded, 1.0, outward / reach)
-    t52 = folded | short
-    t53 = A * C
-    t54 = S * B
-    at_base = t53 + t54
-    c_base = _runtime.select(t52, 1.0, -((t53 - t54) / at_base))
-    t55 = c_sight * c_base
-    s_sight = _runtime.select(folded, 0.0, t29 / reach)
-    s_base_front_elbow_down_alike = _runtime.select(t52, 0.0, area_front_elbow_down_alike / at_base)
-    t56 = s_sight * s_base_front_elbow_down_alike
-    ctheta2A = t55 - t56
-    t57 = s_sight * c_base
-    t58 = c_sight * s_base_front_elbow_down_alike
-    stheta2A = t57 + t58
+    t49 = s_bend_front_elbow_down_alike * c_lag
+    s_relative = t48 - t49
+    t50 = c_bend * c_lag
+    t51 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t50 + t51
+    straight_mid = L2 * s_relative + a3 * c_relative
+    t52 = 0.0 <= straight_mid
+    t53 = L2 * c_relative - a3 * s_relative
+    t54 = _runtime.select(t52, straight_mid, -straight_mid)
+    large_mid = fore_arm + t54
+    small_mid = t53 * t53 / large_mid
+    N_mid = t28 * _runtime.select(t52, small_mid, large_mid)
+    t55 = np.abs(t32)
+    folded = t55 + np.abs(outward) <= t47
+    t56 = t32 * fore
+    t57 = s_bend_front_elbow_down_alike * t56
+    ahead_1 = _runtime.select(short, t27, t41 + t29 * M / whole)
+    t58 = outward * ahead_1
+    t59 = t57 - t58
+    t60 = fore * outward * s_bend_front_elbow_down_alike
+    t61 = t32 * ahead_1
+    up = t60 + t61
+    norm = np.sqrt(t59 * t59 + up * up)
+    ctheta2A = _runtime.select(folded, 1.0, -(t59 / norm))
+    stheta2A = _runtime.select(folded, 0.0, up / norm)
     ctheta23A = c_relative * ctheta2A - s_relative * stheta2A
     stheta23A = c_relative * stheta2A + s_relative * ctheta2A
-    t59 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t60 = d * t59
-    t61 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t62 = d * t61
-    gap = t60 * t60 + t62 * t62
-    t63 = t42 * _runtime.select(t50, small, large) - gap
+    t62 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
+    t63 = d * t62
+    t64 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
+    t65 = d * t64
+    gap = t63 * t63 + t65 * t65
+    t66 = N_mid - gap
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t64 = 2.0 * t60 * point_11 + 2.0 * t62 * point_21
-    room_right = t63 + t64
-    t65 = _runtime.VANISHING * t41
-    spent_right = room_right <= t65
+    t67 = 2.0 * t63 * point_11 + 2.0 * t65 * point_21
+    room_right = t66 + t67
+    t68 = _runtime.VANISHING * t46
+    spent_right = room_right <= t68
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t66 = 2.0 * drawn
-    t67 = t62 - point_21
-    t68 = t60 - point_11
-    t69 = t66 * (ctheta2A * t67 - stheta2A * t68)
-    t70 = size / 100000.0
-    t71 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t72 = t70 + t71
-    t73 = _runtime.select(spent_right, size * np.abs(-t69) / t72, 0.0)
-    t74 = -(_runtime.FEASIBILITY * (t41 + t73)) <= room_right
-    room_left = t63 - t64
-    spent_left = room_left <= t65
-    h_left_0 = t62 + point_21
-    r_left_0 = t60 + point_11
-    slope_left = t66 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
-    t75 = _runtime.select(spent_left, size * np.abs(slope_left) / t72, 0.0)
-    t76 = -(_runtime.FEASIBILITY * (t41 + t75)) <= room_left
-    t77 = -(_runtime.FEASIBILITY * t41)
-    t78 = size * size
-    t79 = t78 * t78 / 10000000000.0
-    t80 = t69 * (room_right - np.abs(room_right)) / (2.0 * (t79 + t69 * t69))
-    t81 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t79 + slope_left * slope_left))
-    turn = _runtime.select(spent_right, t80, 0.0) + _runtime.select(spent_left, -t81, 0.0)
-    t82 = t64 - t69 * turn
-    t83 = t63 + t82
-    t84 = drawn * turn
-    t85 = ctheta2A * t84
-    t86 = t67 + t85 + t68 * turn
-    t87 = stheta2A * t84
-    t88 = t68 - t67 * turn - t87
-    t89 = t86 * t86 + t88 * t88
-    t90 = gap * gap
-    t91 = L1 - fore_arm
-    t92 = t91 * t91
-    M = t42 * _runtime.select(t50, large, small)
-    t93 = gap + M
-    t94 = _runtime.select(t78 * t89 < t90, t92 - t89, t82 - t93)
-    t95 = t40 & t74 & t76 & (t77 <= t83) & (t77 <= -t94)
-    t96 = t64 - slope_left * turn
-    t97 = t63 - t96
-    h_left = h_left_0 - t85 + r_left_0 * turn
-    r_left = r_left_0 + t87 - h_left_0 * turn
-    t98 = h_left * h_left + r_left * r_left
-    t99 = _runtime.select(t78 * t98 < t90, t98 - t92, t93 + t96)
-    unreachable = np.logical_not(t95 & (t77 <= t97) & (t77 <= t99))
-    t100 = _runtime.poison(invalid | unreachable)
-    t101 = t16 + t100
-    t102 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.sqrt(t89) <= t102
-    t103 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t78
-    t104 = 2.0 * _runtime.select(0.0 <= -t51, 1.0, -1.0)
-    t105 = _runtime.VANISHING * (_runtime.VANISHING * (t41 * 16.0))
-    N_right = np.maximum(t83, t105)
+    t69 = 2.0 * drawn
+    t70 = t65 - point_21
+    t71 = t63 - point_11
+    t72 = t69 * (ctheta2A * t70 - stheta2A * t71)
+    t73 = size / 100000.0
+    t74 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t75 = t73 + t74
+    t76 = _runtime.select(spent_right, size * np.abs(-t72) / t75, 0.0)
+    t77 = -(_runtime.FEASIBILITY * (t46 + t76)) <= room_right
+    room_left = t66 - t67
+    spent_left = room_left <= t68
+    h_left_0 = t65 + point_21
+    r_left_0 = t63 + point_11
+    slope_left = t69 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    t78 = _runtime.select(spent_left, size * np.abs(slope_left) / t75, 0.0)
+    t79 = -(_runtime.FEASIBILITY * (t46 + t78)) <= room_left
+    t80 = -(_runtime.FEASIBILITY * t46)
+    t81 = size * size
+    t82 = t81 * t81 / 10000000000.0
+    t83 = t72 * (room_right - np.abs(room_right)) / (2.0 * (t82 + t72 * t72))
+    t84 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t82 + slope_left * slope_left))
+    turn = _runtime.select(spent_right, t83, 0.0) + _runtime.select(spent_left, -t84, 0.0)
+    t85 = t67 - t72 * turn
+    t86 = t66 + t85
+    t87 = drawn * turn
+    t88 = ctheta2A * t87
+    t89 = t70 + t88 + t71 * turn
+    t90 = stheta2A * t87
+    t91 = t71 - t70 * turn - t90
+    t92 = t89 * t89 + t91 * t91
+    t93 = gap * gap
+    t94 = L1 - fore_arm
+    t95 = t94 * t94
+    M_mid = t28 * _runtime.select(t52, large_mid, small_mid)
+    t96 = M_mid + gap
+    t97 = _runtime.select(t81 * t92 < t93, t95 - t92, t85 - t96)
+    t98 = t45 & t77 & t79 & (t80 <= t86) & (t80 <= -t97)
+    t99 = t67 - slope_left * turn
+    t100 = t66 - t99
+    h_left = h_left_0 - t88 + r_left_0 * turn
+    r_left = r_left_0 + t90 - h_left_0 * turn
+    t101 = h_left * h_left + r_left * r_left
+    t102 = _runtime.select(t81 * t101 < t93, t101 - t95, t96 + t99)
+    unreachable = np.logical_not(t98 & (t80 <= t100) & (t80 <= t102))
+    t103 = _runtime.poison(invalid | unreachable)
+    t104 = t16 + t103
+    t105 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.abs(-t89) + np.abs(-t91) <= t105
+    t106 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t81
+    t107 = 2.0 * _runtime.select(0.0 <= -t53, 1.0, -1.0)
+    t108 = _runtime.VANISHING * (_runtime.VANISHING * (t46 * 16.0))
+    N_right = np.maximum(t86, t108)
     rN_right = np.sqrt(N_right)
-    M_right = np.maximum(-t94, t105)
+    M_right = np.maximum(-t97, t108)
     rM_right = np.sqrt(M_right)
     whole_right = M_right + N_right
-    s_bend_right = _runtime.select(short_right, 0.0, t104 * rN_right * rM_right / whole_right)
-    t106 = fore_arm * s_bend_right
-    t107 = 2.0 * fore_arm
-    ahead_1_right = _runtime.select(short_right, size, t91 + t107 * M_right / whole_right)
-    t108 = np.arctan2(t88 * t106 - t86 * ahead_1_right, -(t88 * ahead_1_right + t86 * t106))
-    t109 = _runtime.wrap_cut(_runtime.select(folded_right, t103, t108))
-    t110 = t109 + t100
+    s_bend_right = _runtime.select(short_right, 0.0, t107 * rN_right * rM_right / whole_right)
+    t109 = fore_arm * s_bend_right
+    t110 = 2.0 * fore_arm
+    ahead_1_right = _runtime.select(short_right, size, t94 + t110 * M_right / whole_right)
+    t111 = np.arctan2(t91 * t109 - t89 * ahead_1_right, -(t91 * ahead_1_right + t89 * t109))
+    t112 = _runtime.wrap_cut(_runtime.select(folded_right, t106, t111))
+    t113 = t112 + t103
     bare_right = fore_arm <= _runtime.VANISHING * size
     s_lag_right = _runtime.select(bare_right, 0.0, L2 / fore_arm)
     c_lag_right = _runtime.select(bare_right, 1.0, a3 / fore_arm)
-    t111 = np.arctan2(s_lag_right, c_lag_right)
-    t112 = _runtime.select(short_right, 0.0, t104 * np.arctan2(rN_right, rM_right))
-    t113 = _runtime.wrap_cut(_runtime.wrap(t111 + t112))
-    t114 = t113 + t100
-    folded_left = np.sqrt(t98) <= t102
-    M_left = np.maximum(t99, 0.0)
-    N_left = np.maximum(t97, 0.0)
+    t114 = np.arctan2(s_lag_right, c_lag_right)
+    t115 = _runtime.select(short_right, 0.0, t107 * np.arctan2(rN_right, rM_right))
+    t116 = _runtime.wrap_cut(_runtime.wrap(t114 + t115))
+    t117 = t116 + t103
+    folded_left = np.abs(h_left) + np.abs(r_left) <= t105
+    M_left = np.maximum(t102, 0.0)
+    N_left = np.maximum(t100, 0.0)
     whole_left = M_left + N_left
-    ahead_1_left = _runtime.select(short_right, size, t91 + t107 * M_left / whole_left)
-    t115 = h_left * ahead_1_left
+    ahead_1_left = _runtime.select(short_right, size, t94 + t110 * M_left / whole_left)
+    t118 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t104 * rN_left * rM_left / whole_left)
-    t116 = fore_arm * s_bend_left
-    t117 = r_left * t116
-    t118 = r_left * ahead_1_left
-    t119 = h_left * t116
-    t120 = _runtime.select(folded_left, t103, np.arctan2(t115 - t117, t118 + t119))
-    t121 = _runtime.select(short_right, 0.0, t104 * np.arctan2(rN_left, rM_left))
-    t122 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    t123 = t122 + t100
-    t124 = _runtime.select(folded_left, t103, np.arctan2(t115 + t117, t118 - t119))
-    s_relative_front_elbow_down_alike = t46 + t47
-    c_relative_front_elbow_down_alike = t48 - t49
-    straight_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t125 = 0.0 <= straight_front_elbow_down_alike
-    t126 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    t127 = _runtime.select(t125, straight_front_elbow_down_alike, -straight_front_elbow_down_alike)
-    large_front_elbow_down_alike = fore_arm + t127
-    small_front_elbow_down_alike = t126 * t126 / large_front_elbow_down_alike
-    t128 = _runtime.select(t125, small_front_elbow_down_alike, large_front_elbow_down_alike)
-    ctheta2A_front_elbow_down_alike = t55 + t56
-    t129 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    stheta2A_front_elbow_down_alike = t57 - t58
-    t130 = s_relative_front_elbow_down_alike * stheta2A_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t129 - t130
-    t131 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t132 = c_relative_front_elbow_down_alike * stheta2A_front_elbow_down_alike
-    t133 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t132 + t133
-    t134 = s_psi * stheta23A_front_elbow_down_alike / t4
-    t135 = d * (t131 - t134)
-    t136 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t137 = s_phi * stheta23A_front_elbow_down_alike / c_phi
-    t138 = d * (t136 + t137)
-    gap_front_elbow_down_alike = t135 * t135 + t138 * t138
-    t139 = t42 * t128 - gap_front_elbow_down_alike
-    t140 = L1 * ctheta2A_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t140 + a3 * ctheta23A_front_elbow_down_alike
-    t141 = L1 * stheta2A_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    point_21_front_elbow_down_alike = t141 + a3 * stheta23A_front_elbow_down_alike
-    t142 = 2.0 * t135 * point_11_front_elbow_down_alike + 2.0 * t138 * point_21_front_elbow_down_alike
-    room_right_front_elbow_down_alike = t139 + t142
-    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t65
-    t143 = L1 + L_2W * s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t143 + a_3W * c_relative_front_elbow_down_alike
-    t144 = 2.0 * drawn_front_elbow_down_alike
-    t145 = t138 - point_21_front_elbow_down_alike
-    t146 = t135 - point_11_front_elbow_down_alike
-    t147 = ctheta2A_front_elbow_down_alike * t145 - stheta2A_front_elbow_down_alike * t146
-    t148 = t144 * t147
+    s_bend_left = _runtime.select(short_right, 0.0, t107 * rN_left * rM_left / whole_left)
+    t119 = fore_arm * s_bend_left
+    t120 = r_left * t119
+    t121 = r_left * ahead_1_left
+    t122 = h_left * t119
+    t123 = _runtime.select(folded_left, t106, np.arctan2(t118 - t120, t121 + t122))
+    t124 = _runtime.select(short_right, 0.0, t107 * np.arctan2(rN_left, rM_left))
+    t125 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t126 = t125 + t103
+    t127 = _runtime.select(folded_left, t106, np.arctan2(t118 + t120, t121 - t122))
+    s_relative_front_elbow_down_alike = t48 + t49
+    c_relative_front_elbow_down_alike = t50 - t51
+    straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
+    t128 = 0.0 <= straight_mid_front_elbow_down_alike
+    t129 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    t130 = _runtime.select(t128, straight_mid_front_elbow_down_alike, -straight_mid_front_elbow_down_alike)
+    large_mid_front_elbow_down_alike = fore_arm + t130
+    small_mid_front_elbow_down_alike = t129 * t129 / large_mid_front_elbow_down_alike
+    t131 = _runtime.select(t128, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    out_front_elbow_down_alike = t57 + t58
+    t132 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t133 = t60 - t61
+    norm_front_elbow_down_alike = np.sqrt(t132 + t133 * t133)
+    t134 = out_front_elbow_down_alike / norm_front_elbow_down_alike
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t134)
+    t135 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t136 = _runtime.select(folded, 0.0, t133 / norm_front_elbow_down_alike)
+    ctheta23A_front_elbow_down_alike = t135 + s_relative_front_elbow_down_alike * t136
+    t137 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
+    t138 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t139 = c_relative_front_elbow_down_alike * t136 - t138
+    t140 = d * (t137 + s_psi * t139 / t4)
+    t141 = s_psi * ctheta23A_front_elbow_down_alike / t4
+    t142 = d * (t141 - s_phi * t139 / c_phi)
+    gap_front_elbow_down_alike = t140 * t140 + t142 * t142
+    t143 = t28 * t131 - gap_front_elbow_down_alike
+    t144 = L1 * ctheta2A_front_elbow_down_alike - L2 * t139
+    point_11_front_elbow_down_alike = t144 + a3 * ctheta23A_front_elbow_down_alike
+    t145 = L1 * t136 + L2 * ctheta23A_front_elbow_down_alike
+    t146 = t145 + a3 * t139
+    t147 = 2.0 * t140 * point_11_front_elbow_down_alike - 2.0 * t142 * t146
+    room_right_front_elbow_down_alike = t143 + t147
+    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t68
+    t148 = L1 + L_2W * s_relative_front_elbow_down_alike
+    drawn_front_elbow_down_alike = t148 + a_3W * c_relative_front_elbow_down_alike
+    t149 = 2.0 * drawn_front_elbow_down_alike
+    t150 = t142 + t146
+    t151 = t140 - point_11_front_elbow_down_alike
+    t152 = ctheta2A_front_elbow_down_alike * t150 + t136 * t151
+    t153 = t149 * t152
     tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t149 = t70 + np.abs(tilt_front_elbow_down_alike)
-    t150 = _runtime.select(spent_right_front_elbow_down_alike, size * np.abs(-t148) / t149, 0.0)
-    t151 = -(_runtime.FEASIBILITY * (t41 + t150)) <= room_right_front_elbow_down_alike
-    room_left_front_elbow_down_alike = t139 - t142
-    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t65
-    h_left_0_front_elbow_down_alike = t138 + point_21_front_elbow_down_alike
-    t152 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = t135 + point_11_front_elbow_down_alike
-    t153 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    slope_left_front_elbow_down_alike = t144 * (t152 - t153)
-    t154 = size * np.abs(slope_left_front_elbow_down_alike)
-    t155 = _runtime.select(spent_left_front_elbow_down_alike, t154 / t149, 0.0)
-    t156 = -(_runtime.FEASIBILITY * (t41 + t155)) <= room_left_front_elbow_down_alike
-    t157 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
-    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t148 * t157 / (2.0 * (t79 + t148 * t148)), 0.0)
-    t158 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
-    t159 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t160 = slope_left_front_elbow_down_alike * t158 / (2.0 * (t79 + t159))
-    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t160, 0.0)
+    t154 = t73 + np.abs(tilt_front_elbow_down_alike)
+    t155 = _runtime.select(spent_right_front_elbow_down_alike, size * np.abs(-t153) / t154, 0.0)
+    t156 = -(_runtime.FEASIBILITY * (t46 + t155)) <= room_right_front_elbow_down_alike
+    room_left_front_elbow_down_alike = t143 - t147
+    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t68
+    h_left_0_front_elbow_down_alike = t142 - t146
+    t157 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = t140 + point_11_front_elbow_down_alike
+    t158 = t157 + t136 * r_left_0_front_elbow_down_alike
+    slope_left_front_elbow_down_alike = t149 * t158
+    t159 = size * np.abs(slope_left_front_elbow_down_alike)
+    t160 = _runtime.select(spent_left_front_elbow_down_alike, t159 / t154, 0.0)
+    t161 = -(_runtime.FEASIBILITY * (t46 + t160)) <= room_left_front_elbow_down_alike
+    t162 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
+    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t153 * t162 / (2.0 * (t82 + t153 * t153)), 0.0)
+    t163 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
+    t164 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t165 = slope_left_front_elbow_down_alike * t163 / (2.0 * (t82 + t164))
+    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t165, 0.0)
     turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
-    t161 = t142 - t148 * turn_front_elbow_down_alike
-    t162 = t139 + t161
-    t163 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
-    t164 = ctheta2A_front_elbow_down_alike * t163
-    t165 = t145 + t164 + t146 * turn_front_elbow_down_alike
-    t166 = stheta2A_front_elbow_down_alike * t163
-    t167 = t146 - t145 * turn_front_elbow_down_alike - t166
-    t168 = t165 * t165 + t167 * t167
-    t169 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t170 = _runtime.select(t125, large_front_elbow_down_alike, small_front_elbow_down_alike)
-    M_front_elbow_down_alike = t42 * t170
-    t171 = gap_front_elbow_down_alike + M_front_elbow_down_alike
-    t172 = _runtime.select(t78 * t168 < t169, t92 - t168, t161 - t171)
-    t173 = t40 & t151 & t156 & (t77 <= t162) & (t77 <= -t172)
-    t174 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
-    t175 = t142 - t174
-    t176 = t139 - t175
-    t177 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t164 + t177
-    t178 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    t179 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike + t166 - t179
-    t180 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t181 = t178 + t180
-    t182 = _runtime.select(t78 * t181 < t169, t181 - t92, t171 + t175)
-    unreachable_2 = np.logical_not(t173 & (t77 <= t176) & (t77 <= t182))
-    t183 = _runtime.poison(invalid | unreachable_2)
-    t184 = t16 + t183
-    folded_right_front_elbow_down_alike = np.sqrt(t168) <= t102
-    t185 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    t186 = 2.0 * _runtime.select(0.0 <= -t126, 1.0, -1.0)
-    N_right_front_elbow_down_alike = np.maximum(t162, t105)
+    t166 = t147 - t153 * turn_front_elbow_down_alike
+    t167 = t143 + t166
+    t168 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    t169 = ctheta2A_front_elbow_down_alike * t168
+    t170 = t150 + t169 + t151 * turn_front_elbow_down_alike
+    t171 = t136 * t168
+    t172 = t151 - t150 * turn_front_elbow_down_alike + t171
+    t173 = t170 * t170 + t172 * t172
+    t174 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t175 = _runtime.select(t128, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t28 * t175
+    t176 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t177 = _runtime.select(t81 * t173 < t174, t95 - t173, t166 - t176)
+    t178 = t45 & t156 & t161 & (t80 <= t167) & (t80 <= -t177)
+    t179 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
+    t180 = t147 - t179
+    t181 = t143 - t180
+    t182 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t169 + t182
+    t183 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    t184 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t171 - t184
+    t185 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t186 = t183 + t185
+    t187 = _runtime.select(t81 * t186 < t174, t186 - t95, t176 + t180)
+    unreachable_2 = np.logical_not(t178 & (t80 <= t181) & (t80 <= t187))
+    t188 = _runtime.poison(invalid | unreachable_2)
+    t189 = t16 + t188
+    folded_right_front_elbow_down_alike = np.abs(-t170) + np.abs(-t172) <= t105
+    t190 = np.arctan2(-t136, ctheta2A_front_elbow_down_alike)
+    t191 = 2.0 * _runtime.select(0.0 <= -t129, 1.0, -1.0)
+    N_right_front_elbow_down_alike = np.maximum(t167, t108)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(-t172, t105)
+    M_right_front_elbow_down_alike = np.maximum(-t177, t108)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t187 = t186 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    t192 = t191 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t187 / whole_right_front_elbow_down_alike)
-    t188 = fore_arm * s_bend_right_front_elbow_down_alike
-    t189 = t107 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t91 + t189)
-    up_right_front_elbow_down_alike = t167 * t188 - t165 * ahead_1_right_front_elbow_down_alike
-    t190 = t167 * ahead_1_right_front_elbow_down_alike + t165 * t188
-    t191 = np.arctan2(up_right_front_elbow_down_alike, -t190)
-    t192 = _runtime.select(folded_right_front_elbow_down_alike, t185, t191)
-    t193 = _runtime.wrap_cut(t192) + t183
-    t194 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t195 = _runtime.select(short_right, 0.0, t186 * t194)
-    t196 = _runtime.wrap_cut(_runtime.wrap(t111 + t195))
-    t197 = t196 + t183
-    folded_left_front_elbow_down_alike = np.sqrt(t181) <= t102
-    M_left_front_elbow_down_alike = np.maximum(t182, 0.0)
-    N_left_front_elbow_down_alike = np.maximum(t176, 0.0)
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t192 / whole_right_front_elbow_down_alike)
+    t193 = fore_arm * s_bend_right_front_elbow_down_alike
+    t194 = t110 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t94 + t194)
+    up_right_front_elbow_down_alike = t172 * t193 - t170 * ahead_1_right_front_elbow_down_alike
+    t195 = t172 * ahead_1_right_front_elbow_down_alike + t170 * t193
+    t196 = np.arctan2(up_right_front_elbow_down_alike, -t195)
+    t197 = _runtime.select(folded_right_front_elbow_down_alike, t190, t196)
+    t198 = _runtime.wrap_cut(t197) + t188
+    t199 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t200 = _runtime.select(short_right, 0.0, t191 * t199)
+    t201 = _runtime.wrap_cut(_runtime.wrap(t114 + t200))
+    t202 = t201 + t188
+    t203 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t203 <= t105
+    M_left_front_elbow_down_alike = np.maximum(t187, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t181, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t198 = t107 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t91 + t198)
-    t199 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t204 = t110 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t94 + t204)
+    t205 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t200 = t186 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t200 / whole_left_front_elbow_down_alike)
-    t201 = fore_arm * s_bend_left_front_elbow_down_alike
-    t202 = r_left_front_elbow_down_alike * t201
-    t203 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t204 = h_left_front_elbow_down_alike * t201
-    t205 = _runtime.select(folded_left_front_elbow_down_alike, t185, np.arctan2(t199 - t202, t203 + t204))
-    t206 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t207 = _runtime.select(short_right, 0.0, t186 * t206)
-    t208 = t122 + t183
-    t209 = _runtime.select(folded_left_front_elbow_down_alike, t185, np.arctan2(t199 + t202, t203 - t204))
-    t210 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
-    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t32 + t33) / h))
-    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t34 - t35) / h)
+    t206 = t191 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t206 / whole_left_front_elbow_down_alike)
+    t207 = fore_arm * s_bend_left_front_elbow_down_alike
+    t208 = r_left_front_elbow_down_alike * t207
+    t209 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t210 = h_left_front_elbow_down_alike * t207
+    t211 = _runtime.select(folded_left_front_elbow_down_alike, t190, np.arctan2(t205 - t208, t209 + t210))
+    t212 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t213 = _runtime.select(short_right, 0.0, t191 * t212)
+    t214 = t125 + t188
+    t215 = _runtime.select(folded_left_front_elbow_down_alike, t190, np.arctan2(t205 + t208, t209 - t210))
+    t216 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t35 + t36) / h))
+    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t37 - t38) / h)
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
-    t211 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    reach_rear_elbow_up_alike = np.sqrt(t30 + t211)
-    t212 = t27 - reach_rear_elbow_up_alike
-    t213 = reach_rear_elbow_up_alike + t37
-    t214 = reach_rear_elbow_up_alike - t37
-    t215 = t26 & (t28 <= t212) & (t28 <= t213) & (t28 <= t214)
-    S_rear_elbow_up_alike = t27 + reach_rear_elbow_up_alike
-    A_rear_elbow_up_alike = np.maximum(t212, 0.0)
-    t216 = S_rear_elbow_up_alike * A_rear_elbow_up_alike
-    B_rear_elbow_up_alike = np.maximum(t213, 0.0)
-    C_rear_elbow_up_alike = np.maximum(t214, 0.0)
-    t217 = B_rear_elbow_up_alike * C_rear_elbow_up_alike
-    at_elbow_rear_elbow_up_alike = t216 + t217
-    t218 = -((t216 - t217) / at_elbow_rear_elbow_up_alike)
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, t218)
-    t219 = s_lag * c_bend_rear_elbow_up_alike
-    t220 = 2.0 * np.sqrt(S_rear_elbow_up_alike) * np.sqrt(A_rear_elbow_up_alike)
-    area_rear_elbow_up_alike = t220 * np.sqrt(B_rear_elbow_up_alike) * np.sqrt(C_rear_elbow_up_alike)
-    t221 = area_rear_elbow_up_alike / at_elbow_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t221)
-    t222 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t219 + t222
-    t223 = c_lag * c_bend_rear_elbow_up_alike
-    t224 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t223 - t224
-    straight_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
-    t225 = 0.0 <= straight_rear_elbow_up_alike
-    t226 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
-    t227 = _runtime.select(t225, straight_rear_elbow_up_alike, -straight_rear_elbow_up_alike)
-    large_rear_elbow_up_alike = fore_arm + t227
-    small_rear_elbow_up_alike = t226 * t226 / large_rear_elbow_up_alike
-    t228 = _runtime.select(t225, small_rear_elbow_up_alike, large_rear_elbow_up_alike)
-    folded_rear_elbow_up_alike = reach_rear_elbow_up_alike <= t43
-    t229 = outward_rear_elbow_up_alike / reach_rear_elbow_up_alike
-    c_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t229)
-    t230 = folded_rear_elbow_up_alike | short
-    t231 = A_rear_elbow_up_alike * C_rear_elbow_up_alike
-    t232 = S_rear_elbow_up_alike * B_rear_elbow_up_alike
-    at_base_rear_elbow_up_alike = t231 + t232
-    t233 = -((t231 - t232) / at_base_rear_elbow_up_alike)
-    c_base_rear_elbow_up_alike = _runtime.select(t230, 1.0, t233)
-    t234 = c_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    s_sight_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t29 / reach_rear_elbow_up_alike)
-    t235 = area_rear_elbow_up_alike / at_base_rear_elbow_up_alike
-    s_base_rear_elbow_up_alike = _runtime.select(t230, 0.0, t235)
-    t236 = s_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = t234 + t236
-    t237 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t238 = s_sight_rear_elbow_up_alike * c_base_rear_elbow_up_alike
-    t239 = c_sight_rear_elbow_up_alike * s_base_rear_elbow_up_alike
-    stheta2A_rear_elbow_up_alike = t238 - t239
-    t240 = s_relative_rear_elbow_up_alike * stheta2A_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t237 - t240
+    t217 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    square_rear_elbow_up_alike = t33 + t217
+    t218 = t31 - square_rear_elbow_up_alike
+    t219 = square_rear_elbow_up_alike - t43
+    t220 = t26 & (t30 <= t218) & (-t42 <= t219)
+    N_rear_elbow_up_alike = np.maximum(t218, 0.0)
+    M_rear_elbow_up_alike = np.maximum(t219, 0.0)
+    t221 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
+    whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t221 / whole_rear_elbow_up_alike))
+    t222 = s_lag * c_bend_rear_elbow_up_alike
+    t223 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t223 / whole_rear_elbow_up_alike)
+    t224 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t222 + t224
+    t225 = c_lag * c_bend_rear_elbow_up_alike
+    t226 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t225 - t226
+    straight_mid_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
+    t227 = 0.0 <= straight_mid_rear_elbow_up_alike
+    t228 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
+    t229 = _runtime.select(t227, straight_mid_rear_elbow_up_alike, -straight_mid_rear_elbow_up_alike)
+    large_mid_rear_elbow_up_alike = fore_arm + t229
+    small_mid_rear_elbow_up_alike = t228 * t228 / large_mid_rear_elbow_up_alike
+    t230 = _runtime.select(t227, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
+    folded_rear_elbow_up_alike = t55 + np.abs(outward_rear_elbow_up_alike) <= t47
+    t231 = t56 * s_bend_rear_elbow_up_alike
+    t232 = t29 * M_rear_elbow_up_alike / whole_rear_elbow_up_alike
+    ahead_1_rear_elbow_up_alike = _runtime.select(short, t27, t41 + t232)
+    t233 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
+    out_rear_elbow_up_alike = t231 + t233
+    t234 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
+    t235 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
+    t236 = t32 * ahead_1_rear_elbow_up_alike
+    t237 = t235 - t236
+    norm_rear_elbow_up_alike = np.sqrt(t234 + t237 * t237)
+    t238 = out_rear_elbow_up_alike / norm_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t238)
+    t239 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t240 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t237 / norm_rear_elbow_up_alike)
+    ctheta23A_rear_elbow_up_alike = t239 + s_relative_rear_elbow_up_alike * t240
     t241 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t242 = c_relative_rear_elbow_up_alike * stheta2A_rear_elbow_up_alike
-    t243 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    stheta23A_rear_elbow_up_alike = t242 + t243
-    t244 = t241 - s_psi * stheta23A_rear_elbow_up_alike / t4
-    t245 = d * t244
-    t246 = s_phi * stheta23A_rear_elbow_up_alike / c_phi
-    t247 = s_psi * ctheta23A_rear_elbow_up_alike / t4 + t246
-    t248 = d * t247
-    gap_rear_elbow_up_alike = t245 * t245 + t248 * t248
-    t249 = t42 * t228 - gap_rear_elbow_up_alike
-    t250 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t250 + a3 * ctheta23A_rear_elbow_up_alike
-    t251 = L1 * stheta2A_rear_elbow_up_alike - L2 * ctheta23A_rear_elbow_up_alike
-    point_21_rear_elbow_up_alike = t251 + a3 * stheta23A_rear_elbow_up_alike
-    t252 = 2.0 * t245 * point_11_rear_elbow_up_alike + 2.0 * t248 * point_21_rear_elbow_up_alike
-    room_right_rear_elbow_up_alike = t249 + t252
-    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t65
+    t242 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t243 = c_relative_rear_elbow_up_alike * t240 - t242
+    t244 = d * (t241 + s_psi * t243 / t4)
+    t245 = s_psi * ctheta23A_rear_elbow_up_alike / t4 - s_phi * t243 / c_phi
+    t246 = d * t245
+    gap_rear_elbow_up_alike = t244 * t244 + t246 * t246
+    t247 = t28 * t230 - gap_rear_elbow_up_alike
+    t248 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t243
+    point_11_rear_elbow_up_alike = t248 + a3 * ctheta23A_rear_elbow_up_alike
+    t249 = L1 * t240 + L2 * ctheta23A_rear_elbow_up_alike
+    t250 = t249 + a3 * t243
+    t251 = 2.0 * t244 * point_11_rear_elbow_up_alike - 2.0 * t246 * t250
+    room_right_rear_elbow_up_alike = t247 + t251
+    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t68
     drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
-    t253 = 2.0 * drawn_rear_elbow_up_alike
-    t254 = t248 - point_21_rear_elbow_up_alike
-    t255 = t245 - point_11_rear_elbow_up_alike
-    t256 = ctheta2A_rear_elbow_up_alike * t254 - stheta2A_rear_elbow_up_alike * t255
-    t257 = t253 * t256
+    t252 = 2.0 * drawn_rear_elbow_up_alike
+    t253 = t246 + t250
+    t254 = t244 - point_11_rear_elbow_up_alike
+    t255 = ctheta2A_rear_elbow_up_alike * t253 + t240 * t254
+    t256 = t252 * t255
     tilt_rear_elbow_up_alike = L_2W * c_relative_rear_elbow_up_alike - a_3W * s_relative_rear_elbow_up_alike
-    t258 = t70 + np.abs(tilt_rear_elbow_up_alike)
-    t259 = _runtime.select(spent_right_rear_elbow_up_alike, size * np.abs(-t257) / t258, 0.0)
-    t260 = -(_runtime.FEASIBILITY * (t41 + t259)) <= room_right_rear_elbow_up_alike
-    room_left_rear_elbow_up_alike = t249 - t252
-    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t65
-    h_left_0_rear_elbow_up_alike = t248 + point_21_rear_elbow_up_alike
-    t261 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t245 + point_11_rear_elbow_up_alike
-    t262 = stheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    slope_left_rear_elbow_up_alike = t253 * (t261 - t262)
-    t263 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t264 = _runtime.select(spent_left_rear_elbow_up_alike, t263 / t258, 0.0)
-    t265 = -(_runtime.FEASIBILITY * (t41 + t264)) <= room_left_rear_elbow_up_alike
-    t266 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
-    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t257 * t266 / (2.0 * (t79 + t257 * t257)), 0.0)
-    t267 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
-    t268 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t269 = slope_left_rear_elbow_up_alike * t267 / (2.0 * (t79 + t268))
-    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t269, 0.0)
+    t257 = t73 + np.abs(tilt_rear_elbow_up_alike)
+    t258 = _runtime.select(spent_right_rear_elbow_up_alike, size * np.abs(-t256) / t257, 0.0)
+    t259 = -(_runtime.FEASIBILITY * (t46 + t258)) <= room_right_rear_elbow_up_alike
+    room_left_rear_elbow_up_alike = t247 - t251
+    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t68
+    h_left_0_rear_elbow_up_alike = t246 - t250
+    t260 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t244 + point_11_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t252 * (t260 + t240 * r_left_0_rear_elbow_up_alike)
+    t261 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t262 = _runtime.select(spent_left_rear_elbow_up_alike, t261 / t257, 0.0)
+    t263 = -(_runtime.FEASIBILITY * (t46 + t262)) <= room_left_rear_elbow_up_alike
+    t264 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
+    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t256 * t264 / (2.0 * (t82 + t256 * t256)), 0.0)
+    t265 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
+    t266 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t267 = slope_left_rear_elbow_up_alike * t265 / (2.0 * (t82 + t266))
+    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t267, 0.0)
     turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
-    t270 = t252 - t257 * turn_rear_elbow_up_alike
-    t271 = t249 + t270
-    t272 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t273 = ctheta2A_rear_elbow_up_alike * t272
-    t274 = t254 + t273 + t255 * turn_rear_elbow_up_alike
-    t275 = stheta2A_rear_elbow_up_alike * t272
-    t276 = t255 - t254 * turn_rear_elbow_up_alike - t275
-    t277 = t274 * t274 + t276 * t276
-    t278 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t279 = _runtime.select(t225, large_rear_elbow_up_alike, small_rear_elbow_up_alike)
-    M_rear_elbow_up_alike = t42 * t279
-    t280 = gap_rear_elbow_up_alike + M_rear_elbow_up_alike
-    t281 = _runtime.select(t78 * t277 < t278, t92 - t277, t270 - t280)
-    t282 = t215 & t260 & t265 & (t77 <= t271) & (t77 <= -t281)
-    t283 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t284 = t252 - t283
-    t285 = t249 - t284
-    t286 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t273 + t286
-    t287 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    t288 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t275 - t288
-    t289 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t290 = t287 + t289
-    t291 = _runtime.select(t78 * t290 < t278, t290 - t92, t280 + t284)
-    unreachable_3 = np.logical_not(t282 & (t77 <= t285) & (t77 <= t291))
-    t292 = _runtime.poison(invalid | unreachable_3)
-    t293 = t210 + t292
-    folded_right_rear_elbow_up_alike = np.sqrt(t277) <= t102
-    t294 = np.arctan2(stheta2A_rear_elbow_up_alike, ctheta2A_rear_elbow_up_alike)
-    t295 = 2.0 * _runtime.select(0.0 <= -t226, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t271, t105)
+    t268 = t251 - t256 * turn_rear_elbow_up_alike
+    t269 = t247 + t268
+    t270 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t271 = ctheta2A_rear_elbow_up_alike * t270
+    t272 = t253 + t271 + t254 * turn_rear_elbow_up_alike
+    t273 = t240 * t270
+    t274 = t254 - t253 * turn_rear_elbow_up_alike + t273
+    t275 = t272 * t272 + t274 * t274
+    t276 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t277 = _runtime.select(t227, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
+    M_mid_rear_elbow_up_alike = t28 * t277
+    t278 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
+    t279 = _runtime.select(t81 * t275 < t276, t95 - t275, t268 - t278)
+    t280 = t220 & t259 & t263 & (t80 <= t269) & (t80 <= -t279)
+    t281 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t282 = t251 - t281
+    t283 = t247 - t282
+    t284 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t271 + t284
+    t285 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    t286 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t273 - t286
+    t287 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t288 = t285 + t287
+    t289 = _runtime.select(t81 * t288 < t276, t288 - t95, t278 + t282)
+    unreachable_3 = np.logical_not(t280 & (t80 <= t283) & (t80 <= t289))
+    t290 = _runtime.poison(invalid | unreachable_3)
+    t291 = t216 + t290
+    folded_right_rear_elbow_up_alike = np.abs(-t272) + np.abs(-t274) <= t105
+    t292 = np.arctan2(-t240, ctheta2A_rear_elbow_up_alike)
+    t293 = 2.0 * _runtime.select(0.0 <= -t228, 1.0, -1.0)
+    N_right_rear_elbow_up_alike = np.maximum(t269, t108)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(-t281, t105)
+    M_right_rear_elbow_up_alike = np.maximum(-t279, t108)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t296 = t295 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    t294 = t293 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t296 / whole_right_rear_elbow_up_alike)
-    t297 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t298 = t107 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t91 + t298)
-    up_right_rear_elbow_up_alike = t276 * t297 - t274 * ahead_1_right_rear_elbow_up_alike
-    t299 = t276 * ahead_1_right_rear_elbow_up_alike + t274 * t297
-    t300 = np.arctan2(up_right_rear_elbow_up_alike, -t299)
-    t301 = _runtime.select(folded_right_rear_elbow_up_alike, t294, t300)
-    t302 = _runtime.wrap_cut(t301) + t292
-    t303 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t304 = _runtime.select(short_right, 0.0, t295 * t303)
-    t305 = _runtime.wrap_cut(_runtime.wrap(t111 + t304))
-    t306 = t305 + t292
-    folded_left_rear_elbow_up_alike = np.sqrt(t290) <= t102
-    M_left_rear_elbow_up_alike = np.maximum(t291, 0.0)
-    N_left_rear_elbow_up_alike = np.maximum(t285, 0.0)
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t294 / whole_right_rear_elbow_up_alike)
+    t295 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t296 = t110 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t94 + t296)
+    up_right_rear_elbow_up_alike = t274 * t295 - t272 * ahead_1_right_rear_elbow_up_alike
+    t297 = t274 * ahead_1_right_rear_elbow_up_alike + t272 * t295
+    t298 = np.arctan2(up_right_rear_elbow_up_alike, -t297)
+    t299 = _runtime.select(folded_right_rear_elbow_up_alike, t292, t298)
+    t300 = _runtime.wrap_cut(t299) + t290
+    t301 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t302 = _runtime.select(short_right, 0.0, t293 * t301)
+    t303 = _runtime.wrap_cut(_runtime.wrap(t114 + t302))
+    t304 = t303 + t290
+    t305 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t305 <= t105
+    M_left_rear_elbow_up_alike = np.maximum(t289, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t283, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t307 = t107 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t91 + t307)
-    t308 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t306 = t110 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t94 + t306)
+    t307 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t309 = t295 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t309 / whole_left_rear_elbow_up_alike)
-    t310 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t311 = r_left_rear_elbow_up_alike * t310
-    t312 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t313 = h_left_rear_elbow_up_alike * t310
-    t314 = _runtime.select(folded_left_rear_elbow_up_alike, t294, np.arctan2(t308 - t311, t312 + t313))
-    t315 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t316 = _runtime.select(short_right, 0.0, t295 * t315)
-    t317 = t122 + t292
-    t318 = _runtime.select(folded_left_rear_elbow_up_alike, t294, np.arctan2(t308 + t311, t312 - t313))
-    s_relative_rear_elbow_down_alike = t219 - t222
-    c_relative_rear_elbow_down_alike = t223 + t224
-    straight_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
-    t319 = 0.0 <= straight_rear_elbow_down_alike
-    t320 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
-    t321 = _runtime.select(t319, straight_rear_elbow_down_alike, -straight_rear_elbow_down_alike)
-    large_rear_elbow_down_alike = fore_arm + t321
-    small_rear_elbow_down_alike = t320 * t320 / large_rear_elbow_down_alike
-    t322 = _runtime.select(t319, small_rear_elbow_down_alike, large_rear_elbow_down_alike)
-    ctheta2A_rear_elbow_down_alike = t234 - t236
-    t323 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta2A_rear_elbow_down_alike = t238 + t239
-    t324 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t323 - t324
-    t325 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t326 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    t327 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t326 + t327
-    t328 = t325 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t329 = d * t328
-    t330 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t331 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t330
-    t332 = d * t331
-    gap_rear_elbow_down_alike = t329 * t329 + t332 * t332
-    t333 = t42 * t322 - gap_rear_elbow_down_alike
-    t334 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t334 + a3 * ctheta23A_rear_elbow_down_alike
-    t335 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t335 + a3 * stheta23A_rear_elbow_down_alike
-    t336 = 2.0 * t329 * point_11_rear_elbow_down_alike + 2.0 * t332 * point_21_rear_elbow_down_alike
-    room_right_rear_elbow_down_alike = t333 + t336
-    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t65
+    t308 = t293 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t308 / whole_left_rear_elbow_up_alike)
+    t309 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t310 = r_left_rear_elbow_up_alike * t309
+    t311 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t312 = h_left_rear_elbow_up_alike * t309
+    t313 = _runtime.select(folded_left_rear_elbow_up_alike, t292, np.arctan2(t307 - t310, t311 + t312))
+    t314 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t315 = _runtime.select(short_right, 0.0, t293 * t314)
+    t316 = t125 + t290
+    t317 = _runtime.select(folded_left_rear_elbow_up_alike, t292, np.arctan2(t307 + t310, t311 - t312))
+    s_relative_rear_elbow_down_alike = t222 - t224
+    c_relative_rear_elbow_down_alike = t225 + t226
+    straight_mid_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
+    t318 = 0.0 <= straight_mid_rear_elbow_down_alike
+    t319 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
+    t320 = _runtime.select(t318, straight_mid_rear_elbow_down_alike, -straight_mid_rear_elbow_down_alike)
+    large_mid_rear_elbow_down_alike = fore_arm + t320
+    small_mid_rear_elbow_down_alike = t319 * t319 / large_mid_rear_elbow_down_alike
+    t321 = _runtime.select(t318, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
+    t322 = t231 - t233
+    up_rear_elbow_down_alike = t235 + t236
+    t323 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
+    norm_rear_elbow_down_alike = np.sqrt(t322 * t322 + t323)
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t322 / norm_rear_elbow_down_alike))
+    t324 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    t325 = up_rear_elbow_down_alike / norm_rear_elbow_down_alike
+    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t325)
+    t326 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t324 - t326
+    t327 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t328 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t329 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t328 + t329
+    t330 = t327 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t331 = d * t330
+    t332 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t333 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t332
+    t334 = d * t333
+    gap_rear_elbow_down_alike = t331 * t331 + t334 * t334
+    t335 = t28 * t321 - gap_rear_elbow_down_alike
+    t336 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t336 + a3 * ctheta23A_rear_elbow_down_alike
+    t337 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t337 + a3 * stheta23A_rear_elbow_down_alike
+    t338 = 2.0 * t331 * point_11_rear_elbow_down_alike + 2.0 * t334 * point_21_rear_elbow_down_alike
+    room_right_rear_elbow_down_alike = t335 + t338
+    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t68
     drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
-    t337 = 2.0 * drawn_rear_elbow_down_alike
-    t338 = t332 - point_21_rear_elbow_down_alike
-    t339 = t329 - point_11_rear_elbow_down_alike
-    t340 = ctheta2A_rear_elbow_down_alike * t338 - stheta2A_rear_elbow_down_alike * t339
-    t341 = t337 * t340
+    t339 = 2.0 * drawn_rear_elbow_down_alike
+    t340 = t334 - point_21_rear_elbow_down_alike
+    t341 = t331 - point_11_rear_elbow_down_alike
+    t342 = ctheta2A_rear_elbow_down_alike * t340 - stheta2A_rear_elbow_down_alike * t341
+    t343 = t339 * t342
     tilt_rear_elbow_down_alike = L_2W * c_relative_rear_elbow_down_alike - a_3W * s_relative_rear_elbow_down_alike
-    t342 = t70 + np.abs(tilt_rear_elbow_down_alike)
-    t343 = _runtime.select(spent_right_rear_elbow_down_alike, size * np.abs(-t341) / t342, 0.0)
-    t344 = -(_runtime.FEASIBILITY * (t41 + t343)) <= room_right_rear_elbow_down_alike
-    room_left_rear_elbow_down_alike = t333 - t336
-    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t65
-    h_left_0_rear_elbow_down_alike = t332 + point_21_rear_elbow_down_alike
-    t345 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t329 + point_11_rear_elbow_down_alike
-    t346 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t337 * (t345 - t346)
-    t347 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t348 = _runtime.select(spent_left_rear_elbow_down_alike, t347 / t342, 0.0)
-    t349 = -(_runtime.FEASIBILITY * (t41 + t348)) <= room_left_rear_elbow_down_alike
-    t350 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
-    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t341 * t350 / (2.0 * (t79 + t341 * t341)), 0.0)
-    t351 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
-    t352 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t353 = slope_left_rear_elbow_down_alike * t351 / (2.0 * (t79 + t352))
-    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t353, 0.0)
+    t344 = t73 + np.abs(tilt_rear_elbow_down_alike)
+    t345 = _runtime.select(spent_right_rear_elbow_down_alike, size * np.abs(-t343) / t344, 0.0)
+    t346 = -(_runtime.FEASIBILITY * (t46 + t345)) <= room_right_rear_elbow_down_alike
+    room_left_rear_elbow_down_alike = t335 - t338
+    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t68
+    h_left_0_rear_elbow_down_alike = t334 + point_21_rear_elbow_down_alike
+    t347 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t331 + point_11_rear_elbow_down_alike
+    t348 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t339 * (t347 - t348)
+    t349 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t350 = _runtime.select(spent_left_rear_elbow_down_alike, t349 / t344, 0.0)
+    t351 = -(_runtime.FEASIBILITY * (t46 + t350)) <= room_left_rear_elbow_down_alike
+    t352 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
+    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t343 * t352 / (2.0 * (t82 + t343 * t343)), 0.0)
+    t353 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
+    t354 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t355 = slope_left_rear_elbow_down_alike * t353 / (2.0 * (t82 + t354))
+    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t355, 0.0)
     turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
-    t354 = t336 - t341 * turn_rear_elbow_down_alike
-    t355 = t333 + t354
-    t356 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t357 = ctheta2A_rear_elbow_down_alike * t356
-    t358 = t338 + t357 + t339 * turn_rear_elbow_down_alike
-    t359 = stheta2A_rear_elbow_down_alike * t356
-    t360 = t339 - t338 * turn_rear_elbow_down_alike - t359
-    t361 = t358 * t358 + t360 * t360
-    t362 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t363 = _runtime.select(t319, large_rear_elbow_down_alike, small_rear_elbow_down_alike)
-    M_rear_elbow_down_alike = t42 * t363
-    t364 = gap_rear_elbow_down_alike + M_rear_elbow_down_alike
-    t365 = _runtime.select(t78 * t361 < t362, t92 - t361, t354 - t364)
-    t366 = t215 & t344 & t349 & (t77 <= t355) & (t77 <= -t365)
-    t367 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t368 = t336 - t367
-    t369 = t333 - t368
-    t370 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t357 + t370
-    t371 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    t372 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t359 - t372
-    t373 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t374 = t371 + t373
-    t375 = _runtime.select(t78 * t374 < t362, t374 - t92, t364 + t368)
-    unreachable_4 = np.logical_not(t366 & (t77 <= t369) & (t77 <= t375))
-    t376 = _runtime.poison(invalid | unreachable_4)
-    t377 = t210 + t376
-    folded_right_rear_elbow_down_alike = np.sqrt(t361) <= t102
-    t378 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    t379 = 2.0 * _runtime.select(0.0 <= -t320, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t355, t105)
+    t356 = t338 - t343 * turn_rear_elbow_down_alike
+    t357 = t335 + t356
+    t358 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t359 = ctheta2A_rear_elbow_down_alike * t358
+    t360 = t340 + t359 + t341 * turn_rear_elbow_down_alike
+    t361 = stheta2A_rear_elbow_down_alike * t358
+    t362 = t341 - t340 * turn_rear_elbow_down_alike - t361
+    t363 = t360 * t360 + t362 * t362
+    t364 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t365 = _runtime.select(t318, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
+    M_mid_rear_elbow_down_alike = t28 * t365
+    t366 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
+    t367 = _runtime.select(t81 * t363 < t364, t95 - t363, t356 - t366)
+    t368 = t220 & t346 & t351 & (t80 <= t357) & (t80 <= -t367)
+    t369 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t370 = t338 - t369
+    t371 = t335 - t370
+    t372 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t359 + t372
+    t373 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    t374 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t361 - t374
+    t375 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t376 = t373 + t375
+    t377 = _runtime.select(t81 * t376 < t364, t376 - t95, t366 + t370)
+    unreachable_4 = np.logical_not(t368 & (t80 <= t371) & (t80 <= t377))
+    t378 = _runtime.poison(invalid | unreachable_4)
+    t379 = t216 + t378
+    folded_right_rear_elbow_down_alike = np.abs(-t360) + np.abs(-t362) <= t105
+    t380 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    t381 = 2.0 * _runtime.select(0.0 <= -t319, 1.0, -1.0)
+    N_right_rear_elbow_down_alike = np.maximum(t357, t108)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(-t365, t105)
+    M_right_rear_elbow_down_alike = np.maximum(-t367, t108)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t380 = t379 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    t382 = t381 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t380 / whole_right_rear_elbow_down_alike)
-    t381 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t382 = t107 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t91 + t382)
-    up_right_rear_elbow_down_alike = t360 * t381 - t358 * ahead_1_right_rear_elbow_down_alike
-    t383 = t360 * ahead_1_right_rear_elbow_down_alike + t358 * t381
-    t384 = np.arctan2(up_right_rear_elbow_down_alike, -t383)
-    t385 = _runtime.select(folded_right_rear_elbow_down_alike, t378, t384)
-    t386 = _runtime.wrap_cut(t385) + t376
-    t387 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t388 = _runtime.select(short_right, 0.0, t379 * t387)
-    t389 = _runtime.wrap_cut(_runtime.wrap(t111 + t388))
-    t390 = t389 + t376
-    folded_left_rear_elbow_down_alike = np.sqrt(t374) <= t102
-    M_left_rear_elbow_down_alike = np.maximum(t375, 0.0)
-    N_left_rear_elbow_down_alike = np.maximum(t369, 0.0)
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t382 / whole_right_rear_elbow_down_alike)
+    t383 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t384 = t110 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t94 + t384)
+    up_right_rear_elbow_down_alike = t362 * t383 - t360 * ahead_1_right_rear_elbow_down_alike
+    t385 = t362 * ahead_1_right_rear_elbow_down_alike + t360 * t383
+    t386 = np.arctan2(up_right_rear_elbow_down_alike, -t385)
+    t387 = _runtime.select(folded_right_rear_elbow_down_alike, t380, t386)
+    t388 = _runtime.wrap_cut(t387) + t378
+    t389 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t390 = _runtime.select(short_right, 0.0, t381 * t389)
+    t391 = _runtime.wrap_cut(_runtime.wrap(t114 + t390))
+    t392 = t391 + t378
+    t393 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t393 <= t105
+    M_left_rear_elbow_down_alike = np.maximum(t377, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t371, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t391 = t107 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t91 + t391)
-    t392 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t394 = t110 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t94 + t394)
+    t395 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t393 = t379 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t393 / whole_left_rear_elbow_down_alike)
-    t394 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t395 = r_left_rear_elbow_down_alike * t394
-    t396 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t397 = h_left_rear_elbow_down_alike * t394
-    t398 = _runtime.select(folded_left_rear_elbow_down_alike, t378, np.arctan2(t392 - t395, t396 + t397))
-    t399 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t400 = _runtime.select(short_right, 0.0, t379 * t399)
-    t401 = t122 + t376
-    t402 = _runtime.select(folded_left_rear_elbow_down_alike, t378, np.arctan2(t392 + t395, t396 - t397))
-    t403 = nowhere | folded | short
-    square = t92 + M
-    t404 = 10000.0 * t78
-    pole = M * square <= _runtime.VANISHING * (t404 * gap)
-    t405 = _runtime.VANISHING * t404
-    t406 = t403 | pole | (square <= t405) | folded_right
-    t407 = _runtime.status(invalid, unreachable, t406 | short_right | folded_left)
-    square_front_elbow_down_alike = t92 + M_front_elbow_down_alike
-    t408 = M_front_elbow_down_alike * square_front_elbow_down_alike
-    t409 = _runtime.VANISHING * (t404 * gap_front_elbow_down_alike)
-    t410 = t403 | (t408 <= t409) | (square_front_elbow_down_alike <= t405)
-    t411 = t410 | folded_right_front_elbow_down_alike | short_right
-    t412 = _runtime.status(invalid, unreachable_2, t411 | folded_left_front_elbow_down_alike)
-    t413 = nowhere | folded_rear_elbow_up_alike | short
-    square_rear_elbow_up_alike = t92 + M_rear_elbow_up_alike
-    t414 = M_rear_elbow_up_alike * square_rear_elbow_up_alike
-    t415 = _runtime.VANISHING * (t404 * gap_rear_elbow_up_alike)
-    t416 = t413 | (t414 <= t415) | (square_rear_elbow_up_alike <= t405)
-    t417 = t416 | folded_right_rear_elbow_up_alike | short_right
-    t418 = _runtime.status(invalid, unreachable_3, t417 | folded_left_rear_elbow_up_alike)
-    square_rear_elbow_down_alike = t92 + M_rear_elbow_down_alike
-    t419 = M_rear_elbow_down_alike * square_rear_elbow_down_alike
-    t420 = _runtime.VANISHING * (t404 * gap_rear_elbow_down_alike)
-    t421 = t413 | (t419 <= t420) | (square_rear_elbow_down_alike <= t405)
-    t422 = t421 | folded_right_rear_elbow_down_alike | short_right
-    t423 = _runtime.status(invalid, unreachable_4, t422 | folded_left_rear_elbow_down_alike)
+    t396 = t381 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t396 / whole_left_rear_elbow_down_alike)
+    t397 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t398 = r_left_rear_elbow_down_alike * t397
+    t399 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t400 = h_left_rear_elbow_down_alike * t397
+    t401 = _runtime.select(folded_left_rear_elbow_down_alike, t380, np.arctan2(t395 - t398, t399 + t400))
+    t402 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t403 = _runtime.select(short_right, 0.0, t381 * t402)
+    t404 = t125 + t378
+    t405 = _runtime.select(folded_left_rear_elbow_down_alike, t380, np.arctan2(t395 + t398, t399 - t400))
+    t406 = nowhere | folded | short
+    square_mid = t95 + M_mid
+    t407 = 10000.0 * t81
+    pole = M_mid * square_mid <= _runtime.VANISHING * (t407 * gap)
+    t408 = _runtime.VANISHING * t407
+    t409 = t406 | pole | (square_mid <= t408) | folded_right
+    t410 = _runtime.status(invalid, unreachable, t409 | short_right | folded_left)
+    square_mid_front_elbow_down_alike = t95 + M_mid_front_elbow_down_alike
+    t411 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t412 = _runtime.VANISHING * (t407 * gap_front_elbow_down_alike)
+    t413 = t406 | (t411 <= t412) | (square_mid_front_elbow_down_alike <= t408)
+    t414 = t413 | folded_right_front_elbow_down_alike | short_right
+    t415 = _runtime.status(invalid, unreachable_2, t414 | folded_left_front_elbow_down_alike)
+    t416 = nowhere | folded_rear_elbow_up_alike | short
+    square_mid_rear_elbow_up_alike = t95 + M_mid_rear_elbow_up_alike
+    t417 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
+    t418 = _runtime.VANISHING * (t407 * gap_rear_elbow_up_alike)
+    t419 = t416 | (t417 <= t418) | (square_mid_rear_elbow_up_alike <= t408)
+    t420 = t419 | folded_right_rear_elbow_up_alike | short_right
+    t421 = _runtime.status(invalid, unreachable_3, t420 | folded_left_rear_elbow_up_alike)
+    square_mid_rear_elbow_down_alike = t95 + M_mid_rear_elbow_down_alike
+    t422 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
+    t423 = _runtime.VANISHING * (t407 * gap_rear_elbow_down_alike)
+    t424 = t416 | (t422 <= t423) | (square_mid_rear_elbow_down_alike <= t408)
+    t425 = t424 | folded_right_rear_elbow_down_alike | short_right
+    t426 = _runtime.status(invalid, unreachable_4, t425 | folded_left_rear_elbow_down_alike)
     return (
-        t101,
-        t110,
-        t114,
-        _runtime.wrap_cut(t120) + t100,
-        _runtime.wrap(t111 + t121) + t100,
-        t123,
-        t101,
-        t110,
-        t114,
-        _runtime.wrap_cut(t124) + t100,
-        _runtime.wrap(t111 - t121) + t100,
-        t123,
-        t184,
-        t193,
-        t197,
-        _runtime.wrap_cut(t205) + t183,
-        _runtime.wrap(t111 + t207) + t183,
-        t208,
-        t184,
-        t193,
-        t197,
-        _runtime.wrap_cut(t209) + t183,
-        _runtime.wrap(t111 - t207) + t183,
-        t208,
-        t293,
-        t302,
-        t306,
-        _runtime.wrap_cut(t314) + t292,
-        _runtime.wrap(t111 + t316) + t292,
-        t317,
-        t293,
-        t302,
-        t306,
-        _runtime.wrap_cut(t318) + t292,
-        _runtime.wrap(t111 - t316) + t292,
-        t317,
-        t377,
-        t386,
-        t390,
-        _runtime.wrap_cut(t398) + t376,
-        _runtime.wrap(t111 + t400) + t376,
-        t401,
-        t377,
-        t386,
-        t390,
-        _runtime.wrap_cut(t402) + t376,
-        _runtime.wrap(t111 - t400) + t376,
-        t401,
-        t407,
-        t407,
-        t412,
-        t412,
-        t418,
-        t418,
-        t423,
-        t423,
+        t104,
+        t113,
+        t117,
+        _runtime.wrap_cut(t123) + t103,
+        _runtime.wrap(t114 + t124) + t103,
+        t126,
+        t104,
+        t113,
+        t117,
+        _runtime.wrap_cut(t127) + t103,
+        _runtime.wrap(t114 - t124) + t103,
+        t126,
+        t189,
+        t198,
+        t202,
+        _runtime.wrap_cut(t211) + t188,
+        _runtime.wrap(t114 + t213) + t188,
+        t214,
+        t189,
+        t198,
+        t202,
+        _runtime.wrap_cut(t215) + t188,
+        _runtime.wrap(t114 - t213) + t188,
+        t214,
+        t291,
+        t300,
+        t304,
+        _runtime.wrap_cut(t313) + t290,
+        _runtime.wrap(t114 + t315) + t290,
+        t316,
+        t291,
+        t300,
+        t304,
+        _runtime.wrap_cut(t317) + t290,
+        _runtime.wrap(t114 - t315) + t290,
+        t316,
+        t379,
+        t388,
+        t392,
+        _runtime.wrap_cut(t401) + t378,
+        _runtime.wrap(t114 + t403) + t378,
+        t404,
+        t379,
+        t388,
+        t392,
+        _runtime.wrap_cut(t405) + t378,
+        _runtime.wrap(t114 - t403) + t378,
+        t404,
+        t410,
+        t410,
+        t415,
+        t415,
+        t421,
+        t421,
+        t426,
+        t426,
     )
 
 

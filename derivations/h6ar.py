@@ -376,8 +376,8 @@ for sine in ("alpha", "beta"):
     whole = p.let(f"whole_{sine}", m.L1 * v[0])
     part = p.let(f"part_{sine}", part)
     to_whole, to_part = (sp.Piecewise((1, e >= 0), (-1, True)) for e in (whole, part))
-    room = to_whole * whole - to_part * part
-    slope = -to_whole * free.drawn * v[1] - to_part * rate
+    room = p.let(f"room_{sine}", to_whole * whole - to_part * part)
+    slope = p.let(f"slope_{sine}", -to_whole * free.drawn * v[1] - to_part * rate)
     spent, turn = free.easing(sine, room, slope, "a sine is at most 1")
     leant = p.let(f"lean_{sine}", choose(spent, turn + free.swing(turn) / m.L1, 0))
     v, seen = (

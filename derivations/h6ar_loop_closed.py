@@ -393,13 +393,13 @@ square = p.let("square_mid", M + (m.L1 - second) ** 2)
 p.vanishes("pole", M * square, 10**4 * gap * size**2, "the virtual arm is folded", (psi, phi))
 p.vanishes("at_shoulder", square, 10**4 * size**2, "the virtual arm has no length", (psi, phi))
 free = free_turn(p, m, mid.elbow, size)
-ends, slopes, turns = {}, {}, []
+ends, rooms, slopes, turns = {}, {}, {}, []
 for name, sign in (("right", 1), ("left", -1)):
     r, h = (p.let(f"{c}_{name}_0", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
     ends[name] = r, h
-    slopes[name] = 2 * free.drawn * (h * upper.c - r * upper.s)
-    room = N - sign * cross - gap
-    turns.append(free.easing(name, room, slopes[name], "nearer than full stretch")[1])
+    room = rooms[name] = p.let(f"room_{name}", N - sign * cross - gap)
+    slope = slopes[name] = p.let(f"slope_{name}", 2 * free.drawn * (h * upper.c - r * upper.s))
+    turns.append(free.easing(name, room, slope, "nearer than full stretch")[1])
 turn = p.let("turn", sum(turns))
 swing = p.let("swing", free.swing(turn))
 arms = []
@@ -421,7 +421,7 @@ for name, sigma, sign, unknowns in (
             end,
             unknowns,
             sigma,
-            (N - sign * cross - gap + eased, M + sign * cross + gap - eased),
+            (rooms[name] + eased, M + sign * cross + gap - eased),
             m.d,
             apart=gap,
             suffix=f"_{name}",
@@ -450,7 +450,9 @@ d.function(
         "to the waist "
         "axis than L_theta, or an arm is out of reach.",
         "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder "
-        "(its upper arm is returned beside that of the virtual arm).",
+        "(its upper arm is returned beside that of the virtual arm), or a virtual arm that is "
+        "folded or without length, up to what the joints can tell: they then hold the tip, yaw and "
+        "roll to fewer digits.",
         "INVALID: d, L1, or both L2 and a3 are zero.",
         "A straight right arm is returned bent by a few units in the last place, so that "
         "fk can read "

@@ -338,7 +338,7 @@ class FreeTurn:
         return -self.drawn * turn
 
     def easing(
-        self, name: str, room: sp.Expr, slope: sp.Expr, meaning: str
+        self, name: str, room: sp.Symbol, slope: sp.Symbol, meaning: str
     ) -> tuple[sp.Symbol, sp.Expr]:
         """The turn that makes up for what an area ``room`` lacks, and grows by ``slope`` of it.
 
@@ -346,9 +346,7 @@ class FreeTurn:
         """
         # a turn that is free where tilt is zero: its square is below rounding
         nothing = Rational(1, 10**5) * self.size
-        room = self.program.let(f"room_{name}", room)
         spent = self.program.vanishes(f"spent_{name}", room, self.scale, f"no room: {meaning}")
-        slope = self.program.let(f"slope_{name}", slope)
         loose = sp.Abs(slope) * self.size / (sp.Abs(self.tilt) + nothing)
         scale = self.program.let(f"play_{name}", self.scale + choose(spent, loose, 0))
         self.program.bound(f"kept_{name}", room, scale, meaning)

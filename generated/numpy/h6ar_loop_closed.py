@@ -1284,8 +1284,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t83 = t72 * (room_right - np.abs(room_right)) / (2.0 * (t82 + t72 * t72))
     t84 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t82 + slope_left * slope_left))
     turn = _runtime.select(spent_right, t83, 0.0) + _runtime.select(spent_left, -t84, 0.0)
-    t85 = t67 - t72 * turn
-    t86 = t66 + t85
+    t85 = t72 * turn
+    t86 = room_right - t85
     t87 = drawn * turn
     t88 = ctheta2A * t87
     t89 = t70 + t88 + t71 * turn
@@ -1297,14 +1297,14 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t95 = t94 * t94
     M_mid = t28 * _runtime.select(t52, large_mid, small_mid)
     t96 = M_mid + gap
-    t97 = _runtime.select(t81 * t92 < t93, t95 - t92, t85 - t96)
+    t97 = _runtime.select(t81 * t92 < t93, t95 - t92, t67 - t85 - t96)
     t98 = t45 & t77 & t79 & (t80 <= t86) & (t80 <= -t97)
-    t99 = t67 - slope_left * turn
-    t100 = t66 - t99
+    t99 = slope_left * turn
+    t100 = room_left + t99
     h_left = h_left_0 - t88 + r_left_0 * turn
     r_left = r_left_0 + t90 - h_left_0 * turn
     t101 = h_left * h_left + r_left * r_left
-    t102 = _runtime.select(t81 * t101 < t93, t101 - t95, t96 + t99)
+    t102 = _runtime.select(t81 * t101 < t93, t101 - t95, t67 + t96 - t99)
     unreachable = np.logical_not(t98 & (t80 <= t100) & (t80 <= t102))
     t103 = _runtime.poison(invalid | unreachable)
     t104 = t16 + t103
@@ -1412,8 +1412,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t165 = slope_left_front_elbow_down_alike * t163 / (2.0 * (t82 + t164))
     turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t165, 0.0)
     turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
-    t166 = t147 - t153 * turn_front_elbow_down_alike
-    t167 = t143 + t166
+    t166 = t153 * turn_front_elbow_down_alike
+    t167 = room_right_front_elbow_down_alike - t166
     t168 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
     t169 = ctheta2A_front_elbow_down_alike * t168
     t170 = t150 + t169 + t151 * turn_front_elbow_down_alike
@@ -1424,383 +1424,380 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t175 = _runtime.select(t128, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
     M_mid_front_elbow_down_alike = t28 * t175
     t176 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t177 = _runtime.select(t81 * t173 < t174, t95 - t173, t166 - t176)
+    t177 = _runtime.select(t81 * t173 < t174, t95 - t173, t147 - t166 - t176)
     t178 = t45 & t156 & t161 & (t80 <= t167) & (t80 <= -t177)
     t179 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
-    t180 = t147 - t179
-    t181 = t143 - t180
-    t182 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t169 + t182
-    t183 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    t184 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t171 - t184
-    t185 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t186 = t183 + t185
-    t187 = _runtime.select(t81 * t186 < t174, t186 - t95, t176 + t180)
-    unreachable_2 = np.logical_not(t178 & (t80 <= t181) & (t80 <= t187))
-    t188 = _runtime.poison(invalid | unreachable_2)
-    t189 = t16 + t188
+    t180 = room_left_front_elbow_down_alike + t179
+    t181 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t169 + t181
+    t182 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    t183 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t171 - t183
+    t184 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t185 = t182 + t184
+    t186 = _runtime.select(t81 * t185 < t174, t185 - t95, t147 + t176 - t179)
+    unreachable_2 = np.logical_not(t178 & (t80 <= t180) & (t80 <= t186))
+    t187 = _runtime.poison(invalid | unreachable_2)
+    t188 = t16 + t187
     folded_right_front_elbow_down_alike = np.abs(-t170) + np.abs(-t172) <= t105
-    t190 = np.arctan2(-t136, ctheta2A_front_elbow_down_alike)
-    t191 = 2.0 * _runtime.select(0.0 <= -t129, 1.0, -1.0)
+    t189 = np.arctan2(-t136, ctheta2A_front_elbow_down_alike)
+    t190 = 2.0 * _runtime.select(0.0 <= -t129, 1.0, -1.0)
     N_right_front_elbow_down_alike = np.maximum(t167, t108)
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
     M_right_front_elbow_down_alike = np.maximum(-t177, t108)
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t192 = t191 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    t191 = t190 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t192 / whole_right_front_elbow_down_alike)
-    t193 = fore_arm * s_bend_right_front_elbow_down_alike
-    t194 = t110 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t94 + t194)
-    up_right_front_elbow_down_alike = t172 * t193 - t170 * ahead_1_right_front_elbow_down_alike
-    t195 = t172 * ahead_1_right_front_elbow_down_alike + t170 * t193
-    t196 = np.arctan2(up_right_front_elbow_down_alike, -t195)
-    t197 = _runtime.select(folded_right_front_elbow_down_alike, t190, t196)
-    t198 = _runtime.wrap_cut(t197) + t188
-    t199 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t200 = _runtime.select(short_right, 0.0, t191 * t199)
-    t201 = _runtime.wrap_cut(_runtime.wrap(t114 + t200))
-    t202 = t201 + t188
-    t203 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t203 <= t105
-    M_left_front_elbow_down_alike = np.maximum(t187, 0.0)
-    N_left_front_elbow_down_alike = np.maximum(t181, 0.0)
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t191 / whole_right_front_elbow_down_alike)
+    t192 = fore_arm * s_bend_right_front_elbow_down_alike
+    t193 = t110 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t94 + t193)
+    up_right_front_elbow_down_alike = t172 * t192 - t170 * ahead_1_right_front_elbow_down_alike
+    t194 = t172 * ahead_1_right_front_elbow_down_alike + t170 * t192
+    t195 = np.arctan2(up_right_front_elbow_down_alike, -t194)
+    t196 = _runtime.select(folded_right_front_elbow_down_alike, t189, t195)
+    t197 = _runtime.wrap_cut(t196) + t187
+    t198 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t199 = _runtime.select(short_right, 0.0, t190 * t198)
+    t200 = _runtime.wrap_cut(_runtime.wrap(t114 + t199))
+    t201 = t200 + t187
+    t202 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t202 <= t105
+    M_left_front_elbow_down_alike = np.maximum(t186, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t180, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t204 = t110 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t94 + t204)
-    t205 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t203 = t110 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t94 + t203)
+    t204 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t206 = t191 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t206 / whole_left_front_elbow_down_alike)
-    t207 = fore_arm * s_bend_left_front_elbow_down_alike
-    t208 = r_left_front_elbow_down_alike * t207
-    t209 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t210 = h_left_front_elbow_down_alike * t207
-    t211 = _runtime.select(folded_left_front_elbow_down_alike, t190, np.arctan2(t205 - t208, t209 + t210))
-    t212 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t213 = _runtime.select(short_right, 0.0, t191 * t212)
-    t214 = t125 + t188
-    t215 = _runtime.select(folded_left_front_elbow_down_alike, t190, np.arctan2(t205 + t208, t209 - t210))
-    t216 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    t205 = t190 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t205 / whole_left_front_elbow_down_alike)
+    t206 = fore_arm * s_bend_left_front_elbow_down_alike
+    t207 = r_left_front_elbow_down_alike * t206
+    t208 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t209 = h_left_front_elbow_down_alike * t206
+    t210 = _runtime.select(folded_left_front_elbow_down_alike, t189, np.arctan2(t204 - t207, t208 + t209))
+    t211 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t212 = _runtime.select(short_right, 0.0, t190 * t211)
+    t213 = t125 + t187
+    t214 = _runtime.select(folded_left_front_elbow_down_alike, t189, np.arctan2(t204 + t207, t208 - t209))
+    t215 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
     c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t35 + t36) / h))
     s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t37 - t38) / h)
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
-    t217 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    square_rear_elbow_up_alike = t33 + t217
-    t218 = t31 - square_rear_elbow_up_alike
-    t219 = square_rear_elbow_up_alike - t43
-    t220 = t26 & (t30 <= t218) & (-t42 <= t219)
-    N_rear_elbow_up_alike = np.maximum(t218, 0.0)
-    M_rear_elbow_up_alike = np.maximum(t219, 0.0)
-    t221 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
+    t216 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    square_rear_elbow_up_alike = t33 + t216
+    t217 = t31 - square_rear_elbow_up_alike
+    t218 = square_rear_elbow_up_alike - t43
+    t219 = t26 & (t30 <= t217) & (-t42 <= t218)
+    N_rear_elbow_up_alike = np.maximum(t217, 0.0)
+    M_rear_elbow_up_alike = np.maximum(t218, 0.0)
+    t220 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
     whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t221 / whole_rear_elbow_up_alike))
-    t222 = s_lag * c_bend_rear_elbow_up_alike
-    t223 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t223 / whole_rear_elbow_up_alike)
-    t224 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t222 + t224
-    t225 = c_lag * c_bend_rear_elbow_up_alike
-    t226 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t225 - t226
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t220 / whole_rear_elbow_up_alike))
+    t221 = s_lag * c_bend_rear_elbow_up_alike
+    t222 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t222 / whole_rear_elbow_up_alike)
+    t223 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t221 + t223
+    t224 = c_lag * c_bend_rear_elbow_up_alike
+    t225 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t224 - t225
     straight_mid_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
-    t227 = 0.0 <= straight_mid_rear_elbow_up_alike
-    t228 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
-    t229 = _runtime.select(t227, straight_mid_rear_elbow_up_alike, -straight_mid_rear_elbow_up_alike)
-    large_mid_rear_elbow_up_alike = fore_arm + t229
-    small_mid_rear_elbow_up_alike = t228 * t228 / large_mid_rear_elbow_up_alike
-    t230 = _runtime.select(t227, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
+    t226 = 0.0 <= straight_mid_rear_elbow_up_alike
+    t227 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
+    t228 = _runtime.select(t226, straight_mid_rear_elbow_up_alike, -straight_mid_rear_elbow_up_alike)
+    large_mid_rear_elbow_up_alike = fore_arm + t228
+    small_mid_rear_elbow_up_alike = t227 * t227 / large_mid_rear_elbow_up_alike
+    t229 = _runtime.select(t226, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
     folded_rear_elbow_up_alike = t55 + np.abs(outward_rear_elbow_up_alike) <= t47
-    t231 = t56 * s_bend_rear_elbow_up_alike
-    t232 = t29 * M_rear_elbow_up_alike / whole_rear_elbow_up_alike
-    ahead_1_rear_elbow_up_alike = _runtime.select(short, t27, t41 + t232)
-    t233 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
-    out_rear_elbow_up_alike = t231 + t233
-    t234 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
-    t235 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
-    t236 = t32 * ahead_1_rear_elbow_up_alike
-    t237 = t235 - t236
-    norm_rear_elbow_up_alike = np.sqrt(t234 + t237 * t237)
-    t238 = out_rear_elbow_up_alike / norm_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t238)
-    t239 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t240 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t237 / norm_rear_elbow_up_alike)
-    ctheta23A_rear_elbow_up_alike = t239 + s_relative_rear_elbow_up_alike * t240
-    t241 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t242 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t243 = c_relative_rear_elbow_up_alike * t240 - t242
-    t244 = d * (t241 + s_psi * t243 / t4)
-    t245 = s_psi * ctheta23A_rear_elbow_up_alike / t4 - s_phi * t243 / c_phi
-    t246 = d * t245
-    gap_rear_elbow_up_alike = t244 * t244 + t246 * t246
-    t247 = t28 * t230 - gap_rear_elbow_up_alike
-    t248 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t243
-    point_11_rear_elbow_up_alike = t248 + a3 * ctheta23A_rear_elbow_up_alike
-    t249 = L1 * t240 + L2 * ctheta23A_rear_elbow_up_alike
-    t250 = t249 + a3 * t243
-    t251 = 2.0 * t244 * point_11_rear_elbow_up_alike - 2.0 * t246 * t250
-    room_right_rear_elbow_up_alike = t247 + t251
+    t230 = t56 * s_bend_rear_elbow_up_alike
+    t231 = t29 * M_rear_elbow_up_alike / whole_rear_elbow_up_alike
+    ahead_1_rear_elbow_up_alike = _runtime.select(short, t27, t41 + t231)
+    t232 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
+    out_rear_elbow_up_alike = t230 + t232
+    t233 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
+    t234 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
+    t235 = t32 * ahead_1_rear_elbow_up_alike
+    t236 = t234 - t235
+    norm_rear_elbow_up_alike = np.sqrt(t233 + t236 * t236)
+    t237 = out_rear_elbow_up_alike / norm_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t237)
+    t238 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t239 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t236 / norm_rear_elbow_up_alike)
+    ctheta23A_rear_elbow_up_alike = t238 + s_relative_rear_elbow_up_alike * t239
+    t240 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
+    t241 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t242 = c_relative_rear_elbow_up_alike * t239 - t241
+    t243 = d * (t240 + s_psi * t242 / t4)
+    t244 = s_psi * ctheta23A_rear_elbow_up_alike / t4 - s_phi * t242 / c_phi
+    t245 = d * t244
+    gap_rear_elbow_up_alike = t243 * t243 + t245 * t245
+    t246 = t28 * t229 - gap_rear_elbow_up_alike
+    t247 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t242
+    point_11_rear_elbow_up_alike = t247 + a3 * ctheta23A_rear_elbow_up_alike
+    t248 = L1 * t239 + L2 * ctheta23A_rear_elbow_up_alike
+    t249 = t248 + a3 * t242
+    t250 = 2.0 * t243 * point_11_rear_elbow_up_alike - 2.0 * t245 * t249
+    room_right_rear_elbow_up_alike = t246 + t250
     spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t68
     drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
-    t252 = 2.0 * drawn_rear_elbow_up_alike
-    t253 = t246 + t250
-    t254 = t244 - point_11_rear_elbow_up_alike
-    t255 = ctheta2A_rear_elbow_up_alike * t253 + t240 * t254
-    t256 = t252 * t255
+    t251 = 2.0 * drawn_rear_elbow_up_alike
+    t252 = t245 + t249
+    t253 = t243 - point_11_rear_elbow_up_alike
+    t254 = ctheta2A_rear_elbow_up_alike * t252 + t239 * t253
+    t255 = t251 * t254
     tilt_rear_elbow_up_alike = L_2W * c_relative_rear_elbow_up_alike - a_3W * s_relative_rear_elbow_up_alike
-    t257 = t73 + np.abs(tilt_rear_elbow_up_alike)
-    t258 = _runtime.select(spent_right_rear_elbow_up_alike, size * np.abs(-t256) / t257, 0.0)
-    t259 = -(_runtime.FEASIBILITY * (t46 + t258)) <= room_right_rear_elbow_up_alike
-    room_left_rear_elbow_up_alike = t247 - t251
+    t256 = t73 + np.abs(tilt_rear_elbow_up_alike)
+    t257 = _runtime.select(spent_right_rear_elbow_up_alike, size * np.abs(-t255) / t256, 0.0)
+    t258 = -(_runtime.FEASIBILITY * (t46 + t257)) <= room_right_rear_elbow_up_alike
+    room_left_rear_elbow_up_alike = t246 - t250
     spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t68
-    h_left_0_rear_elbow_up_alike = t246 - t250
-    t260 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t244 + point_11_rear_elbow_up_alike
-    slope_left_rear_elbow_up_alike = t252 * (t260 + t240 * r_left_0_rear_elbow_up_alike)
-    t261 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t262 = _runtime.select(spent_left_rear_elbow_up_alike, t261 / t257, 0.0)
-    t263 = -(_runtime.FEASIBILITY * (t46 + t262)) <= room_left_rear_elbow_up_alike
-    t264 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
-    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t256 * t264 / (2.0 * (t82 + t256 * t256)), 0.0)
-    t265 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
-    t266 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t267 = slope_left_rear_elbow_up_alike * t265 / (2.0 * (t82 + t266))
-    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t267, 0.0)
+    h_left_0_rear_elbow_up_alike = t245 - t249
+    t259 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t243 + point_11_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t251 * (t259 + t239 * r_left_0_rear_elbow_up_alike)
+    t260 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t261 = _runtime.select(spent_left_rear_elbow_up_alike, t260 / t256, 0.0)
+    t262 = -(_runtime.FEASIBILITY * (t46 + t261)) <= room_left_rear_elbow_up_alike
+    t263 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
+    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t255 * t263 / (2.0 * (t82 + t255 * t255)), 0.0)
+    t264 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
+    t265 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t266 = slope_left_rear_elbow_up_alike * t264 / (2.0 * (t82 + t265))
+    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t266, 0.0)
     turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
-    t268 = t251 - t256 * turn_rear_elbow_up_alike
-    t269 = t247 + t268
-    t270 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t271 = ctheta2A_rear_elbow_up_alike * t270
-    t272 = t253 + t271 + t254 * turn_rear_elbow_up_alike
-    t273 = t240 * t270
-    t274 = t254 - t253 * turn_rear_elbow_up_alike + t273
-    t275 = t272 * t272 + t274 * t274
-    t276 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t277 = _runtime.select(t227, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
-    M_mid_rear_elbow_up_alike = t28 * t277
-    t278 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
-    t279 = _runtime.select(t81 * t275 < t276, t95 - t275, t268 - t278)
-    t280 = t220 & t259 & t263 & (t80 <= t269) & (t80 <= -t279)
-    t281 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t282 = t251 - t281
-    t283 = t247 - t282
-    t284 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t271 + t284
-    t285 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    t286 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t273 - t286
-    t287 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t288 = t285 + t287
-    t289 = _runtime.select(t81 * t288 < t276, t288 - t95, t278 + t282)
-    unreachable_3 = np.logical_not(t280 & (t80 <= t283) & (t80 <= t289))
-    t290 = _runtime.poison(invalid | unreachable_3)
-    t291 = t216 + t290
-    folded_right_rear_elbow_up_alike = np.abs(-t272) + np.abs(-t274) <= t105
-    t292 = np.arctan2(-t240, ctheta2A_rear_elbow_up_alike)
-    t293 = 2.0 * _runtime.select(0.0 <= -t228, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t269, t108)
+    t267 = t255 * turn_rear_elbow_up_alike
+    t268 = room_right_rear_elbow_up_alike - t267
+    t269 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t270 = ctheta2A_rear_elbow_up_alike * t269
+    t271 = t252 + t270 + t253 * turn_rear_elbow_up_alike
+    t272 = t239 * t269
+    t273 = t253 - t252 * turn_rear_elbow_up_alike + t272
+    t274 = t271 * t271 + t273 * t273
+    t275 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t276 = _runtime.select(t226, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
+    M_mid_rear_elbow_up_alike = t28 * t276
+    t277 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
+    t278 = _runtime.select(t81 * t274 < t275, t95 - t274, t250 - t267 - t277)
+    t279 = t219 & t258 & t262 & (t80 <= t268) & (t80 <= -t278)
+    t280 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t281 = room_left_rear_elbow_up_alike + t280
+    t282 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t270 + t282
+    t283 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    t284 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t272 - t284
+    t285 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t286 = t283 + t285
+    t287 = _runtime.select(t81 * t286 < t275, t286 - t95, t250 + t277 - t280)
+    unreachable_3 = np.logical_not(t279 & (t80 <= t281) & (t80 <= t287))
+    t288 = _runtime.poison(invalid | unreachable_3)
+    t289 = t215 + t288
+    folded_right_rear_elbow_up_alike = np.abs(-t271) + np.abs(-t273) <= t105
+    t290 = np.arctan2(-t239, ctheta2A_rear_elbow_up_alike)
+    t291 = 2.0 * _runtime.select(0.0 <= -t227, 1.0, -1.0)
+    N_right_rear_elbow_up_alike = np.maximum(t268, t108)
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(-t279, t108)
+    M_right_rear_elbow_up_alike = np.maximum(-t278, t108)
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t294 = t293 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    t292 = t291 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t294 / whole_right_rear_elbow_up_alike)
-    t295 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t296 = t110 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t94 + t296)
-    up_right_rear_elbow_up_alike = t274 * t295 - t272 * ahead_1_right_rear_elbow_up_alike
-    t297 = t274 * ahead_1_right_rear_elbow_up_alike + t272 * t295
-    t298 = np.arctan2(up_right_rear_elbow_up_alike, -t297)
-    t299 = _runtime.select(folded_right_rear_elbow_up_alike, t292, t298)
-    t300 = _runtime.wrap_cut(t299) + t290
-    t301 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t302 = _runtime.select(short_right, 0.0, t293 * t301)
-    t303 = _runtime.wrap_cut(_runtime.wrap(t114 + t302))
-    t304 = t303 + t290
-    t305 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t305 <= t105
-    M_left_rear_elbow_up_alike = np.maximum(t289, 0.0)
-    N_left_rear_elbow_up_alike = np.maximum(t283, 0.0)
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t292 / whole_right_rear_elbow_up_alike)
+    t293 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t294 = t110 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t94 + t294)
+    up_right_rear_elbow_up_alike = t273 * t293 - t271 * ahead_1_right_rear_elbow_up_alike
+    t295 = t273 * ahead_1_right_rear_elbow_up_alike + t271 * t293
+    t296 = np.arctan2(up_right_rear_elbow_up_alike, -t295)
+    t297 = _runtime.select(folded_right_rear_elbow_up_alike, t290, t296)
+    t298 = _runtime.wrap_cut(t297) + t288
+    t299 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t300 = _runtime.select(short_right, 0.0, t291 * t299)
+    t301 = _runtime.wrap_cut(_runtime.wrap(t114 + t300))
+    t302 = t301 + t288
+    t303 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t303 <= t105
+    M_left_rear_elbow_up_alike = np.maximum(t287, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t281, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t306 = t110 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t94 + t306)
-    t307 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t304 = t110 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t94 + t304)
+    t305 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t308 = t293 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t308 / whole_left_rear_elbow_up_alike)
-    t309 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t310 = r_left_rear_elbow_up_alike * t309
-    t311 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t312 = h_left_rear_elbow_up_alike * t309
-    t313 = _runtime.select(folded_left_rear_elbow_up_alike, t292, np.arctan2(t307 - t310, t311 + t312))
-    t314 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t315 = _runtime.select(short_right, 0.0, t293 * t314)
-    t316 = t125 + t290
-    t317 = _runtime.select(folded_left_rear_elbow_up_alike, t292, np.arctan2(t307 + t310, t311 - t312))
-    s_relative_rear_elbow_down_alike = t222 - t224
-    c_relative_rear_elbow_down_alike = t225 + t226
+    t306 = t291 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t306 / whole_left_rear_elbow_up_alike)
+    t307 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t308 = r_left_rear_elbow_up_alike * t307
+    t309 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t310 = h_left_rear_elbow_up_alike * t307
+    t311 = _runtime.select(folded_left_rear_elbow_up_alike, t290, np.arctan2(t305 - t308, t309 + t310))
+    t312 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t313 = _runtime.select(short_right, 0.0, t291 * t312)
+    t314 = t125 + t288
+    t315 = _runtime.select(folded_left_rear_elbow_up_alike, t290, np.arctan2(t305 + t308, t309 - t310))
+    s_relative_rear_elbow_down_alike = t221 - t223
+    c_relative_rear_elbow_down_alike = t224 + t225
     straight_mid_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
-    t318 = 0.0 <= straight_mid_rear_elbow_down_alike
-    t319 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
-    t320 = _runtime.select(t318, straight_mid_rear_elbow_down_alike, -straight_mid_rear_elbow_down_alike)
-    large_mid_rear_elbow_down_alike = fore_arm + t320
-    small_mid_rear_elbow_down_alike = t319 * t319 / large_mid_rear_elbow_down_alike
-    t321 = _runtime.select(t318, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
-    t322 = t231 - t233
-    up_rear_elbow_down_alike = t235 + t236
-    t323 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
-    norm_rear_elbow_down_alike = np.sqrt(t322 * t322 + t323)
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t322 / norm_rear_elbow_down_alike))
-    t324 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    t325 = up_rear_elbow_down_alike / norm_rear_elbow_down_alike
-    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t325)
-    t326 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t324 - t326
-    t327 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t328 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    t329 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t328 + t329
-    t330 = t327 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t331 = d * t330
-    t332 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t333 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t332
-    t334 = d * t333
-    gap_rear_elbow_down_alike = t331 * t331 + t334 * t334
-    t335 = t28 * t321 - gap_rear_elbow_down_alike
-    t336 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t336 + a3 * ctheta23A_rear_elbow_down_alike
-    t337 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t337 + a3 * stheta23A_rear_elbow_down_alike
-    t338 = 2.0 * t331 * point_11_rear_elbow_down_alike + 2.0 * t334 * point_21_rear_elbow_down_alike
-    room_right_rear_elbow_down_alike = t335 + t338
+    t316 = 0.0 <= straight_mid_rear_elbow_down_alike
+    t317 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
+    t318 = _runtime.select(t316, straight_mid_rear_elbow_down_alike, -straight_mid_rear_elbow_down_alike)
+    large_mid_rear_elbow_down_alike = fore_arm + t318
+    small_mid_rear_elbow_down_alike = t317 * t317 / large_mid_rear_elbow_down_alike
+    t319 = _runtime.select(t316, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
+    t320 = t230 - t232
+    up_rear_elbow_down_alike = t234 + t235
+    t321 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
+    norm_rear_elbow_down_alike = np.sqrt(t320 * t320 + t321)
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t320 / norm_rear_elbow_down_alike))
+    t322 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    t323 = up_rear_elbow_down_alike / norm_rear_elbow_down_alike
+    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t323)
+    t324 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t322 - t324
+    t325 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
+    t326 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t327 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t326 + t327
+    t328 = t325 - s_psi * stheta23A_rear_elbow_down_alike / t4
+    t329 = d * t328
+    t330 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
+    t331 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t330
+    t332 = d * t331
+    gap_rear_elbow_down_alike = t329 * t329 + t332 * t332
+    t333 = t28 * t319 - gap_rear_elbow_down_alike
+    t334 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t334 + a3 * ctheta23A_rear_elbow_down_alike
+    t335 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t335 + a3 * stheta23A_rear_elbow_down_alike
+    t336 = 2.0 * t329 * point_11_rear_elbow_down_alike + 2.0 * t332 * point_21_rear_elbow_down_alike
+    room_right_rear_elbow_down_alike = t333 + t336
     spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t68
     drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
-    t339 = 2.0 * drawn_rear_elbow_down_alike
-    t340 = t334 - point_21_rear_elbow_down_alike
-    t341 = t331 - point_11_rear_elbow_down_alike
-    t342 = ctheta2A_rear_elbow_down_alike * t340 - stheta2A_rear_elbow_down_alike * t341
-    t343 = t339 * t342
+    t337 = 2.0 * drawn_rear_elbow_down_alike
+    t338 = t332 - point_21_rear_elbow_down_alike
+    t339 = t329 - point_11_rear_elbow_down_alike
+    t340 = ctheta2A_rear_elbow_down_alike * t338 - stheta2A_rear_elbow_down_alike * t339
+    t341 = t337 * t340
     tilt_rear_elbow_down_alike = L_2W * c_relative_rear_elbow_down_alike - a_3W * s_relative_rear_elbow_down_alike
-    t344 = t73 + np.abs(tilt_rear_elbow_down_alike)
-    t345 = _runtime.select(spent_right_rear_elbow_down_alike, size * np.abs(-t343) / t344, 0.0)
-    t346 = -(_runtime.FEASIBILITY * (t46 + t345)) <= room_right_rear_elbow_down_alike
-    room_left_rear_elbow_down_alike = t335 - t338
+    t342 = t73 + np.abs(tilt_rear_elbow_down_alike)
+    t343 = _runtime.select(spent_right_rear_elbow_down_alike, size * np.abs(-t341) / t342, 0.0)
+    t344 = -(_runtime.FEASIBILITY * (t46 + t343)) <= room_right_rear_elbow_down_alike
+    room_left_rear_elbow_down_alike = t333 - t336
     spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t68
-    h_left_0_rear_elbow_down_alike = t334 + point_21_rear_elbow_down_alike
-    t347 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t331 + point_11_rear_elbow_down_alike
-    t348 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t339 * (t347 - t348)
-    t349 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t350 = _runtime.select(spent_left_rear_elbow_down_alike, t349 / t344, 0.0)
-    t351 = -(_runtime.FEASIBILITY * (t46 + t350)) <= room_left_rear_elbow_down_alike
-    t352 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
-    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t343 * t352 / (2.0 * (t82 + t343 * t343)), 0.0)
-    t353 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
-    t354 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t355 = slope_left_rear_elbow_down_alike * t353 / (2.0 * (t82 + t354))
-    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t355, 0.0)
+    h_left_0_rear_elbow_down_alike = t332 + point_21_rear_elbow_down_alike
+    t345 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t329 + point_11_rear_elbow_down_alike
+    t346 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t337 * (t345 - t346)
+    t347 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t348 = _runtime.select(spent_left_rear_elbow_down_alike, t347 / t342, 0.0)
+    t349 = -(_runtime.FEASIBILITY * (t46 + t348)) <= room_left_rear_elbow_down_alike
+    t350 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
+    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t341 * t350 / (2.0 * (t82 + t341 * t341)), 0.0)
+    t351 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
+    t352 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t353 = slope_left_rear_elbow_down_alike * t351 / (2.0 * (t82 + t352))
+    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t353, 0.0)
     turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
-    t356 = t338 - t343 * turn_rear_elbow_down_alike
-    t357 = t335 + t356
-    t358 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t359 = ctheta2A_rear_elbow_down_alike * t358
-    t360 = t340 + t359 + t341 * turn_rear_elbow_down_alike
-    t361 = stheta2A_rear_elbow_down_alike * t358
-    t362 = t341 - t340 * turn_rear_elbow_down_alike - t361
-    t363 = t360 * t360 + t362 * t362
-    t364 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t365 = _runtime.select(t318, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
-    M_mid_rear_elbow_down_alike = t28 * t365
-    t366 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
-    t367 = _runtime.select(t81 * t363 < t364, t95 - t363, t356 - t366)
-    t368 = t220 & t346 & t351 & (t80 <= t357) & (t80 <= -t367)
-    t369 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t370 = t338 - t369
-    t371 = t335 - t370
-    t372 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t359 + t372
-    t373 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    t374 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t361 - t374
-    t375 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t376 = t373 + t375
-    t377 = _runtime.select(t81 * t376 < t364, t376 - t95, t366 + t370)
-    unreachable_4 = np.logical_not(t368 & (t80 <= t371) & (t80 <= t377))
-    t378 = _runtime.poison(invalid | unreachable_4)
-    t379 = t216 + t378
-    folded_right_rear_elbow_down_alike = np.abs(-t360) + np.abs(-t362) <= t105
-    t380 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    t381 = 2.0 * _runtime.select(0.0 <= -t319, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t357, t108)
+    t354 = t341 * turn_rear_elbow_down_alike
+    t355 = room_right_rear_elbow_down_alike - t354
+    t356 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t357 = ctheta2A_rear_elbow_down_alike * t356
+    t358 = t338 + t357 + t339 * turn_rear_elbow_down_alike
+    t359 = stheta2A_rear_elbow_down_alike * t356
+    t360 = t339 - t338 * turn_rear_elbow_down_alike - t359
+    t361 = t358 * t358 + t360 * t360
+    t362 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t363 = _runtime.select(t316, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
+    M_mid_rear_elbow_down_alike = t28 * t363
+    t364 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
+    t365 = _runtime.select(t81 * t361 < t362, t95 - t361, t336 - t354 - t364)
+    t366 = t219 & t344 & t349 & (t80 <= t355) & (t80 <= -t365)
+    t367 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t368 = room_left_rear_elbow_down_alike + t367
+    t369 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t357 + t369
+    t370 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    t371 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t359 - t371
+    t372 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t373 = t370 + t372
+    t374 = _runtime.select(t81 * t373 < t362, t373 - t95, t336 + t364 - t367)
+    unreachable_4 = np.logical_not(t366 & (t80 <= t368) & (t80 <= t374))
+    t375 = _runtime.poison(invalid | unreachable_4)
+    t376 = t215 + t375
+    folded_right_rear_elbow_down_alike = np.abs(-t358) + np.abs(-t360) <= t105
+    t377 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    t378 = 2.0 * _runtime.select(0.0 <= -t317, 1.0, -1.0)
+    N_right_rear_elbow_down_alike = np.maximum(t355, t108)
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(-t367, t108)
+    M_right_rear_elbow_down_alike = np.maximum(-t365, t108)
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t382 = t381 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    t379 = t378 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t382 / whole_right_rear_elbow_down_alike)
-    t383 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t384 = t110 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t94 + t384)
-    up_right_rear_elbow_down_alike = t362 * t383 - t360 * ahead_1_right_rear_elbow_down_alike
-    t385 = t362 * ahead_1_right_rear_elbow_down_alike + t360 * t383
-    t386 = np.arctan2(up_right_rear_elbow_down_alike, -t385)
-    t387 = _runtime.select(folded_right_rear_elbow_down_alike, t380, t386)
-    t388 = _runtime.wrap_cut(t387) + t378
-    t389 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t390 = _runtime.select(short_right, 0.0, t381 * t389)
-    t391 = _runtime.wrap_cut(_runtime.wrap(t114 + t390))
-    t392 = t391 + t378
-    t393 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t393 <= t105
-    M_left_rear_elbow_down_alike = np.maximum(t377, 0.0)
-    N_left_rear_elbow_down_alike = np.maximum(t371, 0.0)
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t379 / whole_right_rear_elbow_down_alike)
+    t380 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t381 = t110 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t94 + t381)
+    up_right_rear_elbow_down_alike = t360 * t380 - t358 * ahead_1_right_rear_elbow_down_alike
+    t382 = t360 * ahead_1_right_rear_elbow_down_alike + t358 * t380
+    t383 = np.arctan2(up_right_rear_elbow_down_alike, -t382)
+    t384 = _runtime.select(folded_right_rear_elbow_down_alike, t377, t383)
+    t385 = _runtime.wrap_cut(t384) + t375
+    t386 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t387 = _runtime.select(short_right, 0.0, t378 * t386)
+    t388 = _runtime.wrap_cut(_runtime.wrap(t114 + t387))
+    t389 = t388 + t375
+    t390 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t390 <= t105
+    M_left_rear_elbow_down_alike = np.maximum(t374, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t368, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t394 = t110 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t94 + t394)
-    t395 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t391 = t110 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t94 + t391)
+    t392 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t396 = t381 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t396 / whole_left_rear_elbow_down_alike)
-    t397 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t398 = r_left_rear_elbow_down_alike * t397
-    t399 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t400 = h_left_rear_elbow_down_alike * t397
-    t401 = _runtime.select(folded_left_rear_elbow_down_alike, t380, np.arctan2(t395 - t398, t399 + t400))
-    t402 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t403 = _runtime.select(short_right, 0.0, t381 * t402)
-    t404 = t125 + t378
-    t405 = _runtime.select(folded_left_rear_elbow_down_alike, t380, np.arctan2(t395 + t398, t399 - t400))
-    t406 = nowhere | folded | short
+    t393 = t378 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t393 / whole_left_rear_elbow_down_alike)
+    t394 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t395 = r_left_rear_elbow_down_alike * t394
+    t396 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t397 = h_left_rear_elbow_down_alike * t394
+    t398 = _runtime.select(folded_left_rear_elbow_down_alike, t377, np.arctan2(t392 - t395, t396 + t397))
+    t399 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t400 = _runtime.select(short_right, 0.0, t378 * t399)
+    t401 = t125 + t375
+    t402 = _runtime.select(folded_left_rear_elbow_down_alike, t377, np.arctan2(t392 + t395, t396 - t397))
+    t403 = nowhere | folded | short
     square_mid = t95 + M_mid
-    t407 = 10000.0 * t81
-    pole = M_mid * square_mid <= _runtime.VANISHING * (t407 * gap)
-    t408 = _runtime.VANISHING * t407
-    t409 = t406 | pole | (square_mid <= t408) | folded_right
-    t410 = _runtime.status(invalid, unreachable, t409 | short_right | folded_left)
+    t404 = 10000.0 * t81
+    pole = M_mid * square_mid <= _runtime.VANISHING * (t404 * gap)
+    t405 = _runtime.VANISHING * t404
+    t406 = t403 | pole | (square_mid <= t405) | folded_right
+    t407 = _runtime.status(invalid, unreachable, t406 | short_right | folded_left)
     square_mid_front_elbow_down_alike = t95 + M_mid_front_elbow_down_alike
-    t411 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
-    t412 = _runtime.VANISHING * (t407 * gap_front_elbow_down_alike)
-    t413 = t406 | (t411 <= t412) | (square_mid_front_elbow_down_alike <= t408)
-    t414 = t413 | folded_right_front_elbow_down_alike | short_right
-    t415 = _runtime.status(invalid, unreachable_2, t414 | folded_left_front_elbow_down_alike)
-    t416 = nowhere | folded_rear_elbow_up_alike | short
+    t408 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t409 = _runtime.VANISHING * (t404 * gap_front_elbow_down_alike)
+    t410 = t403 | (t408 <= t409) | (square_mid_front_elbow_down_alike <= t405)
+    t411 = t410 | folded_right_front_elbow_down_alike | short_right
+    t412 = _runtime.status(invalid, unreachable_2, t411 | folded_left_front_elbow_down_alike)
+    t413 = nowhere | folded_rear_elbow_up_alike | short
     square_mid_rear_elbow_up_alike = t95 + M_mid_rear_elbow_up_alike
-    t417 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
-    t418 = _runtime.VANISHING * (t407 * gap_rear_elbow_up_alike)
-    t419 = t416 | (t417 <= t418) | (square_mid_rear_elbow_up_alike <= t408)
-    t420 = t419 | folded_right_rear_elbow_up_alike | short_right
-    t421 = _runtime.status(invalid, unreachable_3, t420 | folded_left_rear_elbow_up_alike)
+    t414 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
+    t415 = _runtime.VANISHING * (t404 * gap_rear_elbow_up_alike)
+    t416 = t413 | (t414 <= t415) | (square_mid_rear_elbow_up_alike <= t405)
+    t417 = t416 | folded_right_rear_elbow_up_alike | short_right
+    t418 = _runtime.status(invalid, unreachable_3, t417 | folded_left_rear_elbow_up_alike)
     square_mid_rear_elbow_down_alike = t95 + M_mid_rear_elbow_down_alike
-    t422 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
-    t423 = _runtime.VANISHING * (t407 * gap_rear_elbow_down_alike)
-    t424 = t416 | (t422 <= t423) | (square_mid_rear_elbow_down_alike <= t408)
-    t425 = t424 | folded_right_rear_elbow_down_alike | short_right
-    t426 = _runtime.status(invalid, unreachable_4, t425 | folded_left_rear_elbow_down_alike)
+    t419 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
+    t420 = _runtime.VANISHING * (t404 * gap_rear_elbow_down_alike)
+    t421 = t413 | (t419 <= t420) | (square_mid_rear_elbow_down_alike <= t405)
+    t422 = t421 | folded_right_rear_elbow_down_alike | short_right
+    t423 = _runtime.status(invalid, unreachable_4, t422 | folded_left_rear_elbow_down_alike)
     return (
         t104,
         t113,
@@ -1814,50 +1811,50 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap_cut(t127) + t103,
         _runtime.wrap(t114 - t124) + t103,
         t126,
-        t189,
-        t198,
-        t202,
-        _runtime.wrap_cut(t211) + t188,
-        _runtime.wrap(t114 + t213) + t188,
-        t214,
-        t189,
-        t198,
-        t202,
-        _runtime.wrap_cut(t215) + t188,
-        _runtime.wrap(t114 - t213) + t188,
-        t214,
-        t291,
-        t300,
-        t304,
-        _runtime.wrap_cut(t313) + t290,
-        _runtime.wrap(t114 + t315) + t290,
-        t316,
-        t291,
-        t300,
-        t304,
-        _runtime.wrap_cut(t317) + t290,
-        _runtime.wrap(t114 - t315) + t290,
-        t316,
-        t379,
-        t388,
-        t392,
-        _runtime.wrap_cut(t401) + t378,
-        _runtime.wrap(t114 + t403) + t378,
-        t404,
-        t379,
-        t388,
-        t392,
-        _runtime.wrap_cut(t405) + t378,
-        _runtime.wrap(t114 - t403) + t378,
-        t404,
-        t410,
-        t410,
-        t415,
-        t415,
-        t421,
-        t421,
-        t426,
-        t426,
+        t188,
+        t197,
+        t201,
+        _runtime.wrap_cut(t210) + t187,
+        _runtime.wrap(t114 + t212) + t187,
+        t213,
+        t188,
+        t197,
+        t201,
+        _runtime.wrap_cut(t214) + t187,
+        _runtime.wrap(t114 - t212) + t187,
+        t213,
+        t289,
+        t298,
+        t302,
+        _runtime.wrap_cut(t311) + t288,
+        _runtime.wrap(t114 + t313) + t288,
+        t314,
+        t289,
+        t298,
+        t302,
+        _runtime.wrap_cut(t315) + t288,
+        _runtime.wrap(t114 - t313) + t288,
+        t314,
+        t376,
+        t385,
+        t389,
+        _runtime.wrap_cut(t398) + t375,
+        _runtime.wrap(t114 + t400) + t375,
+        t401,
+        t376,
+        t385,
+        t389,
+        _runtime.wrap_cut(t402) + t375,
+        _runtime.wrap(t114 - t400) + t375,
+        t401,
+        t407,
+        t407,
+        t412,
+        t412,
+        t418,
+        t418,
+        t423,
+        t423,
     )
 
 
@@ -1883,7 +1880,9 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
     UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
         axis than L_theta, or an arm is out of reach.
     SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
-        upper arm is returned beside that of the virtual arm).
+        upper arm is returned beside that of the virtual arm), or a virtual arm that is folded
+        or without length, up to what the joints can tell: they then hold the tip, yaw and roll
+        to fewer digits.
     INVALID: d, L1, or both L2 and a3 are zero.
     A straight right arm is returned bent by a few units in the last place, so that fk can read
         the side.

@@ -388,11 +388,11 @@ def two_sines(
     which decides how far the equation may be missed.
     """
     x, y = unknowns
-    size = sp.sqrt(u[0] ** 2 + u[1] ** 2)
-    size = size if size.is_Symbol else program.let("size_u", size, nonnegative=True)
-    area = program.let("area_uv", (u[0] * v[1] - u[1] * v[0]) / size)
+    area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
     sigma = program.let("sigma_uv", sp.Piecewise((1, area >= 0), (-1, True)))
     start = len(program.body)
+    size = sp.sqrt(u[0] ** 2 + u[1] ** 2)
+    size = size if size.is_Symbol else program.let("size_u", size, nonnegative=True)
     aside = program.let("v_across_u", sigma * (u[0] * v[1] - u[1] * v[0]) / size)
     lean = program.let("v_along_u", (u[0] * v[0] + u[1] * v[1]) / size)
     ahead = program.let("p_along_u", (u[0] * p[0] + u[1] * p[1]) / size)

@@ -55,4 +55,4 @@ def check_robot(name: str) -> None:
         raise ValueError(f"the name {name} is taken; choose another, such as {name}_0")
 
 
-__all__ = ["check_robot", "check_symbol", "check_text"]
+__all__ = ["C_WORDS", "check_robot", "check_symbol", "check_text"]

@@ -45,11 +45,6 @@ class Pair:
         return {sp.sin(angle): self.s, sp.cos(angle): self.c}
 
 
-def of_angle(angle: sp.Expr) -> Pair:
-    """The pair of an angle that is given."""
-    return Pair(sp.sin(angle), sp.cos(angle))
-
-
 def direction(y: sp.Expr, x: sp.Expr, length: sp.Expr, undefined: sp.Basic = sp.false) -> Pair:
     """The pair of ``atan2(y, x)`` for a vector of the given length; zero where it is undefined."""
     return Pair(choose(undefined, 0, y / length), choose(undefined, 1, x / length))

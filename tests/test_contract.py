@@ -450,6 +450,13 @@ def test_wrist_rejects_what_is_no_rotation(wrist) -> None:
         assert (solutions.status == INVALID).all() and np.isnan(solutions.q).all()
 
 
+@pytest.mark.parametrize("d6", [np.nan, np.inf])
+def test_wrist_rejects_an_offset_that_is_none(wrist, d6: float) -> None:
+    """Its inverse does not need the offset, but there is no such wrist."""
+    solutions = wrist.ik(wrist.fk([0.1, 0.2, 0.3]), wrist.Parameters(d6))
+    assert (solutions.status == INVALID).all() and np.isnan(solutions.q).all()
+
+
 def test_wrist_accepts_single_precision(wrist) -> None:
     R = wrist.fk([0.1, 0.2, 0.3]).astype(np.float32)
     assert (wrist.ik(R).status == OK).all()

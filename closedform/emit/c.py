@@ -22,6 +22,7 @@ from closedform.emit.text import WIDTH, banner, describe, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
 from closedform.lower.graph import Node, hardly_ever
+from closedform.names import C_WORDS
 from closedform.tolerances import DOUBLE, FLOAT
 
 LANES = 8
@@ -38,44 +39,7 @@ RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
 LOCALS = frozenset(
     ["params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start"]
 ) | frozenset(["single", "opposite", "adjacent", "angles"])
-RESERVED = LOCALS | frozenset(
-    [
-        "auto",
-        "break",
-        "case",
-        "char",
-        "const",
-        "continue",
-        "default",
-        "do",
-        "double",
-        "else",
-        "enum",
-        "extern",
-        "float",
-        "for",
-        "goto",
-        "if",
-        "inline",
-        "int",
-        "long",
-        "register",
-        "restrict",
-        "return",
-        "short",
-        "signed",
-        "sizeof",
-        "static",
-        "struct",
-        "switch",
-        "typedef",
-        "union",
-        "unsigned",
-        "void",
-        "volatile",
-        "while",
-    ]
-)
+RESERVED = LOCALS | C_WORDS
 
 
 class CPrinter(Printer):

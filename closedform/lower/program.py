@@ -231,11 +231,13 @@ class _Branch:
     def _valid_input(self) -> list[Node]:
         """Every input and parameter is finite, and no length is negative.
 
-        An input that a requirement compares needs no such test: it fails there.
+        What has a status tests parameters that it does not use too: dimensions that are none make
+        no robot.  An input that a requirement compares needs no such test: it fails there.
         """
         graph = self.graph
         used = {s for e in _expressions(self.function) for s in e.free_symbols}
-        parameters = [p for p in self.derivation.parameters if p.symbol in used]
+        judged = self.function.has_status
+        parameters = [p for p in self.derivation.parameters if judged or p.symbol in used]
         required = {
             s
             for statement in self.function.body

@@ -10,7 +10,7 @@
  *   jacobian_body: 2 multiply, 2 sincos
  *   determinant: 1 sincos
  *   singularities: 1 sincos
- *   ik: 30 compare and select, 26 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
+ *   ik: 32 compare and select, 26 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
  */
 #include "spherical_wrist.h"
 
@@ -356,9 +356,11 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
     }
 }
 
-CF_INLINE void spherical_wrist_ik_kernel(const int single, const real_t R[9], real_t q[6],
-    real_t status[2])
+CF_INLINE void spherical_wrist_ik_kernel(const int single,
+    const spherical_wrist_params *params,
+    const real_t R[9], real_t q[6], real_t status[2])
 {
+    const real_t d6 = params->d6;
     const real_t R11 = R[0];
     const real_t R12 = R[1];
     const real_t R13 = R[2];
@@ -372,18 +374,19 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single, const real_t R[9], re
     const int aligned = h <= CLOSEDFORM_VANISHING;
     const real_t s4 = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), R23 / h);
     const real_t c4 = cf_rarely(single, aligned, CLOSEDFORM_C(1.0), R13 / h);
-    const int t1 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
-    const int t2 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
-    const int t3 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
-    const real_t t4 = CLOSEDFORM_C(1.0) - R11 * R11 - R21 * R21 - R31 * R31;
-    const int t5 = cf_abs(t4) <= CLOSEDFORM_ROTATION;
-    const real_t t6 = CLOSEDFORM_C(1.0) - R12 * R12 - R22 * R22 - R32 * R32;
-    const int t7 = cf_abs(t6) <= CLOSEDFORM_ROTATION;
-    const int t8 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t1 & t2 & t3 & t5 & t7 & t8);
-    const real_t t9 = cf_poison(single, invalid);
+    const int t1 = cf_nought(d6) == 0;
+    const int t2 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
+    const int t3 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
+    const int t4 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
+    const real_t t5 = CLOSEDFORM_C(1.0) - R11 * R11 - R21 * R21 - R31 * R31;
+    const int t6 = cf_abs(t5) <= CLOSEDFORM_ROTATION;
+    const real_t t7 = CLOSEDFORM_C(1.0) - R12 * R12 - R22 * R22 - R32 * R32;
+    const int t8 = cf_abs(t7) <= CLOSEDFORM_ROTATION;
+    const int t9 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t1 & t2 & t3 & t4 & t6 & t8 & t9);
+    const real_t t10 = cf_poison(single, invalid);
     const real_t flip = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t t10 = cf_status(single, invalid, 0, aligned);
+    const real_t t11 = cf_status(single, invalid, 0, aligned);
     const real_t opposite[4] = { s4, R13 * c4 + R23 * s4, R11 * s4 - R21 * c4 };
     const real_t adjacent[4] = { c4, R33, R22 * c4 - R12 * s4 };
     real_t angles[4];
@@ -394,23 +397,22 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single, const real_t R[9], re
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
     }
-    q[0] = cf_wrap_cut(angles[0]) + t9;
-    q[1] = cf_wrap_cut(angles[1]) + t9;
-    q[2] = cf_wrap_cut(-angles[2]) + t9;
-    q[3] = cf_wrap(angles[0] + flip) + t9;
-    q[4] = cf_wrap_cut(-angles[1]) + t9;
-    q[5] = cf_wrap(flip - angles[2]) + t9;
-    status[0] = t10;
-    status[1] = t10;
+    q[0] = cf_wrap_cut(angles[0]) + t10;
+    q[1] = cf_wrap_cut(angles[1]) + t10;
+    q[2] = cf_wrap_cut(-angles[2]) + t10;
+    q[3] = cf_wrap(angles[0] + flip) + t10;
+    q[4] = cf_wrap_cut(-angles[1]) + t10;
+    q[5] = cf_wrap(flip - angles[2]) + t10;
+    status[0] = t11;
+    status[1] = t11;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_wrist_ik(const spherical_wrist_params *params,
     const real_t R[9], real_t q[6], uint8_t status[2])
 {
-    (void)params;
     real_t status_real[2];
-    spherical_wrist_ik_kernel(1, R, q, status_real);
+    spherical_wrist_ik_kernel(1, params, R, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -421,7 +423,7 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
     real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
-    (void)params;
+    const spherical_wrist_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[2][CLOSEDFORM_BLOCK];
@@ -430,7 +432,7 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
             const real_t R_i[9] = { R[start + i], R[R_stride + start + i], R[2 * R_stride + start + i], R[3 * R_stride + start + i], R[4 * R_stride + start + i], R[5 * R_stride + start + i], R[6 * R_stride + start + i], R[7 * R_stride + start + i], R[8 * R_stride + start + i] };
             real_t q_i[6];
             real_t status_i[2];
-            spherical_wrist_ik_kernel(0, R_i, q_i, status_i);
+            spherical_wrist_ik_kernel(0, &local, R_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];

@@ -10,7 +10,7 @@
 #   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 418 compare and select, 344 add, 26 atan2, 91 divide, 361 multiply, 3 sincos, 31 sqrt
+#   ik: 418 compare and select, 344 add, 26 atan2, 91 divide, 365 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -930,7 +930,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     lean_beta = _runtime.select(spent_beta, turn_beta - drawn * turn_beta / L1, 0.0)
     t83 = turn_beta - lean_beta
     v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t83, v_1_alpha)
-    sigma_uv = _runtime.select(0.0 <= -v_1_beta, 1.0, -1.0)
+    sigma_uv = _runtime.select(0.0 <= -(L1 * v_1_beta), 1.0, -1.0)
     t84 = v_1_beta * sigma_uv
     p_1_beta = _runtime.select(spent_beta, p_1_alpha - t74 * lean_beta, p_1_alpha)
     t85 = sigma_uv * p_1_beta
@@ -1041,7 +1041,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t153 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
     t154 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t153
     v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t154, v_1_alpha_front_elbow_down)
-    sigma_uv_front_elbow_down = _runtime.select(0.0 <= -v_1_beta_front_elbow_down, 1.0, -1.0)
+    sigma_uv_front_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_front_elbow_down), 1.0, -1.0)
     t155 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
     t156 = p_1_alpha_front_elbow_down + t147 * lean_beta_front_elbow_down
     p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t156, p_1_alpha_front_elbow_down)
@@ -1184,7 +1184,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t240 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
     t241 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t240
     v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t241, v_1_alpha_rear_elbow_up)
-    sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -v_1_beta_rear_elbow_up, 1.0, -1.0)
+    sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_up), 1.0, -1.0)
     t242 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
     t243 = p_1_alpha_rear_elbow_up + t234 * lean_beta_rear_elbow_up
     p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t243, p_1_alpha_rear_elbow_up)
@@ -1302,7 +1302,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t314 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
     t315 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t314
     v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t315, v_1_alpha_rear_elbow_down)
-    sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -v_1_beta_rear_elbow_down, 1.0, -1.0)
+    sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_down), 1.0, -1.0)
     t316 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     t317 = p_1_alpha_rear_elbow_down - t308 * lean_beta_rear_elbow_down
     p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t317, p_1_alpha_rear_elbow_down)

@@ -39,6 +39,7 @@ from closedform.derivations.h6ar_mechanism import (
     theta23A,
     tip,
     tip_system,
+    turn_step,
     turned,
     wrist_frames,
     wrist_given,
@@ -352,6 +353,7 @@ d.function(
 
 # Inverse
 
+turn_step(d, m)
 p = Program()
 length, base = wrist_given(p, m, cos(psi))
 middle = solve_mid_plane(p, m, q, length, base)
@@ -365,6 +367,7 @@ seen = (
 )
 v = p.let("v_1", m.L2 * elbow.c - m.a3 * elbow.s), p.let("v_2", m.L2 * elbow.s + m.a3 * elbow.c)
 free = free_turn(p, m, elbow, size)
+# in exact numbers nothing turns here
 turns, leans = [], []
 for sine in ("alpha", "beta"):
     # by Cramer's rule sin(alpha) = (p x v) / (u x v) and sin(beta) = (u x p) / (u x v)

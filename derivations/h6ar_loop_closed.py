@@ -32,6 +32,7 @@ from closedform.derivations.h6ar_mechanism import (
     theta23A,
     tip,
     tip_system,
+    turn_step,
     turned,
     wrist_given,
     wrist_let,
@@ -369,6 +370,7 @@ d.function(
 
 # Inverse
 
+turn_step(d, m)
 sigma_left = real("sigma_left")
 LEFT = (sigma_left, {+1: "alike", -1: "mixed"})
 p = Program()

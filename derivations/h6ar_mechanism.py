@@ -363,6 +363,24 @@ def free_turn(program: Program, m: Dimensions, bend: Pair, size: sp.Symbol) -> F
     return FreeTurn(program, size, size * m.d, tilt, drawn)
 
 
+def turn_step(d: Derivation, m: Dimensions) -> None:
+    """The step of the derivation that says what the free turn is for."""
+    along, across, bend = real("L_2W"), real("a_3W"), pair(theta23A - theta2A)
+    tilt, drawn = along * bend.c - across * bend.s, m.L1 + along * bend.s + across * bend.c
+    p = reach(m, pair(theta2A), pair(theta23A), along, across)
+    rate = p.diff(theta23A) + (1 - drawn / m.L1) * p.diff(theta2A)
+    d.step(
+        "Arms at their limit under a straight virtual arm",
+        "As the fore-arm of the virtual arm turns by t and its upper arm by (1 - drawn / L1) t, "
+        "the tip moves by tilt t, along the upper arm.  Where tilt is zero, the virtual arm with "
+        "the wrist being straight, rounding the target turns the arm by as much as the root of "
+        "the rounding, and a real arm at its own limit may seem beyond it.  There it is turned "
+        "back; in exact numbers no arm lacks anything, and nothing turns.",
+        {r"\mathrm{drawn}": drawn, r"\mathrm{tilt}": tilt},
+        equal=[(rate, tilt * sp.Matrix(pair(theta2A)))],
+    )
+
+
 MID_PLANE_ROWS = sp.Matrix(
     [
         # of sin(theta - pitch), x, y, z; columns: pitch, waist, virtual arm r and h

@@ -11,9 +11,9 @@ from sympy import cos, sin, sqrt
 
 from closedform.derivation import Derivation, Paper
 from closedform.frames import exponential
-from closedform.functions import Function, Program, array, real
+from closedform.functions import Function, Program, array, choose, real
 from closedform.lower import Lowered, lower
-from closedform.lower.graph import Graph, reachable
+from closedform.lower.graph import Graph, hardly_ever, reachable
 
 x, y, z = (real(n) for n in "xyz")
 SYMBOLS = (x, y, z)
@@ -92,6 +92,28 @@ def test_sign_twins_share_their_value() -> None:
 def test_common_parts_are_computed_once() -> None:
     assert lowered(x * y * z, x * z).operations() == {"mul": 2}
     assert lowered(x + y + z, x + z - y, x + z).operations() == {"add": 2, "sub": 1}
+
+
+def test_an_inverse_divides_once_by_the_same_value() -> None:
+    """A forward map keeps its divisions: they are rounded once."""
+    quotients = [x / (y + z), -z / (y + z), x / 3, z / 3]
+    assert lowered(*quotients).operations()["div"] == 4
+    d = Derivation("test", "", Paper("", "", ()), "")
+    inputs, outputs = {"x": SYMBOLS}, {"q": quotients}
+    program = lower(d.function("ik", "", inputs, outputs, result="Solutions"), d)
+    assert program.operations()["div"] == 3
+
+
+def test_only_flags_are_rare() -> None:
+    """A sign that was computed is as often one as the other, be flags among what it rests on."""
+    p = Program()
+    flag = p.vanishes("flag", y**2, x**2, "y is zero")
+    turned = p.let("turned", choose(flag, 0, z / y))
+    sign = sp.Piecewise((1, turned >= 0), (-1, True))
+    d = Derivation("test", "", Paper("", "", ()), "")
+    f = d.function("f", "", {"x": SYMBOLS}, {"q": [turned, sign * x]}, program=p)
+    selects = [n for n in reachable(lower(f, d).roots) if n.op == "select"]
+    assert sorted(hardly_ever(n.args[0]) for n in selects) == [False, True]
 
 
 @pytest.mark.parametrize("signs", [(1, 1), (1, -1), (-1, 1), (-1, -1)])

@@ -91,7 +91,8 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
         results.append(Result("status", lead, "status", tuple(row[1] for row in rows)))
 
     flat = [n for r in results for n in r.nodes]
-    renamed, names = _share_named(graph, flat, names)
+    # An inverse is judged by what its answers give, a forward map by the last digit of its values.
+    renamed, names = _share_named(graph, flat, names, by_reciprocals=function.has_status)
     lowered_results = []
     position = 0
     for result in results:
@@ -111,11 +112,11 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
 
 
 def _share_named(
-    graph: Graph, roots: Sequence[Node], names: Mapping[int, str]
+    graph: Graph, roots: Sequence[Node], names: Mapping[int, str], *, by_reciprocals: bool
 ) -> tuple[list[Node], dict[int, str]]:
     """Share common parts; names of the derivation follow their nodes."""
     live = {n.id: n for n in reachable(roots) if n.id in names}
-    shared = share(graph, [*roots, *live.values()])
+    shared = share(graph, [*roots, *live.values()], by_reciprocals=by_reciprocals)
     body = shared[: len(roots)]
     alive = {n.id for n in reachable(body)}
     images = dict(zip(live, shared[len(roots) :], strict=True))

@@ -1,4 +1,4 @@
-"""Common parts of sums and products, and the step from n-ary to binary operators.
+"""Common parts of sums, products and quotients, and the step from n-ary to binary operators.
 
 Sums (products) that have two terms (factors) in common get them computed once.  The pair that
 occurs most often is taken out first, then the next, until no pair occurs twice.
@@ -19,12 +19,29 @@ Pair = tuple[int, int, int]
 """The ids of two operands, the lower first, and their relative sign."""
 
 
-def share(graph: Graph, roots: Sequence[Node]) -> list[Node]:
-    """``roots`` with common pairs taken out of products and then of sums, in binary operators."""
-    shared = _take_out(graph, list(roots), "product")
+def share(graph: Graph, roots: Sequence[Node], *, by_reciprocals: bool = False) -> list[Node]:
+    """``roots`` with common pairs taken out of products and then of sums, in binary operators.
+
+    With ``by_reciprocals`` quotients by the same value become products with its reciprocal: a
+    division takes as long as several products, but the product is rounded once more.
+    """
+    shared = _by_reciprocals(graph, list(roots)) if by_reciprocals else list(roots)
+    shared = _take_out(graph, shared, "product")
     shared = _take_out(graph, shared, "sum")
     binary = rebuild(shared, lambda node, args: _binary(graph, node, args))
     return _turn_differences(graph, binary)
+
+
+def _by_reciprocals(graph: Graph, roots: list[Node]) -> list[Node]:
+    """One division for all quotients by the same value, be it no constant."""
+    divisors = Counter(n.args[1].id for n in reachable(roots) if n.op == "div")
+
+    def change(node: Node, args: tuple[Node, ...]) -> Node:
+        if node.op != "div" or node.args[1].op == "const" or divisors[node.args[1].id] < 2:
+            return _same(graph, node, args)
+        return graph.product([args[0], graph.div(graph.const(1), args[1])])
+
+    return rebuild(roots, change)
 
 
 def _turn_differences(graph: Graph, roots: list[Node]) -> list[Node]:

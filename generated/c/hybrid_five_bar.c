@@ -4,7 +4,7 @@
  * Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 22 add, 22 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
+ *   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 3 sqrt
  *   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
  *     sqrt
  *   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
@@ -30,12 +30,12 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const int single,
     const real_t theta1 = q[0];
     const real_t theta2 = q[1];
     const real_t theta3 = q[2];
-    const real_t s2 = sines[0];
-    const real_t c2 = cosines[0];
-    const real_t s3 = sines[1];
-    const real_t c3 = cosines[1];
-    const real_t s1 = sines[2];
-    const real_t c1 = cosines[2];
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t s3 = sines[2];
+    const real_t c3 = cosines[2];
     const real_t C_r = L1 * s2;
     const real_t t1 = C_r - L1 * s3;
     const real_t C_y = L1 * c2;
@@ -45,34 +45,35 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const int single,
     const real_t t4 = t3 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t4;
     const real_t distance = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
-    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
-    const real_t t7 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t8 = t7 - apart;
-    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
-    const real_t height = cf_rarely(single, slack <= t4, CLOSEDFORM_C(0.0), t9);
-    const real_t t10 = n_1 * height;
-    const real_t P_r = C_r - (t6 - t10);
-    const int t11 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
-    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int t13 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int invalid = !(t12 & (CLOSEDFORM_C(0.0) <= L2) & t13);
-    const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t3) <= t8);
-    const real_t t14 = cf_poison(single, invalid | unreachable);
-    const real_t t15 = distance * n_1 / CLOSEDFORM_C(2.0);
-    const real_t t16 = t5 * height;
-    const real_t P_r_right_of_CD = C_r - (t6 + t10);
-    const real_t t17 = cf_status(single, invalid, unreachable, coincide);
-    p[0] = -(P_r * c1) + t14;
-    p[1] = C_y + (t15 + t16) + t14;
-    p[2] = P_r * s1 + t14;
-    p[3] = -(c1 * P_r_right_of_CD) + t14;
-    p[4] = C_y + (t15 - t16) + t14;
-    p[5] = s1 * P_r_right_of_CD + t14;
-    status[0] = t17;
-    status[1] = t17;
+    const real_t t5 = CLOSEDFORM_C(1.0) / apart;
+    const real_t t6 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t1 * t5);
+    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t t8 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t9 = t8 - apart;
+    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t height = cf_rarely(single, slack <= t4, CLOSEDFORM_C(0.0), t10);
+    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), -(t2 * t5));
+    const real_t t11 = height * n_1;
+    const real_t P_r = C_r - (t7 - t11);
+    const int t12 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14);
+    const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t3) <= t9);
+    const real_t t15 = cf_poison(single, invalid | unreachable);
+    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t17 = height * t6;
+    const real_t P_r_right_of_CD = C_r - (t7 + t11);
+    const real_t t18 = cf_status(single, invalid, unreachable, coincide);
+    p[0] = -(c1 * P_r) + t15;
+    p[1] = C_y + (t16 + t17) + t15;
+    p[2] = s1 * P_r + t15;
+    p[3] = -(c1 * P_r_right_of_CD) + t15;
+    p[4] = C_y + (t16 - t17) + t15;
+    p[5] = s1 * P_r_right_of_CD + t15;
+    status[0] = t18;
+    status[1] = t18;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -80,7 +81,7 @@ void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
     const real_t q[3], real_t p[6], uint8_t status[2])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0] };
+    const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     real_t status_real[2];
     hybrid_five_bar_fk_kernel(1, params, q, sines, cosines, p, status_real);
@@ -98,9 +99,9 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         real_t status_real[2][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {

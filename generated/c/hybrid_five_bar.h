@@ -4,7 +4,7 @@
  * Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 22 add, 22 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
+ *   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 3 sqrt
  *   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
  *     sqrt
  *   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt

@@ -12,7 +12,7 @@
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
  *   singularities: 1 sincos
  *   ik: 31 compare and select, 18 add, 3 atan2, 2 divide, 23 multiply, 2 sqrt
- *   ik_pose: 61 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+ *   ik_pose: 61 compare and select, 25 add, 2 atan2, 1 divide, 27 multiply, 1 sqrt
  *   workspace_radii: 1 compare and select, 2 add
  */
 #include "planar_2r.h"
@@ -481,36 +481,37 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int single, const planar_2r_params
     const real_t t1 = l1 + l2;
     const int no_first_link = l1 <= t1 * CLOSEDFORM_VANISHING;
     const real_t elbow_y = T24 - T21 * l2;
-    const real_t s1 = cf_rarely(single, no_first_link, CLOSEDFORM_C(0.0), elbow_y / l1);
+    const real_t t2 = CLOSEDFORM_C(1.0) / l1;
+    const real_t s1 = cf_rarely(single, no_first_link, CLOSEDFORM_C(0.0), elbow_y * t2);
     const real_t elbow_x = T14 - T11 * l2;
-    const real_t c1 = cf_rarely(single, no_first_link, CLOSEDFORM_C(1.0), elbow_x / l1);
-    const int t2 = cf_nought(l1) + cf_nought(l2) == 0;
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t4 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
-    const int t5 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
-    const int t6 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
-    const int t7 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
-    const real_t t8 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
-    const int t9 = cf_abs(t8) <= CLOSEDFORM_ROTATION;
-    const real_t t10 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
-    const int t11 = cf_abs(t10) <= CLOSEDFORM_ROTATION;
-    const int t12 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
-    const int t13 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
-    const int t14 = t3 & t4 & t5 & t6 & t7 & t9 & t11 & t12 & t13;
-    const int t15 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
-    const int t16 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
-    const int t17 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t14 & t15 & t16 & t17);
-    const real_t t18 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
-    const real_t t19 = CLOSEDFORM_FEASIBILITY * t1;
-    const int t20 = cf_abs(l1 - t18) <= t19;
-    const int t21 = cf_abs(T34) <= t19;
-    const int t22 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
-    const int t23 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
-    const int t24 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
-    const int unreachable = !(t20 & t21 & t22 & t23 & t24);
-    const real_t t25 = cf_poison(single, invalid | unreachable);
-    const real_t t26 = cf_status(single, invalid, unreachable, no_first_link);
+    const real_t c1 = cf_rarely(single, no_first_link, CLOSEDFORM_C(1.0), elbow_x * t2);
+    const int t3 = cf_nought(l1) + cf_nought(l2) == 0;
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t5 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
+    const int t6 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
+    const int t7 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
+    const int t8 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
+    const real_t t9 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
+    const int t10 = cf_abs(t9) <= CLOSEDFORM_ROTATION;
+    const real_t t11 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
+    const int t12 = cf_abs(t11) <= CLOSEDFORM_ROTATION;
+    const int t13 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
+    const int t14 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t15 = t4 & t5 & t6 & t7 & t8 & t10 & t12 & t13 & t14;
+    const int t16 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t17 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t18 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t15 & t16 & t17 & t18);
+    const real_t t19 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
+    const real_t t20 = CLOSEDFORM_FEASIBILITY * t1;
+    const int t21 = cf_abs(l1 - t19) <= t20;
+    const int t22 = cf_abs(T34) <= t20;
+    const int t23 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
+    const int t24 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
+    const int t25 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
+    const int unreachable = !(t21 & t22 & t23 & t24 & t25);
+    const real_t t26 = cf_poison(single, invalid | unreachable);
+    const real_t t27 = cf_status(single, invalid, unreachable, no_first_link);
     const real_t opposite[2] = { s1, T11 * s1 - T21 * c1 };
     const real_t adjacent[2] = { c1, T11 * c1 + T21 * s1 };
     real_t angles[2];
@@ -520,9 +521,9 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int single, const planar_2r_params
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
     }
-    q[0] = cf_wrap_cut(angles[0]) + t25;
-    q[1] = cf_wrap_cut(-angles[1]) + t25;
-    status[0] = t26;
+    q[0] = cf_wrap_cut(angles[0]) + t26;
+    q[1] = cf_wrap_cut(-angles[1]) + t26;
+    status[0] = t27;
 }
 
 CLOSEDFORM_DISPATCHED

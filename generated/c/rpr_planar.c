@@ -3,7 +3,7 @@
  * derivations/rpr_planar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 10 add, 24 compare and select, 4 divide, 9 multiply, 4 sqrt
+ *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 4 sqrt
  *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
  *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 4 sqrt
  *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 4 sqrt
@@ -24,8 +24,8 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const int coincide = b <= t3;
     const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t4 = rho1 - rho2;
-    const real_t t5 = b * CLOSEDFORM_C(2.0);
-    const real_t t6 = cf_rarely(single, coincide, rho1, b / CLOSEDFORM_C(2.0) + t4 * t1 / t5);
+    const real_t t5 = CLOSEDFORM_C(1.0) / (b * CLOSEDFORM_C(2.0));
+    const real_t t6 = cf_rarely(single, coincide, rho1, b / CLOSEDFORM_C(2.0) + t4 * t1 * t5);
     const int t7 = cf_nought(b) == 0;
     const int t8 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const int invalid = !(t7 & (CLOSEDFORM_C(0.0) <= b) & t8);
@@ -38,7 +38,7 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const real_t t14 = n_1 * t6 + t13;
     const real_t slack = cf_max(t10, CLOSEDFORM_C(0.0));
     const real_t t15 = cf_sqrt(cf_max(t12, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0)));
-    const real_t t16 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t15 * cf_sqrt(slack) * cf_sqrt(t2) / t5);
+    const real_t t16 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t5 * (t15 * cf_sqrt(slack) * cf_sqrt(t2)));
     const real_t height = cf_rarely(single, slack <= t3, CLOSEDFORM_C(0.0), t16);
     const real_t P_y = n_1 * height;
     const real_t t17 = cf_status(single, invalid, unreachable, coincide);

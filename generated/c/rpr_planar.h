@@ -3,7 +3,7 @@
  * derivations/rpr_planar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 10 add, 24 compare and select, 4 divide, 9 multiply, 4 sqrt
+ *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 4 sqrt
  *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
  *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 4 sqrt
  *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 4 sqrt

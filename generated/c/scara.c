@@ -10,7 +10,7 @@
  *   singularities: 1 sincos
  *   jacobian_space: 4 add, 8 multiply, 2 sincos
  *   jacobian_body: 4 add, 8 multiply, 2 sincos
- *   ik: 32 add, 39 compare and select, 5 atan2, 10 divide, 35 multiply, 1 sincos, 5 sqrt
+ *   ik: 32 add, 39 compare and select, 5 atan2, 5 divide, 43 multiply, 1 sincos, 5 sqrt
  */
 #include "scara.h"
 
@@ -513,51 +513,52 @@ CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
     const real_t r_elbow = cf_sqrt(x_x * x_x + x_y * x_y);
     const real_t t1 = l1 + l2;
     const int folded_elbow = r_elbow <= CLOSEDFORM_VANISHING * t1;
+    const real_t t2 = CLOSEDFORM_C(1.0) / r_elbow;
     const int no_link_elbow = l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const real_t t2 = t1 - r_elbow;
-    const real_t A_elbow = cf_max(t2, CLOSEDFORM_C(0.0));
-    const real_t t3 = l1 - l2;
-    const real_t t4 = r_elbow - t3;
-    const real_t C_elbow = cf_max(t4, CLOSEDFORM_C(0.0));
-    const real_t t5 = A_elbow * C_elbow;
+    const real_t t3 = t1 - r_elbow;
+    const real_t A_elbow = cf_max(t3, CLOSEDFORM_C(0.0));
+    const real_t t4 = l1 - l2;
+    const real_t t5 = r_elbow - t4;
+    const real_t C_elbow = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t t6 = A_elbow * C_elbow;
     const real_t S_elbow = r_elbow + t1;
-    const real_t t6 = r_elbow + t3;
-    const real_t B_elbow = cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t7 = S_elbow * B_elbow;
-    const real_t width_elbow = t5 + t7;
-    const real_t c_base_elbow = cf_rarely(single, no_link_elbow, CLOSEDFORM_C(1.0), -((t5 - t7) / width_elbow));
-    const real_t t8 = x_y * c_base_elbow / r_elbow;
-    const real_t t9 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow) * cf_sqrt(B_elbow);
-    const real_t area_elbow = t9 * cf_sqrt(C_elbow) * cf_sqrt(S_elbow);
-    const real_t s_base_elbow = cf_rarely(single, no_link_elbow, CLOSEDFORM_C(0.0), area_elbow / width_elbow);
-    const real_t t10 = x_x * s_base_elbow / r_elbow;
-    const real_t s1 = cf_rarely(single, folded_elbow, CLOSEDFORM_C(0.0), t8 - t10);
-    const real_t t11 = x_x * c_base_elbow / r_elbow;
-    const real_t t12 = x_y * s_base_elbow / r_elbow;
-    const real_t c1 = cf_rarely(single, folded_elbow, CLOSEDFORM_C(1.0), t11 + t12);
-    const int t13 = cf_nought(l1) + cf_nought(l2) + cf_nought(h) == 0;
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t15 = cf_nought(x_x) + cf_nought(x_y) + cf_nought(x_z) + cf_nought(x_yaw) == 0;
-    const int invalid = !(t14 & (CLOSEDFORM_C(0.0) <= h) & t15);
-    const real_t t16 = l1 / CLOSEDFORM_C(2.0) + l2 / CLOSEDFORM_C(2.0);
-    const real_t t17 = -(CLOSEDFORM_FEASIBILITY * t16);
-    const int unreachable = !((t17 <= t2) & (t17 <= t6) & (t17 <= t4));
-    const real_t t18 = cf_poison(single, invalid | unreachable);
-    const real_t t19 = A_elbow * S_elbow;
-    const real_t t20 = C_elbow * B_elbow;
-    const real_t sum_elbow = t19 + t20;
-    const real_t s2 = cf_rarely(single, no_link_elbow, CLOSEDFORM_C(0.0), area_elbow / sum_elbow);
-    const real_t c2 = cf_rarely(single, no_link_elbow, CLOSEDFORM_C(1.0), -((t19 - t20) / sum_elbow));
-    const real_t t21 = h - x_z + t18;
-    const real_t t22 = c1 * c2 - s1 * s2;
-    const real_t t23 = c1 * s2 + s1 * c2;
-    const real_t s1_right = cf_rarely(single, folded_elbow, CLOSEDFORM_C(0.0), t8 + t10);
-    const real_t c1_right = cf_rarely(single, folded_elbow, CLOSEDFORM_C(1.0), t11 - t12);
-    const real_t t24 = c2 * c1_right + s2 * s1_right;
-    const real_t t25 = s2 * c1_right - c2 * s1_right;
-    const real_t t26 = cf_status(single, invalid, unreachable, no_link_elbow | folded_elbow);
-    const real_t opposite[8] = { s1, s2, s_x_yaw * t22 - c_x_yaw * t23, s1_right, s_x_yaw * t24 + c_x_yaw * t25 };
-    const real_t adjacent[8] = { c1, c2, c_x_yaw * t22 + s_x_yaw * t23, c1_right, c_x_yaw * t24 - s_x_yaw * t25 };
+    const real_t t7 = r_elbow + t4;
+    const real_t B_elbow = cf_max(t7, CLOSEDFORM_C(0.0));
+    const real_t t8 = S_elbow * B_elbow;
+    const real_t t9 = CLOSEDFORM_C(1.0) / (t6 + t8);
+    const real_t c_base_elbow = cf_rarely(single, no_link_elbow, CLOSEDFORM_C(1.0), -((t6 - t8) * t9));
+    const real_t t10 = t2 * (x_y * c_base_elbow);
+    const real_t t11 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow) * cf_sqrt(B_elbow);
+    const real_t area_elbow = t11 * cf_sqrt(C_elbow) * cf_sqrt(S_elbow);
+    const real_t s_base_elbow = cf_rarely(single, no_link_elbow, CLOSEDFORM_C(0.0), t9 * area_elbow);
+    const real_t t12 = t2 * (x_x * s_base_elbow);
+    const real_t s1 = cf_rarely(single, folded_elbow, CLOSEDFORM_C(0.0), t10 - t12);
+    const real_t t13 = t2 * (x_x * c_base_elbow);
+    const real_t t14 = t2 * (x_y * s_base_elbow);
+    const real_t c1 = cf_rarely(single, folded_elbow, CLOSEDFORM_C(1.0), t13 + t14);
+    const int t15 = cf_nought(l1) + cf_nought(l2) + cf_nought(h) == 0;
+    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t17 = cf_nought(x_x) + cf_nought(x_y) + cf_nought(x_z) + cf_nought(x_yaw) == 0;
+    const int invalid = !(t16 & (CLOSEDFORM_C(0.0) <= h) & t17);
+    const real_t t18 = l1 / CLOSEDFORM_C(2.0) + l2 / CLOSEDFORM_C(2.0);
+    const real_t t19 = -(CLOSEDFORM_FEASIBILITY * t18);
+    const int unreachable = !((t19 <= t3) & (t19 <= t7) & (t19 <= t5));
+    const real_t t20 = cf_poison(single, invalid | unreachable);
+    const real_t t21 = A_elbow * S_elbow;
+    const real_t t22 = C_elbow * B_elbow;
+    const real_t t23 = CLOSEDFORM_C(1.0) / (t21 + t22);
+    const real_t s2 = cf_rarely(single, no_link_elbow, CLOSEDFORM_C(0.0), area_elbow * t23);
+    const real_t c2 = cf_rarely(single, no_link_elbow, CLOSEDFORM_C(1.0), -(t23 * (t21 - t22)));
+    const real_t t24 = h - x_z + t20;
+    const real_t t25 = c1 * c2 - s1 * s2;
+    const real_t t26 = c1 * s2 + s1 * c2;
+    const real_t s1_right = cf_rarely(single, folded_elbow, CLOSEDFORM_C(0.0), t10 + t12);
+    const real_t c1_right = cf_rarely(single, folded_elbow, CLOSEDFORM_C(1.0), t13 - t14);
+    const real_t t27 = c2 * c1_right + s2 * s1_right;
+    const real_t t28 = s2 * c1_right - c2 * s1_right;
+    const real_t t29 = cf_status(single, invalid, unreachable, no_link_elbow | folded_elbow);
+    const real_t opposite[8] = { s1, s2, s_x_yaw * t25 - c_x_yaw * t26, s1_right, s_x_yaw * t27 + c_x_yaw * t28 };
+    const real_t adjacent[8] = { c1, c2, c_x_yaw * t25 + s_x_yaw * t26, c1_right, c_x_yaw * t27 - s_x_yaw * t28 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -568,16 +569,16 @@ CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
         angles[4] = cf_atan2(opposite[4], adjacent[4]);
     }
-    q[0] = cf_wrap_cut(angles[0]) + t18;
-    q[1] = cf_wrap_cut(angles[1]) + t18;
-    q[2] = t21;
-    q[3] = cf_wrap_cut(-angles[2]) + t18;
-    q[4] = cf_wrap_cut(angles[3]) + t18;
-    q[5] = cf_wrap_cut(-angles[1]) + t18;
-    q[6] = t21;
-    q[7] = cf_wrap_cut(-angles[4]) + t18;
-    status[0] = t26;
-    status[1] = t26;
+    q[0] = cf_wrap_cut(angles[0]) + t20;
+    q[1] = cf_wrap_cut(angles[1]) + t20;
+    q[2] = t24;
+    q[3] = cf_wrap_cut(-angles[2]) + t20;
+    q[4] = cf_wrap_cut(angles[3]) + t20;
+    q[5] = cf_wrap_cut(-angles[1]) + t20;
+    q[6] = t24;
+    q[7] = cf_wrap_cut(-angles[4]) + t20;
+    status[0] = t29;
+    status[1] = t29;
 }
 
 CLOSEDFORM_DISPATCHED

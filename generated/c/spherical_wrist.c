@@ -10,7 +10,7 @@
  *   jacobian_body: 2 multiply, 2 sincos
  *   determinant: 1 sincos
  *   singularities: 1 sincos
- *   ik: 32 compare and select, 26 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
+ *   ik: 32 compare and select, 26 add, 3 atan2, 1 divide, 25 multiply, 1 sqrt
  */
 #include "spherical_wrist.h"
 
@@ -372,21 +372,22 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single,
     const real_t R33 = R[8];
     const real_t h = cf_sqrt(R13 * R13 + R23 * R23);
     const int aligned = h <= CLOSEDFORM_VANISHING;
-    const real_t s4 = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), R23 / h);
-    const real_t c4 = cf_rarely(single, aligned, CLOSEDFORM_C(1.0), R13 / h);
-    const int t1 = cf_nought(d6) == 0;
-    const int t2 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
-    const int t3 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
-    const int t4 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
-    const real_t t5 = CLOSEDFORM_C(1.0) - R11 * R11 - R21 * R21 - R31 * R31;
-    const int t6 = cf_abs(t5) <= CLOSEDFORM_ROTATION;
-    const real_t t7 = CLOSEDFORM_C(1.0) - R12 * R12 - R22 * R22 - R32 * R32;
-    const int t8 = cf_abs(t7) <= CLOSEDFORM_ROTATION;
-    const int t9 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t1 & t2 & t3 & t4 & t6 & t8 & t9);
-    const real_t t10 = cf_poison(single, invalid);
+    const real_t t1 = CLOSEDFORM_C(1.0) / h;
+    const real_t s4 = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), R23 * t1);
+    const real_t c4 = cf_rarely(single, aligned, CLOSEDFORM_C(1.0), R13 * t1);
+    const int t2 = cf_nought(d6) == 0;
+    const int t3 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
+    const int t4 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
+    const int t5 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
+    const real_t t6 = CLOSEDFORM_C(1.0) - R11 * R11 - R21 * R21 - R31 * R31;
+    const int t7 = cf_abs(t6) <= CLOSEDFORM_ROTATION;
+    const real_t t8 = CLOSEDFORM_C(1.0) - R12 * R12 - R22 * R22 - R32 * R32;
+    const int t9 = cf_abs(t8) <= CLOSEDFORM_ROTATION;
+    const int t10 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t2 & t3 & t4 & t5 & t7 & t9 & t10);
+    const real_t t11 = cf_poison(single, invalid);
     const real_t flip = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t t11 = cf_status(single, invalid, 0, aligned);
+    const real_t t12 = cf_status(single, invalid, 0, aligned);
     const real_t opposite[4] = { s4, R13 * c4 + R23 * s4, R11 * s4 - R21 * c4 };
     const real_t adjacent[4] = { c4, R33, R22 * c4 - R12 * s4 };
     real_t angles[4];
@@ -397,14 +398,14 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single,
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
     }
-    q[0] = cf_wrap_cut(angles[0]) + t10;
-    q[1] = cf_wrap_cut(angles[1]) + t10;
-    q[2] = cf_wrap_cut(-angles[2]) + t10;
-    q[3] = cf_wrap(angles[0] + flip) + t10;
-    q[4] = cf_wrap_cut(-angles[1]) + t10;
-    q[5] = cf_wrap(flip - angles[2]) + t10;
-    status[0] = t11;
-    status[1] = t11;
+    q[0] = cf_wrap_cut(angles[0]) + t11;
+    q[1] = cf_wrap_cut(angles[1]) + t11;
+    q[2] = cf_wrap_cut(-angles[2]) + t11;
+    q[3] = cf_wrap(flip + angles[0]) + t11;
+    q[4] = cf_wrap_cut(-angles[1]) + t11;
+    q[5] = cf_wrap(flip - angles[2]) + t11;
+    status[0] = t12;
+    status[1] = t12;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -10,7 +10,7 @@
  *   jacobian_body: 2 multiply, 2 sincos
  *   determinant: 1 sincos
  *   singularities: 1 sincos
- *   ik: 32 compare and select, 26 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
+ *   ik: 32 compare and select, 26 add, 3 atan2, 1 divide, 25 multiply, 1 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not

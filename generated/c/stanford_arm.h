@@ -11,7 +11,7 @@
  *   jacobian_body: 14 add, 41 multiply, 4 sincos
  *   determinant: 3 multiply, 2 sincos
  *   singularities: 2 sincos
- *   ik: 107 compare and select, 111 add, 16 atan2, 14 divide, 102 multiply, 9 sqrt
+ *   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 9 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not

@@ -10,7 +10,7 @@
 #   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 418 compare and select, 344 add, 26 atan2, 91 divide, 365 multiply, 3 sincos, 31 sqrt
+#   ik: 418 compare and select, 344 add, 26 atan2, 58 divide, 421 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -801,601 +801,606 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t4 = d - c_psi * (gs - al)
     t5 = (gs + al) * c_psi - d
     t6 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t5, 0.0))
-    t7 = loff + t6 / c_psi + lp * c_pitch
-    t8 = s_psi * t7
-    t9 = s_phi * t3 - c_phi * t8
-    t10 = h + t9
-    below = np.maximum(t10, 0.0)
-    t11 = np.sqrt(below)
-    t12 = h - t9
-    above = np.maximum(t12, 0.0)
-    t13 = np.sqrt(above)
-    t14 = 2.0 * np.arctan2(t11, t13)
-    t15 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t14))
-    t16 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t20 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t21 = t18 & (0.0 <= loff) & (0.0 <= lp) & t19 & (np.abs(t20) <= _runtime.ROTATION)
-    invalid = np.logical_not(t21)
-    t22 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t23 = (-_runtime.FEASIBILITY <= c_phi) & (t22 <= t5)
-    t24 = -(_runtime.FEASIBILITY * t1)
-    t25 = t23 & (t22 <= t4) & (t24 <= t10) & (t24 <= t12)
-    L_2W = L2 + c_psi * t7
-    a_3W = a3 + c_phi * t3 + s_phi * t8
+    t7 = 1.0 / c_psi
+    t8 = loff + lp * c_pitch + t6 * t7
+    t9 = s_psi * t8
+    t10 = s_phi * t3 - c_phi * t9
+    t11 = h + t10
+    below = np.maximum(t11, 0.0)
+    t12 = np.sqrt(below)
+    t13 = h - t10
+    above = np.maximum(t13, 0.0)
+    t14 = np.sqrt(above)
+    t15 = 2.0 * np.arctan2(t12, t14)
+    t16 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t15))
+    t17 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t21 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t22 = t19 & (0.0 <= loff) & (0.0 <= lp) & t20 & (np.abs(t21) <= _runtime.ROTATION)
+    invalid = np.logical_not(t22)
+    t23 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t5)
+    t25 = -(_runtime.FEASIBILITY * t1)
+    t26 = t24 & (t23 <= t4) & (t25 <= t11) & (t25 <= t13)
+    L_2W = L2 + c_psi * t8
+    a_3W = a3 + c_phi * t3 + s_phi * t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t26 = L1 + fore
-    t27 = 2.0 * fore
-    t28 = _runtime.FEASIBILITY * (t26 * (L1 * 2.0 + t27))
-    t29 = t26 * t26
-    t30 = z - d1
-    t31 = t30 * t30
-    total = below + above
-    t32 = (below - above) / total
-    t33 = y * t32
-    s_turn = 2.0 * t11 * t13 / total
-    t34 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -((t33 - t34) / h))
-    t35 = x * t32
-    t36 = y * s_turn
-    s1 = _runtime.select(nowhere, 0.0, (t35 + t36) / h)
+    t27 = L1 + fore
+    t28 = 2.0 * fore
+    t29 = _runtime.FEASIBILITY * (t27 * (L1 * 2.0 + t28))
+    t30 = t27 * t27
+    t31 = z - d1
+    t32 = t31 * t31
+    t33 = 1.0 / h
+    t34 = 1.0 / (below + above)
+    t35 = (below - above) * t34
+    t36 = y * t35
+    s_turn = t34 * (2.0 * t12 * t14)
+    t37 = x * s_turn
+    c1 = _runtime.select(nowhere, 1.0, -(t33 * (t36 - t37)))
+    t38 = x * t35
+    t39 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, t33 * (t38 + t39))
     outward = x * c1 + y * s1
-    square = t31 + outward * outward
-    t37 = t29 - square
-    t38 = L1 / 8796093022208.0 + fore / 8796093022208.0
-    t39 = L1 - fore
-    t40 = _runtime.FEASIBILITY * (t26 * (t38 + 2.0 * np.abs(t39)))
-    t41 = t39 * t39
-    t42 = square - t41
-    t43 = t25 & (-t28 <= t37) & (-t40 <= t42)
+    square = t32 + outward * outward
+    t40 = t30 - square
+    t41 = L1 / 8796093022208.0 + fore / 8796093022208.0
+    t42 = L1 - fore
+    t43 = _runtime.FEASIBILITY * (t27 * (t41 + 2.0 * np.abs(t42)))
+    t44 = t42 * t42
+    t45 = square - t44
+    t46 = t26 & (-t29 <= t40) & (-t43 <= t45)
     size = L1 + np.sqrt(L2 * L2 + a3 * a3)
-    t44 = d * size
-    short = L1 * fore <= _runtime.VANISHING * t29
-    M = np.maximum(t42, 0.0)
-    N = np.maximum(t37, 0.0)
-    whole = M + N
-    c_bend = _runtime.select(short, 1.0, (M - N) / whole)
-    t45 = _runtime.VANISHING * t26
-    bare = fore <= t45
-    c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    t46 = c_bend * c_lag
+    t47 = d * size
+    short = L1 * fore <= _runtime.VANISHING * t30
+    M = np.maximum(t45, 0.0)
+    N = np.maximum(t40, 0.0)
+    t48 = 1.0 / (M + N)
+    c_bend = _runtime.select(short, 1.0, t48 * (M - N))
+    t49 = _runtime.VANISHING * t27
+    bare = fore <= t49
+    t50 = 1.0 / fore
+    c_lag = _runtime.select(bare, 1.0, a_3W * t50)
+    t51 = c_bend * c_lag
     rN = np.sqrt(N)
     rM = np.sqrt(M)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, 2.0 * rN * rM / whole)
-    s_lag = _runtime.select(bare, 0.0, L_2W / fore)
-    t47 = s_bend_front_elbow_down * s_lag
-    c_relative = t46 + t47
-    t48 = c_bend * s_lag
-    t49 = s_bend_front_elbow_down * c_lag
-    s_relative = t48 - t49
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t48 * (2.0 * rN * rM))
+    s_lag = _runtime.select(bare, 0.0, L_2W * t50)
+    t52 = s_bend_front_elbow_down * s_lag
+    c_relative = t51 + t52
+    t53 = c_bend * s_lag
+    t54 = s_bend_front_elbow_down * c_lag
+    s_relative = t53 - t54
     v_1 = L2 * c_relative - a3 * s_relative
     whole_alpha = L1 * v_1
-    t50 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
+    t55 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
     v_2 = L2 * s_relative + a3 * c_relative
-    ahead = d * s_psi / c_psi
-    t51 = np.abs(t30)
-    folded = t51 + np.abs(outward) <= t45
-    t52 = t30 * fore
-    t53 = t52 * s_bend_front_elbow_down
-    ahead_1 = _runtime.select(short, t26, t39 + t27 * M / whole)
-    t54 = outward * ahead_1
-    t55 = t53 - t54
-    t56 = fore * outward * s_bend_front_elbow_down
-    t57 = t30 * ahead_1
-    up = t56 + t57
-    norm = np.sqrt(t55 * t55 + up * up)
-    ctheta2A = _runtime.select(folded, 1.0, -(t55 / norm))
+    ahead = d * s_psi * t7
+    t56 = np.abs(t31)
+    folded = t56 + np.abs(outward) <= t49
+    t57 = t31 * fore
+    t58 = t57 * s_bend_front_elbow_down
+    ahead_1 = _runtime.select(short, t27, t42 + t28 * M * t48)
+    t59 = outward * ahead_1
+    t60 = t58 - t59
+    t61 = fore * outward * s_bend_front_elbow_down
+    t62 = t31 * ahead_1
+    up = t61 + t62
+    t63 = 1.0 / np.sqrt(t60 * t60 + up * up)
+    ctheta2A = _runtime.select(folded, 1.0, -(t60 * t63))
     higher = d * s_phi / c_phi
-    stheta2A = _runtime.select(folded, 0.0, up / norm)
+    stheta2A = _runtime.select(folded, 0.0, up * t63)
     p_1 = ahead * ctheta2A + higher * stheta2A
-    t58 = ahead * stheta2A - higher * ctheta2A
-    t59 = v_2 * p_1 + v_1 * t58
-    t60 = _runtime.select(0.0 <= -t59, 1.0, -1.0)
-    room_alpha = whole_alpha * t50 + t59 * t60
-    t61 = _runtime.VANISHING * t44
-    spent_alpha = room_alpha <= t61
+    t64 = ahead * stheta2A - higher * ctheta2A
+    t65 = v_2 * p_1 + v_1 * t64
+    t66 = _runtime.select(0.0 <= -t65, 1.0, -1.0)
+    room_alpha = whole_alpha * t55 + t65 * t66
+    t67 = _runtime.VANISHING * t47
+    spent_alpha = room_alpha <= t67
+    t68 = size / 100000.0
+    t69 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t70 = 1.0 / (t68 + t69)
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t62 = v_2 * t50 * drawn - t60 * (v_1 * p_1 - v_2 * t58)
-    t63 = size / 100000.0
-    t64 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t65 = t63 + t64
-    t66 = _runtime.select(spent_alpha, size * np.abs(t62) / t65, 0.0)
-    t67 = -(_runtime.FEASIBILITY * (t44 + t66)) <= room_alpha
-    t68 = size * size * size * size / 10000000000.0
-    t69 = t62 * (room_alpha - np.abs(room_alpha)) / (2.0 * (t68 + t62 * t62))
-    turn_alpha = _runtime.select(spent_alpha, t69, 0.0)
-    lean_alpha = _runtime.select(spent_alpha, turn_alpha - drawn * turn_alpha / L1, 0.0)
-    p_1_alpha = _runtime.select(spent_alpha, p_1 - t58 * lean_alpha, p_1)
+    t71 = v_2 * t55 * drawn - t66 * (v_1 * p_1 - v_2 * t64)
+    t72 = _runtime.select(spent_alpha, t70 * (size * np.abs(t71)), 0.0)
+    t73 = -(_runtime.FEASIBILITY * (t47 + t72)) <= room_alpha
+    t74 = size * size * size * size / 10000000000.0
+    t75 = t71 * (room_alpha - np.abs(room_alpha)) / (2.0 * (t74 + t71 * t71))
+    turn_alpha = _runtime.select(spent_alpha, t75, 0.0)
+    t76 = 1.0 / L1
+    lean_alpha = _runtime.select(spent_alpha, turn_alpha - t76 * (drawn * turn_alpha), 0.0)
+    p_1_alpha = _runtime.select(spent_alpha, p_1 - t64 * lean_alpha, p_1)
     part_beta = L1 * p_1_alpha
-    t70 = _runtime.select(0.0 <= part_beta, 1.0, -1.0)
-    t71 = turn_alpha - lean_alpha
-    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t71, v_1)
+    t77 = _runtime.select(0.0 <= part_beta, 1.0, -1.0)
+    t78 = turn_alpha - lean_alpha
+    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t78, v_1)
     whole_beta = L1 * v_1_alpha
-    t72 = _runtime.select(0.0 <= whole_beta, 1.0, -1.0)
-    t73 = part_beta * t70 - whole_beta * t72
-    spent_beta = -t73 <= t61
-    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t71, v_2)
-    t74 = _runtime.select(spent_alpha, t58 + p_1 * lean_alpha, t58)
-    t75 = drawn * t72 * v_2_alpha - (L1 - drawn) * t70 * t74
-    t76 = _runtime.select(spent_beta, size * np.abs(t75) / t65, 0.0)
-    t77 = -(_runtime.FEASIBILITY * (t44 + t76)) <= -t73
-    t78 = np.abs(ahead)
-    t79 = np.abs(higher)
-    t80 = d + t78 + t79
-    t81 = -(_runtime.FEASIBILITY * t80)
-    t82 = t75 * (t73 + np.abs(t73)) / (2.0 * (t68 + t75 * t75))
-    turn_beta = _runtime.select(spent_beta, -t82, 0.0)
-    lean_beta = _runtime.select(spent_beta, turn_beta - drawn * turn_beta / L1, 0.0)
-    t83 = turn_beta - lean_beta
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t83, v_1_alpha)
+    t79 = _runtime.select(0.0 <= whole_beta, 1.0, -1.0)
+    t80 = part_beta * t77 - whole_beta * t79
+    spent_beta = -t80 <= t67
+    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t78, v_2)
+    t81 = _runtime.select(spent_alpha, t64 + p_1 * lean_alpha, t64)
+    t82 = drawn * t79 * v_2_alpha - (L1 - drawn) * t77 * t81
+    t83 = _runtime.select(spent_beta, t70 * (size * np.abs(t82)), 0.0)
+    t84 = -(_runtime.FEASIBILITY * (t47 + t83)) <= -t80
+    t85 = np.abs(higher)
+    t86 = np.abs(ahead)
+    t87 = d + t85 + t86
+    t88 = -(_runtime.FEASIBILITY * t87)
+    t89 = t82 * (t80 + np.abs(t80)) / (2.0 * (t74 + t82 * t82))
+    turn_beta = _runtime.select(spent_beta, -t89, 0.0)
+    lean_beta = _runtime.select(spent_beta, turn_beta - t76 * (drawn * turn_beta), 0.0)
+    t90 = turn_beta - lean_beta
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t90, v_1_alpha)
     sigma_uv = _runtime.select(0.0 <= -(L1 * v_1_beta), 1.0, -1.0)
-    t84 = v_1_beta * sigma_uv
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t74 * lean_beta, p_1_alpha)
-    t85 = sigma_uv * p_1_beta
-    t86 = t43 & t67 & t77 & (t81 <= -(t84 + np.abs(t85)))
-    t87 = _runtime.select(spent_beta, t74 + p_1_alpha * lean_beta, t74)
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t83, v_2_alpha)
-    t88 = np.abs(v_2_beta)
-    parallel = -t84 <= _runtime.VANISHING * (64.0 * t88)
-    part_y = _runtime.select(parallel, _runtime.select(0.0 <= v_2_beta, -t87, t87), -t85)
-    whole_y = _runtime.select(parallel, L1 + t88, -t84)
-    t89 = t87 + v_2_beta * part_y / whole_y
-    left_along = L1 - np.abs(t89)
-    t90 = _runtime.VANISHING * t80
-    spent_along = left_along <= t90
-    t91 = L1 / 1000000000.0
-    t92 = _runtime.select(spent_along, t88 / (t91 - t84), 0.0)
-    t93 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t92)))
-    t94 = v_2_beta * (left_along / 2.0 - np.abs(left_along) / 2.0)
-    t95 = t94 / (t84 * t84 + v_2_beta * v_2_beta)
-    t96 = whole_y * _runtime.select(0.0 <= -t89, -t95, t95)
-    eased = _runtime.select(spent_along, part_y + t96, part_y)
-    t97 = whole_y - eased
-    t98 = whole_y + eased
-    t99 = t86 & (t93 <= left_along) & (t81 <= t97) & (t81 <= t98)
-    t100 = _runtime.VANISHING * (d * 16.0 + t78 * 16.0 + t79 * 16.0)
-    t101 = _runtime.VANISHING * t100
-    below_beta = np.maximum(t97, t101)
-    above_beta = np.maximum(t98, t101)
-    total_beta = below_beta + above_beta
-    t102 = (below_beta - above_beta) / total_beta
-    t103 = t87 - v_2_beta * t102
-    t104 = L1 + t103
-    t105 = L1 - t103
-    unreachable = np.logical_not(t99 & (t81 <= t104) & (t81 <= t105))
-    t106 = _runtime.poison(invalid | unreachable)
-    t107 = _runtime.select(folded, 0.0, np.arctan2(up, -t55))
-    t108 = np.arctan2(lean_alpha + lean_beta, 1.0)
-    t109 = t107 + t108
-    below_alpha = np.maximum(t104, t101)
-    above_alpha = np.maximum(t105, t101)
-    total_alpha = below_alpha + above_alpha
-    t110 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t111 = np.arctan2((below_alpha - above_alpha) / total_alpha, t110 / total_alpha)
-    t112 = _runtime.wrap_cut(_runtime.wrap(t109 - t111))
-    t113 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    t114 = t111 - np.arctan2(t102, t113 / total_beta)
-    t115 = _runtime.select(short, 0.0, 2.0 * np.arctan2(rN, rM))
-    t116 = np.arctan2(s_lag, c_lag)
-    t117 = t116 + np.arctan2(turn_alpha + turn_beta, 1.0)
-    t118 = t115 + t108 - t117
-    t119 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t114 - t118)))
-    t120 = _runtime.wrap_cut(_runtime.wrap(t109 + t111))
-    t121 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(-(t118 + t114))))
-    t122 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    c_relative_front_elbow_down = t46 - t47
-    s_relative_front_elbow_down = t48 + t49
+    t91 = v_1_beta * sigma_uv
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t81 * lean_beta, p_1_alpha)
+    t92 = sigma_uv * p_1_beta
+    t93 = t46 & t73 & t84 & (t88 <= -(t91 + np.abs(t92)))
+    t94 = _runtime.select(spent_beta, t81 + p_1_alpha * lean_beta, t81)
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t90, v_2_alpha)
+    t95 = np.abs(v_2_beta)
+    parallel = -t91 <= _runtime.VANISHING * (64.0 * t95)
+    part_y = _runtime.select(parallel, _runtime.select(0.0 <= v_2_beta, -t94, t94), -t92)
+    whole_y = _runtime.select(parallel, L1 + t95, -t91)
+    t96 = t94 + v_2_beta * part_y / whole_y
+    left_along = L1 - np.abs(t96)
+    t97 = _runtime.VANISHING * t87
+    spent_along = left_along <= t97
+    t98 = L1 / 1000000000.0
+    t99 = _runtime.select(spent_along, t95 / (t98 - t91), 0.0)
+    t100 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t99)))
+    t101 = v_2_beta * (left_along / 2.0 - np.abs(left_along) / 2.0)
+    t102 = t101 / (t91 * t91 + v_2_beta * v_2_beta)
+    t103 = whole_y * _runtime.select(0.0 <= -t96, -t102, t102)
+    eased = _runtime.select(spent_along, part_y + t103, part_y)
+    t104 = whole_y - eased
+    t105 = whole_y + eased
+    t106 = t93 & (t100 <= left_along) & (t88 <= t104) & (t88 <= t105)
+    t107 = _runtime.VANISHING * (d * 16.0 + t85 * 16.0 + 16.0 * t86)
+    t108 = _runtime.VANISHING * t107
+    below_beta = np.maximum(t104, t108)
+    above_beta = np.maximum(t105, t108)
+    t109 = 1.0 / (below_beta + above_beta)
+    t110 = (below_beta - above_beta) * t109
+    t111 = t94 - v_2_beta * t110
+    t112 = L1 + t111
+    t113 = L1 - t111
+    unreachable = np.logical_not(t106 & (t88 <= t112) & (t88 <= t113))
+    t114 = _runtime.poison(invalid | unreachable)
+    t115 = _runtime.select(folded, 0.0, np.arctan2(up, -t60))
+    t116 = np.arctan2(lean_alpha + lean_beta, 1.0)
+    t117 = t115 + t116
+    below_alpha = np.maximum(t112, t108)
+    above_alpha = np.maximum(t113, t108)
+    t118 = 1.0 / (below_alpha + above_alpha)
+    t119 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t120 = np.arctan2((below_alpha - above_alpha) * t118, t118 * t119)
+    t121 = _runtime.wrap_cut(_runtime.wrap(t117 - t120))
+    t122 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t123 = t120 - np.arctan2(t110, t109 * t122)
+    t124 = _runtime.select(short, 0.0, 2.0 * np.arctan2(rN, rM))
+    t125 = np.arctan2(s_lag, c_lag)
+    t126 = t125 + np.arctan2(turn_alpha + turn_beta, 1.0)
+    t127 = t124 + t116 - t126
+    t128 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t123 - t127)))
+    t129 = _runtime.wrap_cut(_runtime.wrap(t117 + t120))
+    t130 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(-(t127 + t123))))
+    t131 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    c_relative_front_elbow_down = t51 - t52
+    s_relative_front_elbow_down = t53 + t54
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t123 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
+    t132 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    out_front_elbow_down = t53 + t54
-    t124 = t56 - t57
-    t125 = out_front_elbow_down * out_front_elbow_down + t124 * t124
-    norm_front_elbow_down = np.sqrt(t125)
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down / norm_front_elbow_down)
-    t126 = _runtime.select(folded, 0.0, t124 / norm_front_elbow_down)
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t126
-    t127 = ahead * t126 + higher * ctheta2A_front_elbow_down
-    t128 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t127
-    t129 = _runtime.select(0.0 <= -t128, 1.0, -1.0)
-    room_alpha_front_elbow_down = whole_alpha_front_elbow_down * t123 + t128 * t129
-    spent_alpha_front_elbow_down = room_alpha_front_elbow_down <= t61
-    drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    t130 = v_2_front_elbow_down * t123 * drawn_front_elbow_down
-    t131 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t127
-    t132 = t130 - t129 * t131
+    out_front_elbow_down = t58 + t59
+    t133 = t61 - t62
+    t134 = out_front_elbow_down * out_front_elbow_down + t133 * t133
+    t135 = 1.0 / np.sqrt(t134)
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down * t135)
+    t136 = _runtime.select(folded, 0.0, t133 * t135)
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t136
+    t137 = ahead * t136 + higher * ctheta2A_front_elbow_down
+    t138 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t137
+    t139 = _runtime.select(0.0 <= -t138, 1.0, -1.0)
+    room_alpha_front_elbow_down = whole_alpha_front_elbow_down * t132 + t138 * t139
+    spent_alpha_front_elbow_down = room_alpha_front_elbow_down <= t67
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t133 = t63 + np.abs(tilt_front_elbow_down)
-    t134 = _runtime.select(spent_alpha_front_elbow_down, size * np.abs(t132) / t133, 0.0)
-    t135 = -(_runtime.FEASIBILITY * (t44 + t134)) <= room_alpha_front_elbow_down
-    t136 = room_alpha_front_elbow_down - np.abs(room_alpha_front_elbow_down)
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t132 * t136 / (2.0 * (t68 + t132 * t132)), 0.0)
-    t137 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t137 / L1, 0.0)
-    t138 = p_1_front_elbow_down + t127 * lean_alpha_front_elbow_down
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t138, p_1_front_elbow_down)
+    t140 = 1.0 / (t68 + np.abs(tilt_front_elbow_down))
+    drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
+    t141 = v_2_front_elbow_down * t132 * drawn_front_elbow_down
+    t142 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t137
+    t143 = t141 - t139 * t142
+    t144 = _runtime.select(spent_alpha_front_elbow_down, t140 * (size * np.abs(t143)), 0.0)
+    t145 = -(_runtime.FEASIBILITY * (t47 + t144)) <= room_alpha_front_elbow_down
+    t146 = room_alpha_front_elbow_down - np.abs(room_alpha_front_elbow_down)
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t143 * t146 / (2.0 * (t74 + t143 * t143)), 0.0)
+    t147 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t76 * t147, 0.0)
+    t148 = p_1_front_elbow_down + t137 * lean_alpha_front_elbow_down
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t148, p_1_front_elbow_down)
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t139 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
-    t140 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
-    t141 = v_1_front_elbow_down - v_2_front_elbow_down * t140
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t141, v_1_front_elbow_down)
+    t149 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
+    t150 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
+    t151 = v_1_front_elbow_down - v_2_front_elbow_down * t150
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t151, v_1_front_elbow_down)
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t142 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
-    t143 = part_beta_front_elbow_down * t139 - whole_beta_front_elbow_down * t142
-    spent_beta_front_elbow_down = -t143 <= t61
-    t144 = v_2_front_elbow_down + v_1_front_elbow_down * t140
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t144, v_2_front_elbow_down)
-    t145 = drawn_front_elbow_down * t142 * v_2_alpha_front_elbow_down
-    t146 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    t147 = _runtime.select(spent_alpha_front_elbow_down, t127 - t146, t127)
-    t148 = t145 + (L1 - drawn_front_elbow_down) * t139 * t147
-    t149 = _runtime.select(spent_beta_front_elbow_down, size * np.abs(t148) / t133, 0.0)
-    t150 = -(_runtime.FEASIBILITY * (t44 + t149)) <= -t143
-    t151 = t148 * (t143 + np.abs(t143)) / (2.0 * (t68 + t148 * t148))
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t151, 0.0)
-    t152 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t152 / L1, 0.0)
-    t153 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
-    t154 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t153
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t154, v_1_alpha_front_elbow_down)
+    t152 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
+    t153 = part_beta_front_elbow_down * t149 - whole_beta_front_elbow_down * t152
+    spent_beta_front_elbow_down = -t153 <= t67
+    t154 = v_2_front_elbow_down + v_1_front_elbow_down * t150
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t154, v_2_front_elbow_down)
+    t155 = drawn_front_elbow_down * t152 * v_2_alpha_front_elbow_down
+    t156 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t157 = _runtime.select(spent_alpha_front_elbow_down, t137 - t156, t137)
+    t158 = t155 + (L1 - drawn_front_elbow_down) * t149 * t157
+    t159 = _runtime.select(spent_beta_front_elbow_down, t140 * (size * np.abs(t158)), 0.0)
+    t160 = -(_runtime.FEASIBILITY * (t47 + t159)) <= -t153
+    t161 = t158 * (t153 + np.abs(t153)) / (2.0 * (t74 + t158 * t158))
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t161, 0.0)
+    t162 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t76 * t162, 0.0)
+    t163 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
+    t164 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t163
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t164, v_1_alpha_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_front_elbow_down), 1.0, -1.0)
-    t155 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    t156 = p_1_alpha_front_elbow_down + t147 * lean_beta_front_elbow_down
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t156, p_1_alpha_front_elbow_down)
-    t157 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    t158 = t43 & t135 & t150 & (t81 <= -(t155 + np.abs(t157)))
-    t159 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    p_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t147 - t159, t147)
-    t160 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t153
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t160, v_2_alpha_front_elbow_down)
-    t161 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t155 <= _runtime.VANISHING * (64.0 * t161)
-    t162 = _runtime.select(0.0 <= v_2_beta_front_elbow_down, p_2_beta_front_elbow_down, -p_2_beta_front_elbow_down)
-    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, t162, -t157)
-    t163 = v_2_beta_front_elbow_down * part_y_front_elbow_down
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t161, -t155)
-    rest_front_elbow_down = p_2_beta_front_elbow_down - t163 / whole_y_front_elbow_down
+    t165 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t166 = p_1_alpha_front_elbow_down + t157 * lean_beta_front_elbow_down
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t166, p_1_alpha_front_elbow_down)
+    t167 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t168 = t46 & t145 & t160 & (t88 <= -(t165 + np.abs(t167)))
+    t169 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    p_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t157 - t169, t157)
+    t170 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t163
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t170, v_2_alpha_front_elbow_down)
+    t171 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t165 <= _runtime.VANISHING * (64.0 * t171)
+    t172 = _runtime.select(0.0 <= v_2_beta_front_elbow_down, p_2_beta_front_elbow_down, -p_2_beta_front_elbow_down)
+    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, t172, -t167)
+    t173 = v_2_beta_front_elbow_down * part_y_front_elbow_down
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t171, -t165)
+    rest_front_elbow_down = p_2_beta_front_elbow_down - t173 / whole_y_front_elbow_down
     left_along_front_elbow_down = L1 - np.abs(-rest_front_elbow_down)
-    spent_along_front_elbow_down = left_along_front_elbow_down <= t90
-    t164 = _runtime.select(spent_along_front_elbow_down, t161 / (t91 - t155), 0.0)
-    t165 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t164)))
-    t166 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
-    t167 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t168 = v_2_beta_front_elbow_down * t166 / (t155 * t155 + t167)
-    t169 = _runtime.select(0.0 <= rest_front_elbow_down, -t168, t168)
-    t170 = part_y_front_elbow_down + whole_y_front_elbow_down * t169
-    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, t170, part_y_front_elbow_down)
-    t171 = whole_y_front_elbow_down - eased_front_elbow_down
-    t172 = t158 & (t165 <= left_along_front_elbow_down) & (t81 <= t171)
-    t173 = whole_y_front_elbow_down + eased_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t171, t101)
-    above_beta_front_elbow_down = np.maximum(t173, t101)
-    t174 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    spent_along_front_elbow_down = left_along_front_elbow_down <= t97
+    t174 = _runtime.select(spent_along_front_elbow_down, t171 / (t98 - t165), 0.0)
+    t175 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t174)))
+    t176 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
+    t177 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t178 = v_2_beta_front_elbow_down * t176 / (t165 * t165 + t177)
+    t179 = _runtime.select(0.0 <= rest_front_elbow_down, -t178, t178)
+    t180 = part_y_front_elbow_down + whole_y_front_elbow_down * t179
+    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, t180, part_y_front_elbow_down)
+    t181 = whole_y_front_elbow_down - eased_front_elbow_down
+    t182 = t168 & (t175 <= left_along_front_elbow_down) & (t88 <= t181)
+    t183 = whole_y_front_elbow_down + eased_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t181, t108)
+    above_beta_front_elbow_down = np.maximum(t183, t108)
+    t184 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t175 = t174 / total_beta_front_elbow_down
-    along_u_front_elbow_down = p_2_beta_front_elbow_down + v_2_beta_front_elbow_down * t175
-    t176 = L1 - along_u_front_elbow_down
-    t177 = L1 + along_u_front_elbow_down
-    t178 = t172 & (t81 <= t173) & (t81 <= t176) & (t81 <= t177)
-    unreachable_2 = np.logical_not(t178)
-    t179 = _runtime.poison(invalid | unreachable_2)
-    t180 = _runtime.select(folded, 0.0, np.arctan2(-t124, out_front_elbow_down))
-    t181 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    t182 = np.arctan2(t181, 1.0)
-    t183 = t180 + t182
-    below_alpha_front_elbow_down = np.maximum(t176, t101)
-    above_alpha_front_elbow_down = np.maximum(t177, t101)
-    t184 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t185 = 1.0 / total_beta_front_elbow_down
+    t186 = t184 * t185
+    along_u_front_elbow_down = p_2_beta_front_elbow_down + v_2_beta_front_elbow_down * t186
+    t187 = L1 - along_u_front_elbow_down
+    t188 = L1 + along_u_front_elbow_down
+    t189 = t182 & (t88 <= t183) & (t88 <= t187) & (t88 <= t188)
+    unreachable_2 = np.logical_not(t189)
+    t190 = _runtime.poison(invalid | unreachable_2)
+    t191 = _runtime.select(folded, 0.0, np.arctan2(-t133, out_front_elbow_down))
+    t192 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t193 = np.arctan2(t192, 1.0)
+    t194 = t191 + t193
+    below_alpha_front_elbow_down = np.maximum(t187, t108)
+    above_alpha_front_elbow_down = np.maximum(t188, t108)
+    t195 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t185 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
-    t186 = np.arctan2(t184 / total_alpha_front_elbow_down, t185 / total_alpha_front_elbow_down)
-    t187 = _runtime.wrap_cut(_runtime.wrap(t183 - t186))
-    t188 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    t189 = t115 + t116 - (t182 - np.arctan2(t188, 1.0))
-    t190 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    t191 = np.arctan2(t175, t190 / total_beta_front_elbow_down)
-    t192 = t186 - t191
-    t193 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t189 + t192)))
-    t194 = _runtime.wrap_cut(_runtime.wrap(t183 + t186))
-    t195 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t189 - t192)))
-    t196 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t14))
-    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -((t33 + t34) / h))
-    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, (t35 - t36) / h)
+    t196 = 1.0 / total_alpha_front_elbow_down
+    t197 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t198 = np.arctan2(t195 * t196, t196 * t197)
+    t199 = _runtime.wrap_cut(_runtime.wrap(t194 - t198))
+    t200 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t201 = t124 + t125 - (t193 - np.arctan2(t200, 1.0))
+    t202 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t203 = t198 - np.arctan2(t186, t185 * t202)
+    t204 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t201 + t203)))
+    t205 = _runtime.wrap_cut(_runtime.wrap(t194 + t198))
+    t206 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t201 - t203)))
+    t207 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -(t33 * (t36 + t37)))
+    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, t33 * (t38 - t39))
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
-    t197 = outward_rear_elbow_up * outward_rear_elbow_up
-    square_rear_elbow_up = t31 + t197
-    t198 = t29 - square_rear_elbow_up
-    t199 = square_rear_elbow_up - t41
-    t200 = t25 & (-t28 <= t198) & (-t40 <= t199)
-    M_rear_elbow_up = np.maximum(t199, 0.0)
-    N_rear_elbow_up = np.maximum(t198, 0.0)
-    whole_rear_elbow_up = M_rear_elbow_up + N_rear_elbow_up
-    t201 = (M_rear_elbow_up - N_rear_elbow_up) / whole_rear_elbow_up
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t201)
-    t202 = c_lag * c_bend_rear_elbow_up
+    t208 = outward_rear_elbow_up * outward_rear_elbow_up
+    square_rear_elbow_up = t32 + t208
+    t209 = t30 - square_rear_elbow_up
+    t210 = square_rear_elbow_up - t44
+    t211 = t26 & (-t29 <= t209) & (-t43 <= t210)
+    M_rear_elbow_up = np.maximum(t210, 0.0)
+    N_rear_elbow_up = np.maximum(t209, 0.0)
+    t212 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t212 * (M_rear_elbow_up - N_rear_elbow_up))
+    t213 = c_lag * c_bend_rear_elbow_up
     rN_rear_elbow_up = np.sqrt(N_rear_elbow_up)
     rM_rear_elbow_up = np.sqrt(M_rear_elbow_up)
-    t203 = 2.0 * rN_rear_elbow_up * rM_rear_elbow_up / whole_rear_elbow_up
-    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t203)
-    t204 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t202 - t204
-    t205 = s_lag * c_bend_rear_elbow_up
-    t206 = c_lag * s_bend_rear_elbow_up
-    s_relative_rear_elbow_up = t205 + t206
+    t214 = t212 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
+    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t214)
+    t215 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t213 - t215
+    t216 = s_lag * c_bend_rear_elbow_up
+    t217 = c_lag * s_bend_rear_elbow_up
+    s_relative_rear_elbow_up = t216 + t217
     v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
     whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
-    t207 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
+    t218 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
     v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
-    folded_rear_elbow_up = t51 + np.abs(outward_rear_elbow_up) <= t45
-    t208 = t52 * s_bend_rear_elbow_up
-    t209 = t39 + t27 * M_rear_elbow_up / whole_rear_elbow_up
-    ahead_1_rear_elbow_up = _runtime.select(short, t26, t209)
-    t210 = outward_rear_elbow_up * ahead_1_rear_elbow_up
-    out_rear_elbow_up = t208 + t210
-    t211 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
-    t212 = t30 * ahead_1_rear_elbow_up
-    t213 = t211 - t212
-    t214 = out_rear_elbow_up * out_rear_elbow_up + t213 * t213
-    norm_rear_elbow_up = np.sqrt(t214)
-    ctheta2A_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, out_rear_elbow_up / norm_rear_elbow_up)
-    t215 = _runtime.select(folded_rear_elbow_up, 0.0, t213 / norm_rear_elbow_up)
-    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up - higher * t215
-    t216 = ahead * t215 + higher * ctheta2A_rear_elbow_up
-    t217 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t216
-    t218 = _runtime.select(0.0 <= -t217, 1.0, -1.0)
-    room_alpha_rear_elbow_up = whole_alpha_rear_elbow_up * t207 + t217 * t218
-    spent_alpha_rear_elbow_up = room_alpha_rear_elbow_up <= t61
-    drawn_rear_elbow_up = L1 + L_2W * s_relative_rear_elbow_up + a_3W * c_relative_rear_elbow_up
-    t219 = v_2_rear_elbow_up * t207 * drawn_rear_elbow_up
-    t220 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t216
-    t221 = t219 - t218 * t220
+    folded_rear_elbow_up = t56 + np.abs(outward_rear_elbow_up) <= t49
+    t219 = t57 * s_bend_rear_elbow_up
+    ahead_1_rear_elbow_up = _runtime.select(short, t27, t42 + t28 * M_rear_elbow_up * t212)
+    t220 = outward_rear_elbow_up * ahead_1_rear_elbow_up
+    out_rear_elbow_up = t219 + t220
+    t221 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
+    t222 = t31 * ahead_1_rear_elbow_up
+    t223 = t221 - t222
+    t224 = out_rear_elbow_up * out_rear_elbow_up + t223 * t223
+    t225 = 1.0 / np.sqrt(t224)
+    ctheta2A_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, out_rear_elbow_up * t225)
+    t226 = _runtime.select(folded_rear_elbow_up, 0.0, t223 * t225)
+    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up - higher * t226
+    t227 = ahead * t226 + higher * ctheta2A_rear_elbow_up
+    t228 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t227
+    t229 = _runtime.select(0.0 <= -t228, 1.0, -1.0)
+    room_alpha_rear_elbow_up = whole_alpha_rear_elbow_up * t218 + t228 * t229
+    spent_alpha_rear_elbow_up = room_alpha_rear_elbow_up <= t67
     tilt_rear_elbow_up = L_2W * c_relative_rear_elbow_up - a_3W * s_relative_rear_elbow_up
-    t222 = t63 + np.abs(tilt_rear_elbow_up)
-    t223 = _runtime.select(spent_alpha_rear_elbow_up, size * np.abs(t221) / t222, 0.0)
-    t224 = -(_runtime.FEASIBILITY * (t44 + t223)) <= room_alpha_rear_elbow_up
-    t225 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t221 * t225 / (2.0 * (t68 + t221 * t221)), 0.0)
-    t226 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t226 / L1, 0.0)
-    t227 = p_1_rear_elbow_up + t216 * lean_alpha_rear_elbow_up
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t227, p_1_rear_elbow_up)
+    t230 = 1.0 / (t68 + np.abs(tilt_rear_elbow_up))
+    drawn_rear_elbow_up = L1 + L_2W * s_relative_rear_elbow_up + a_3W * c_relative_rear_elbow_up
+    t231 = v_2_rear_elbow_up * t218 * drawn_rear_elbow_up
+    t232 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t227
+    t233 = t231 - t229 * t232
+    t234 = _runtime.select(spent_alpha_rear_elbow_up, t230 * (size * np.abs(t233)), 0.0)
+    t235 = -(_runtime.FEASIBILITY * (t47 + t234)) <= room_alpha_rear_elbow_up
+    t236 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t233 * t236 / (2.0 * (t74 + t233 * t233)), 0.0)
+    t237 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t76 * t237, 0.0)
+    t238 = p_1_rear_elbow_up + t227 * lean_alpha_rear_elbow_up
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t238, p_1_rear_elbow_up)
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t228 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
-    t229 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t229, v_1_rear_elbow_up)
+    t239 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
+    t240 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t240, v_1_rear_elbow_up)
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t230 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
-    t231 = part_beta_rear_elbow_up * t228 - whole_beta_rear_elbow_up * t230
-    spent_beta_rear_elbow_up = -t231 <= t61
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t229, v_2_rear_elbow_up)
-    t232 = drawn_rear_elbow_up * t230 * v_2_alpha_rear_elbow_up
-    t233 = t216 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
-    t234 = _runtime.select(spent_alpha_rear_elbow_up, t233, t216)
-    t235 = t232 + (L1 - drawn_rear_elbow_up) * t228 * t234
-    t236 = _runtime.select(spent_beta_rear_elbow_up, size * np.abs(t235) / t222, 0.0)
-    t237 = -(_runtime.FEASIBILITY * (t44 + t236)) <= -t231
-    t238 = t235 * (t231 + np.abs(t231)) / (2.0 * (t68 + t235 * t235))
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t238, 0.0)
-    t239 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t239 / L1, 0.0)
-    t240 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
-    t241 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t240
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t241, v_1_alpha_rear_elbow_up)
+    t241 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
+    t242 = part_beta_rear_elbow_up * t239 - whole_beta_rear_elbow_up * t241
+    spent_beta_rear_elbow_up = -t242 <= t67
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t240, v_2_rear_elbow_up)
+    t243 = drawn_rear_elbow_up * t241 * v_2_alpha_rear_elbow_up
+    t244 = t227 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    t245 = _runtime.select(spent_alpha_rear_elbow_up, t244, t227)
+    t246 = t243 + (L1 - drawn_rear_elbow_up) * t239 * t245
+    t247 = _runtime.select(spent_beta_rear_elbow_up, t230 * (size * np.abs(t246)), 0.0)
+    t248 = -(_runtime.FEASIBILITY * (t47 + t247)) <= -t242
+    t249 = t246 * (t242 + np.abs(t242)) / (2.0 * (t74 + t246 * t246))
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t249, 0.0)
+    t250 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t76 * t250, 0.0)
+    t251 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
+    t252 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t251
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t252, v_1_alpha_rear_elbow_up)
     sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_up), 1.0, -1.0)
-    t242 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    t243 = p_1_alpha_rear_elbow_up + t234 * lean_beta_rear_elbow_up
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t243, p_1_alpha_rear_elbow_up)
-    t244 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t245 = t200 & t224 & t237 & (t81 <= -(t242 + np.abs(t244)))
-    t246 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    p_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t234 - t246, t234)
-    t247 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t240
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t247, v_2_alpha_rear_elbow_up)
-    t248 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t242 <= _runtime.VANISHING * (64.0 * t248)
-    t249 = _runtime.select(0.0 <= v_2_beta_rear_elbow_up, p_2_beta_rear_elbow_up, -p_2_beta_rear_elbow_up)
-    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, t249, -t244)
-    t250 = v_2_beta_rear_elbow_up * part_y_rear_elbow_up
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t248, -t242)
-    rest_rear_elbow_up = p_2_beta_rear_elbow_up - t250 / whole_y_rear_elbow_up
+    t253 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t254 = p_1_alpha_rear_elbow_up + t245 * lean_beta_rear_elbow_up
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t254, p_1_alpha_rear_elbow_up)
+    t255 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t256 = t211 & t235 & t248 & (t88 <= -(t253 + np.abs(t255)))
+    t257 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    p_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t245 - t257, t245)
+    t258 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t251
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t258, v_2_alpha_rear_elbow_up)
+    t259 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t253 <= _runtime.VANISHING * (64.0 * t259)
+    t260 = _runtime.select(0.0 <= v_2_beta_rear_elbow_up, p_2_beta_rear_elbow_up, -p_2_beta_rear_elbow_up)
+    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, t260, -t255)
+    t261 = v_2_beta_rear_elbow_up * part_y_rear_elbow_up
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t259, -t253)
+    rest_rear_elbow_up = p_2_beta_rear_elbow_up - t261 / whole_y_rear_elbow_up
     left_along_rear_elbow_up = L1 - np.abs(-rest_rear_elbow_up)
-    spent_along_rear_elbow_up = left_along_rear_elbow_up <= t90
-    t251 = _runtime.select(spent_along_rear_elbow_up, t248 / (t91 - t242), 0.0)
-    t252 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t251)))
-    t253 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
-    t254 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t255 = v_2_beta_rear_elbow_up * t253 / (t242 * t242 + t254)
-    t256 = _runtime.select(0.0 <= rest_rear_elbow_up, -t255, t255)
-    t257 = part_y_rear_elbow_up + whole_y_rear_elbow_up * t256
-    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, t257, part_y_rear_elbow_up)
-    t258 = whole_y_rear_elbow_up - eased_rear_elbow_up
-    t259 = t245 & (t252 <= left_along_rear_elbow_up) & (t81 <= t258)
-    t260 = whole_y_rear_elbow_up + eased_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t258, t101)
-    above_beta_rear_elbow_up = np.maximum(t260, t101)
-    t261 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    spent_along_rear_elbow_up = left_along_rear_elbow_up <= t97
+    t262 = _runtime.select(spent_along_rear_elbow_up, t259 / (t98 - t253), 0.0)
+    t263 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t262)))
+    t264 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
+    t265 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t266 = v_2_beta_rear_elbow_up * t264 / (t253 * t253 + t265)
+    t267 = _runtime.select(0.0 <= rest_rear_elbow_up, -t266, t266)
+    t268 = part_y_rear_elbow_up + whole_y_rear_elbow_up * t267
+    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, t268, part_y_rear_elbow_up)
+    t269 = whole_y_rear_elbow_up - eased_rear_elbow_up
+    t270 = t256 & (t263 <= left_along_rear_elbow_up) & (t88 <= t269)
+    t271 = whole_y_rear_elbow_up + eased_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t269, t108)
+    above_beta_rear_elbow_up = np.maximum(t271, t108)
+    t272 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t262 = t261 / total_beta_rear_elbow_up
-    along_u_rear_elbow_up = p_2_beta_rear_elbow_up + v_2_beta_rear_elbow_up * t262
-    t263 = L1 - along_u_rear_elbow_up
-    t264 = L1 + along_u_rear_elbow_up
-    t265 = t259 & (t81 <= t260) & (t81 <= t263) & (t81 <= t264)
-    unreachable_3 = np.logical_not(t265)
-    t266 = _runtime.poison(invalid | unreachable_3)
-    t267 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t213, out_rear_elbow_up))
-    t268 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    t269 = np.arctan2(t268, 1.0)
-    t270 = t267 + t269
-    below_alpha_rear_elbow_up = np.maximum(t263, t101)
-    above_alpha_rear_elbow_up = np.maximum(t264, t101)
-    t271 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t273 = 1.0 / total_beta_rear_elbow_up
+    t274 = t272 * t273
+    along_u_rear_elbow_up = p_2_beta_rear_elbow_up + v_2_beta_rear_elbow_up * t274
+    t275 = L1 - along_u_rear_elbow_up
+    t276 = L1 + along_u_rear_elbow_up
+    t277 = t270 & (t88 <= t271) & (t88 <= t275) & (t88 <= t276)
+    unreachable_3 = np.logical_not(t277)
+    t278 = _runtime.poison(invalid | unreachable_3)
+    t279 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t223, out_rear_elbow_up))
+    t280 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t281 = np.arctan2(t280, 1.0)
+    t282 = t279 + t281
+    below_alpha_rear_elbow_up = np.maximum(t275, t108)
+    above_alpha_rear_elbow_up = np.maximum(t276, t108)
+    t283 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t272 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    t273 = np.arctan2(t271 / total_alpha_rear_elbow_up, t272 / total_alpha_rear_elbow_up)
-    t274 = _runtime.wrap_cut(_runtime.wrap(t270 - t273))
-    t275 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
-    t276 = _runtime.select(short, 0.0, 2.0 * t275)
-    t277 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
-    t278 = t116 - t269 + (t276 + np.arctan2(t277, 1.0))
-    t279 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    t280 = np.arctan2(t262, t279 / total_beta_rear_elbow_up)
-    t281 = t273 - t280
-    t282 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t278 + t281)))
-    t283 = _runtime.wrap_cut(_runtime.wrap(t270 + t273))
-    t284 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t278 - t281)))
-    c_relative_rear_elbow_down = t202 + t204
-    s_relative_rear_elbow_down = t205 - t206
+    t284 = 1.0 / total_alpha_rear_elbow_up
+    t285 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t286 = np.arctan2(t283 * t284, t284 * t285)
+    t287 = _runtime.wrap_cut(_runtime.wrap(t282 - t286))
+    t288 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
+    t289 = _runtime.select(short, 0.0, 2.0 * t288)
+    t290 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t291 = t125 - t281 + (t289 + np.arctan2(t290, 1.0))
+    t292 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t293 = t286 - np.arctan2(t274, t273 * t292)
+    t294 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t291 + t293)))
+    t295 = _runtime.wrap_cut(_runtime.wrap(t282 + t286))
+    t296 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t291 - t293)))
+    c_relative_rear_elbow_down = t213 + t215
+    s_relative_rear_elbow_down = t216 - t217
     v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
     whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
-    t285 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
+    t297 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
     v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
-    t286 = t208 - t210
-    up_rear_elbow_down = t211 + t212
-    t287 = t286 * t286 + up_rear_elbow_down * up_rear_elbow_down
-    norm_rear_elbow_down = np.sqrt(t287)
-    ctheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 1.0, -(t286 / norm_rear_elbow_down))
-    stheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 0.0, up_rear_elbow_down / norm_rear_elbow_down)
+    t298 = t219 - t220
+    up_rear_elbow_down = t221 + t222
+    t299 = t298 * t298 + up_rear_elbow_down * up_rear_elbow_down
+    t300 = 1.0 / np.sqrt(t299)
+    ctheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 1.0, -(t298 * t300))
+    stheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 0.0, up_rear_elbow_down * t300)
     p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
-    t288 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
-    t289 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t288
-    t290 = _runtime.select(0.0 <= -t289, 1.0, -1.0)
-    room_alpha_rear_elbow_down = whole_alpha_rear_elbow_down * t285 + t289 * t290
-    spent_alpha_rear_elbow_down = room_alpha_rear_elbow_down <= t61
-    drawn_rear_elbow_down = L1 + L_2W * s_relative_rear_elbow_down + a_3W * c_relative_rear_elbow_down
-    t291 = v_2_rear_elbow_down * t285 * drawn_rear_elbow_down
-    t292 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t288
-    t293 = t291 - t290 * t292
+    t301 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
+    t302 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t301
+    t303 = _runtime.select(0.0 <= -t302, 1.0, -1.0)
+    room_alpha_rear_elbow_down = whole_alpha_rear_elbow_down * t297 + t302 * t303
+    spent_alpha_rear_elbow_down = room_alpha_rear_elbow_down <= t67
     tilt_rear_elbow_down = L_2W * c_relative_rear_elbow_down - a_3W * s_relative_rear_elbow_down
-    t294 = t63 + np.abs(tilt_rear_elbow_down)
-    t295 = _runtime.select(spent_alpha_rear_elbow_down, size * np.abs(t293) / t294, 0.0)
-    t296 = -(_runtime.FEASIBILITY * (t44 + t295)) <= room_alpha_rear_elbow_down
-    t297 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t293 * t297 / (2.0 * (t68 + t293 * t293)), 0.0)
-    t298 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t298 / L1, 0.0)
-    t299 = p_1_rear_elbow_down - t288 * lean_alpha_rear_elbow_down
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t299, p_1_rear_elbow_down)
+    t304 = 1.0 / (t68 + np.abs(tilt_rear_elbow_down))
+    drawn_rear_elbow_down = L1 + L_2W * s_relative_rear_elbow_down + a_3W * c_relative_rear_elbow_down
+    t305 = v_2_rear_elbow_down * t297 * drawn_rear_elbow_down
+    t306 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t301
+    t307 = t305 - t303 * t306
+    t308 = _runtime.select(spent_alpha_rear_elbow_down, t304 * (size * np.abs(t307)), 0.0)
+    t309 = -(_runtime.FEASIBILITY * (t47 + t308)) <= room_alpha_rear_elbow_down
+    t310 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t307 * t310 / (2.0 * (t74 + t307 * t307)), 0.0)
+    t311 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t76 * t311, 0.0)
+    t312 = p_1_rear_elbow_down - t301 * lean_alpha_rear_elbow_down
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t312, p_1_rear_elbow_down)
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t300 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
-    t301 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
-    t302 = v_1_rear_elbow_down - v_2_rear_elbow_down * t301
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t302, v_1_rear_elbow_down)
+    t313 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
+    t314 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
+    t315 = v_1_rear_elbow_down - v_2_rear_elbow_down * t314
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t315, v_1_rear_elbow_down)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t303 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
-    t304 = part_beta_rear_elbow_down * t300 - whole_beta_rear_elbow_down * t303
-    spent_beta_rear_elbow_down = -t304 <= t61
-    t305 = v_2_rear_elbow_down + v_1_rear_elbow_down * t301
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t305, v_2_rear_elbow_down)
-    t306 = drawn_rear_elbow_down * t303 * v_2_alpha_rear_elbow_down
-    t307 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    t308 = _runtime.select(spent_alpha_rear_elbow_down, t288 + t307, t288)
-    t309 = t306 - (L1 - drawn_rear_elbow_down) * t300 * t308
-    t310 = _runtime.select(spent_beta_rear_elbow_down, size * np.abs(t309) / t294, 0.0)
-    t311 = -(_runtime.FEASIBILITY * (t44 + t310)) <= -t304
-    t312 = t309 * (t304 + np.abs(t304)) / (2.0 * (t68 + t309 * t309))
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t312, 0.0)
-    t313 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t313 / L1, 0.0)
-    t314 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
-    t315 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t314
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t315, v_1_alpha_rear_elbow_down)
+    t316 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
+    t317 = part_beta_rear_elbow_down * t313 - whole_beta_rear_elbow_down * t316
+    spent_beta_rear_elbow_down = -t317 <= t67
+    t318 = v_2_rear_elbow_down + v_1_rear_elbow_down * t314
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t318, v_2_rear_elbow_down)
+    t319 = drawn_rear_elbow_down * t316 * v_2_alpha_rear_elbow_down
+    t320 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t321 = _runtime.select(spent_alpha_rear_elbow_down, t301 + t320, t301)
+    t322 = t319 - (L1 - drawn_rear_elbow_down) * t313 * t321
+    t323 = _runtime.select(spent_beta_rear_elbow_down, t304 * (size * np.abs(t322)), 0.0)
+    t324 = -(_runtime.FEASIBILITY * (t47 + t323)) <= -t317
+    t325 = t322 * (t317 + np.abs(t317)) / (2.0 * (t74 + t322 * t322))
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t325, 0.0)
+    t326 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t76 * t326, 0.0)
+    t327 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
+    t328 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t327
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t328, v_1_alpha_rear_elbow_down)
     sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_down), 1.0, -1.0)
-    t316 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    t317 = p_1_alpha_rear_elbow_down - t308 * lean_beta_rear_elbow_down
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t317, p_1_alpha_rear_elbow_down)
-    t318 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t319 = t200 & t296 & t311 & (t81 <= -(t316 + np.abs(t318)))
-    t320 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    t321 = _runtime.select(spent_beta_rear_elbow_down, t308 + t320, t308)
-    t322 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t314
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t322, v_2_alpha_rear_elbow_down)
-    t323 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t316 <= _runtime.VANISHING * (64.0 * t323)
-    t324 = _runtime.select(0.0 <= v_2_beta_rear_elbow_down, -t321, t321)
-    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t324, -t318)
-    t325 = v_2_beta_rear_elbow_down * part_y_rear_elbow_down
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t323, -t316)
-    t326 = t321 + t325 / whole_y_rear_elbow_down
-    left_along_rear_elbow_down = L1 - np.abs(t326)
-    spent_along_rear_elbow_down = left_along_rear_elbow_down <= t90
-    t327 = _runtime.select(spent_along_rear_elbow_down, t323 / (t91 - t316), 0.0)
-    t328 = -(_runtime.FEASIBILITY * (t80 * (1.0 + t327)))
-    t329 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
-    t330 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t331 = v_2_beta_rear_elbow_down * t329 / (t316 * t316 + t330)
-    t332 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t326, -t331, t331)
-    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t332, part_y_rear_elbow_down)
-    t333 = whole_y_rear_elbow_down - eased_rear_elbow_down
-    t334 = t319 & (t328 <= left_along_rear_elbow_down) & (t81 <= t333)
-    t335 = whole_y_rear_elbow_down + eased_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t333, t101)
-    above_beta_rear_elbow_down = np.maximum(t335, t101)
-    t336 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t329 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t330 = p_1_alpha_rear_elbow_down - t321 * lean_beta_rear_elbow_down
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t330, p_1_alpha_rear_elbow_down)
+    t331 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t332 = t211 & t309 & t324 & (t88 <= -(t329 + np.abs(t331)))
+    t333 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t334 = _runtime.select(spent_beta_rear_elbow_down, t321 + t333, t321)
+    t335 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t327
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t335, v_2_alpha_rear_elbow_down)
+    t336 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t329 <= _runtime.VANISHING * (64.0 * t336)
+    t337 = _runtime.select(0.0 <= v_2_beta_rear_elbow_down, -t334, t334)
+    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t337, -t331)
+    t338 = v_2_beta_rear_elbow_down * part_y_rear_elbow_down
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t336, -t329)
+    t339 = t334 + t338 / whole_y_rear_elbow_down
+    left_along_rear_elbow_down = L1 - np.abs(t339)
+    spent_along_rear_elbow_down = left_along_rear_elbow_down <= t97
+    t340 = _runtime.select(spent_along_rear_elbow_down, t336 / (t98 - t329), 0.0)
+    t341 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t340)))
+    t342 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
+    t343 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t344 = v_2_beta_rear_elbow_down * t342 / (t329 * t329 + t343)
+    t345 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t339, -t344, t344)
+    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t345, part_y_rear_elbow_down)
+    t346 = whole_y_rear_elbow_down - eased_rear_elbow_down
+    t347 = t332 & (t341 <= left_along_rear_elbow_down) & (t88 <= t346)
+    t348 = whole_y_rear_elbow_down + eased_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t346, t108)
+    above_beta_rear_elbow_down = np.maximum(t348, t108)
+    t349 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t337 = t336 / total_beta_rear_elbow_down
-    t338 = t321 - v_2_beta_rear_elbow_down * t337
-    t339 = L1 + t338
-    t340 = L1 - t338
-    t341 = t334 & (t81 <= t335) & (t81 <= t339) & (t81 <= t340)
-    unreachable_4 = np.logical_not(t341)
-    t342 = _runtime.poison(invalid | unreachable_4)
-    t343 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t286))
-    t344 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    t345 = np.arctan2(t344, 1.0)
-    t346 = t343 + t345
-    below_alpha_rear_elbow_down = np.maximum(t339, t101)
-    above_alpha_rear_elbow_down = np.maximum(t340, t101)
-    t347 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t350 = 1.0 / total_beta_rear_elbow_down
+    t351 = t349 * t350
+    t352 = t334 - v_2_beta_rear_elbow_down * t351
+    t353 = L1 + t352
+    t354 = L1 - t352
+    t355 = t347 & (t88 <= t348) & (t88 <= t353) & (t88 <= t354)
+    unreachable_4 = np.logical_not(t355)
+    t356 = _runtime.poison(invalid | unreachable_4)
+    t357 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t298))
+    t358 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t359 = np.arctan2(t358, 1.0)
+    t360 = t357 + t359
+    below_alpha_rear_elbow_down = np.maximum(t353, t108)
+    above_alpha_rear_elbow_down = np.maximum(t354, t108)
+    t361 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t348 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    t349 = np.arctan2(t347 / total_alpha_rear_elbow_down, t348 / total_alpha_rear_elbow_down)
-    t350 = _runtime.wrap_cut(_runtime.wrap(t346 - t349))
-    t351 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
-    t352 = t116 - t276 - (t345 - np.arctan2(t351, 1.0))
-    t353 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    t354 = np.arctan2(t337, t353 / total_beta_rear_elbow_down)
-    t355 = t349 - t354
-    t356 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t352 + t355)))
-    t357 = _runtime.wrap_cut(_runtime.wrap(t346 + t349))
-    t358 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t352 - t355)))
-    t359 = nowhere | folded | short
-    t360 = _runtime.status(invalid, unreachable, t359 | parallel)
-    t361 = _runtime.status(invalid, unreachable_2, t359 | parallel_front_elbow_down)
-    t362 = nowhere | folded_rear_elbow_up | short
-    t363 = _runtime.status(invalid, unreachable_3, t362 | parallel_rear_elbow_up)
-    t364 = _runtime.status(invalid, unreachable_4, t362 | parallel_rear_elbow_down)
+    t362 = 1.0 / total_alpha_rear_elbow_down
+    t363 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t364 = np.arctan2(t361 * t362, t362 * t363)
+    t365 = _runtime.wrap_cut(_runtime.wrap(t360 - t364))
+    t366 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t367 = t125 - t289 - (t359 - np.arctan2(t366, 1.0))
+    t368 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t369 = t364 - np.arctan2(t351, t350 * t368)
+    t370 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t367 + t369)))
+    t371 = _runtime.wrap_cut(_runtime.wrap(t360 + t364))
+    t372 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t367 - t369)))
+    t373 = nowhere | folded | short
+    t374 = _runtime.status(invalid, unreachable, t373 | parallel)
+    t375 = _runtime.status(invalid, unreachable_2, t373 | parallel_front_elbow_down)
+    t376 = nowhere | folded_rear_elbow_up | short
+    t377 = _runtime.status(invalid, unreachable_3, t376 | parallel_rear_elbow_up)
+    t378 = _runtime.status(invalid, unreachable_4, t376 | parallel_rear_elbow_down)
     return (
-        t15 + t106,
-        t112 + t106,
-        t119 + t106,
-        t120 + t106,
-        t121 + t106,
-        t122 + t106,
-        t15 + t179,
-        t187 + t179,
-        t193 + t179,
-        t194 + t179,
-        t195 + t179,
-        t122 + t179,
-        t196 + t266,
-        t274 + t266,
-        t282 + t266,
-        t283 + t266,
-        t284 + t266,
-        t122 + t266,
-        t196 + t342,
-        t350 + t342,
-        t356 + t342,
-        t357 + t342,
-        t358 + t342,
-        t122 + t342,
-        t360,
-        t361,
-        t363,
-        t364,
+        t16 + t114,
+        t121 + t114,
+        t128 + t114,
+        t129 + t114,
+        t130 + t114,
+        t131 + t114,
+        t16 + t190,
+        t199 + t190,
+        t204 + t190,
+        t205 + t190,
+        t206 + t190,
+        t131 + t190,
+        t207 + t278,
+        t287 + t278,
+        t294 + t278,
+        t295 + t278,
+        t296 + t278,
+        t131 + t278,
+        t207 + t356,
+        t365 + t356,
+        t370 + t356,
+        t371 + t356,
+        t372 + t356,
+        t131 + t356,
+        t374,
+        t375,
+        t377,
+        t378,
     )
 
 

@@ -10,7 +10,7 @@
 #   jacobian: 56 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
 #   determinant: 56 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
 #   singularities: 56 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
-#   ik: 374 compare and select, 374 add, 28 atan2, 82 divide, 452 multiply, 3 sincos, 31 sqrt
+#   ik: 374 compare and select, 374 add, 28 atan2, 41 divide, 517 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -1155,706 +1155,712 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t2 = np.arctan2(x, y)
     t3 = lp * s_pitch
     t4 = c_phi * c_psi
-    t5 = d - (gs - al) * t4
-    t6 = (gs + al) * t4 - d
-    t7 = np.sqrt(np.maximum(t5, 0.0)) * np.sqrt(np.maximum(t6, 0.0))
-    t8 = loff + lp * c_pitch + t7 / t4
-    t9 = s_psi * t8
-    t10 = s_phi * t3 - c_phi * t9
-    t11 = h + t10
-    below = np.maximum(t11, 0.0)
-    t12 = np.sqrt(below)
-    t13 = h - t10
-    above = np.maximum(t13, 0.0)
-    t14 = np.sqrt(above)
-    t15 = 2.0 * np.arctan2(t12, t14)
-    t16 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t15))
-    t17 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t21 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t22 = t19 & (0.0 <= loff) & (0.0 <= lp) & t20 & (np.abs(t21) <= _runtime.ROTATION)
-    invalid = np.logical_not(t22)
-    t23 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t6)
-    t25 = -(_runtime.FEASIBILITY * t1)
-    t26 = t24 & (t23 <= t5) & (t25 <= t11) & (t25 <= t13)
-    L_2W = L2 + c_psi * t8
-    a_3W = a3 + c_phi * t3 + s_phi * t9
+    t5 = 1.0 / t4
+    t6 = d - (gs - al) * t4
+    t7 = (gs + al) * t4 - d
+    t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    t9 = loff + lp * c_pitch + t5 * t8
+    t10 = s_psi * t9
+    t11 = s_phi * t3 - c_phi * t10
+    t12 = h + t11
+    below = np.maximum(t12, 0.0)
+    t13 = np.sqrt(below)
+    t14 = h - t11
+    above = np.maximum(t14, 0.0)
+    t15 = np.sqrt(above)
+    t16 = 2.0 * np.arctan2(t13, t15)
+    t17 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t16))
+    t18 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t19 = t18 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t20 = t19 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    t21 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t22 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t23 = t20 & (0.0 <= loff) & (0.0 <= lp) & t21 & (np.abs(t22) <= _runtime.ROTATION)
+    invalid = np.logical_not(t23)
+    t24 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t7)
+    t26 = -(_runtime.FEASIBILITY * t1)
+    t27 = t25 & (t24 <= t6) & (t26 <= t12) & (t26 <= t14)
+    L_2W = L2 + c_psi * t9
+    a_3W = a3 + c_phi * t3 + s_phi * t10
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t27 = L1 + fore
-    t28 = L1 * 2.0
-    t29 = 2.0 * fore
-    t30 = -(_runtime.FEASIBILITY * (t27 * (t28 + t29)))
-    t31 = t27 * t27
-    t32 = z - d1
-    t33 = t32 * t32
-    total = below + above
-    t34 = (below - above) / total
-    t35 = y * t34
-    s_turn = 2.0 * t12 * t14 / total
-    t36 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -((t35 - t36) / h))
-    t37 = x * t34
-    t38 = y * s_turn
-    s1 = _runtime.select(nowhere, 0.0, (t37 + t38) / h)
+    t28 = L1 + fore
+    t29 = L1 * 2.0
+    t30 = 2.0 * fore
+    t31 = -(_runtime.FEASIBILITY * (t28 * (t29 + t30)))
+    t32 = t28 * t28
+    t33 = z - d1
+    t34 = t33 * t33
+    t35 = 1.0 / h
+    t36 = 1.0 / (below + above)
+    t37 = (below - above) * t36
+    t38 = y * t37
+    s_turn = t36 * (2.0 * t13 * t15)
+    t39 = x * s_turn
+    c1 = _runtime.select(nowhere, 1.0, -(t35 * (t38 - t39)))
+    t40 = x * t37
+    t41 = y * s_turn
+    s1 = _runtime.select(nowhere, 0.0, t35 * (t40 + t41))
     outward = x * c1 + y * s1
-    square = t33 + outward * outward
-    t39 = t31 - square
-    t40 = L1 / 8796093022208.0 + fore / 8796093022208.0
-    t41 = L1 - fore
-    t42 = _runtime.FEASIBILITY * (t27 * (t40 + 2.0 * np.abs(t41)))
-    t43 = t41 * t41
-    t44 = square - t43
-    t45 = t26 & (t30 <= t39) & (-t42 <= t44)
+    square = t34 + outward * outward
+    t42 = t32 - square
+    t43 = L1 / 8796093022208.0 + fore / 8796093022208.0
+    t44 = L1 - fore
+    t45 = _runtime.FEASIBILITY * (t28 * (t43 + 2.0 * np.abs(t44)))
+    t46 = t44 * t44
+    t47 = square - t46
+    t48 = t27 & (t31 <= t42) & (-t45 <= t47)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    t46 = d * size
-    short = L1 * fore <= _runtime.VANISHING * t31
-    N = np.maximum(t39, 0.0)
-    M = np.maximum(t44, 0.0)
-    whole = N + M
-    c_bend = _runtime.select(short, 1.0, -((N - M) / whole))
-    t47 = _runtime.VANISHING * t27
-    bare = fore <= t47
-    s_lag = _runtime.select(bare, 0.0, L_2W / fore)
-    t48 = c_bend * s_lag
-    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, 2.0 * np.sqrt(N) * np.sqrt(M) / whole)
-    c_lag = _runtime.select(bare, 1.0, a_3W / fore)
-    t49 = s_bend_front_elbow_down_alike * c_lag
-    s_relative = t48 - t49
-    t50 = c_bend * c_lag
-    t51 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t50 + t51
+    t49 = d * size
+    short = L1 * fore <= _runtime.VANISHING * t32
+    N = np.maximum(t42, 0.0)
+    M = np.maximum(t47, 0.0)
+    t50 = 1.0 / (N + M)
+    c_bend = _runtime.select(short, 1.0, -((N - M) * t50))
+    t51 = _runtime.VANISHING * t28
+    bare = fore <= t51
+    t52 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t52)
+    t53 = c_bend * s_lag
+    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t50 * (2.0 * np.sqrt(N) * np.sqrt(M)))
+    c_lag = _runtime.select(bare, 1.0, a_3W * t52)
+    t54 = s_bend_front_elbow_down_alike * c_lag
+    s_relative = t53 - t54
+    t55 = c_bend * c_lag
+    t56 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t55 + t56
     straight_mid = L2 * s_relative + a3 * c_relative
-    t52 = 0.0 <= straight_mid
-    t53 = L2 * c_relative - a3 * s_relative
-    t54 = _runtime.select(t52, straight_mid, -straight_mid)
-    large_mid = fore_arm + t54
-    small_mid = t53 * t53 / large_mid
-    N_mid = t28 * _runtime.select(t52, small_mid, large_mid)
-    t55 = np.abs(t32)
-    folded = t55 + np.abs(outward) <= t47
-    t56 = t32 * fore
-    t57 = s_bend_front_elbow_down_alike * t56
-    ahead_1 = _runtime.select(short, t27, t41 + t29 * M / whole)
-    t58 = outward * ahead_1
-    t59 = t57 - t58
-    t60 = fore * outward * s_bend_front_elbow_down_alike
-    t61 = t32 * ahead_1
-    up = t60 + t61
-    norm = np.sqrt(t59 * t59 + up * up)
-    ctheta2A = _runtime.select(folded, 1.0, -(t59 / norm))
-    stheta2A = _runtime.select(folded, 0.0, up / norm)
+    t57 = 0.0 <= straight_mid
+    t58 = L2 * c_relative - a3 * s_relative
+    t59 = _runtime.select(t57, straight_mid, -straight_mid)
+    large_mid = fore_arm + t59
+    small_mid = t58 * t58 / large_mid
+    N_mid = t29 * _runtime.select(t57, small_mid, large_mid)
+    t60 = 1.0 / c_phi
+    t61 = np.abs(t33)
+    folded = t61 + np.abs(outward) <= t51
+    t62 = t33 * fore
+    t63 = s_bend_front_elbow_down_alike * t62
+    ahead_1 = _runtime.select(short, t28, t44 + t50 * (t30 * M))
+    t64 = outward * ahead_1
+    t65 = t63 - t64
+    t66 = fore * outward * s_bend_front_elbow_down_alike
+    t67 = t33 * ahead_1
+    up = t66 + t67
+    t68 = 1.0 / np.sqrt(t65 * t65 + up * up)
+    ctheta2A = _runtime.select(folded, 1.0, -(t65 * t68))
+    stheta2A = _runtime.select(folded, 0.0, up * t68)
     ctheta23A = c_relative * ctheta2A - s_relative * stheta2A
     stheta23A = c_relative * stheta2A + s_relative * ctheta2A
-    t62 = s_phi * ctheta23A / c_phi - s_psi * stheta23A / t4
-    t63 = d * t62
-    t64 = s_psi * ctheta23A / t4 + s_phi * stheta23A / c_phi
-    t65 = d * t64
-    gap = t63 * t63 + t65 * t65
-    t66 = N_mid - gap
+    t69 = t60 * (s_phi * ctheta23A) - t5 * (s_psi * stheta23A)
+    t70 = d * t69
+    t71 = t5 * (s_psi * ctheta23A) + t60 * (s_phi * stheta23A)
+    t72 = d * t71
+    gap = t70 * t70 + t72 * t72
+    t73 = N_mid - gap
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
-    t67 = 2.0 * t63 * point_11 + 2.0 * t65 * point_21
-    room_right = t66 + t67
-    t68 = _runtime.VANISHING * t46
-    spent_right = room_right <= t68
+    t74 = 2.0 * t70 * point_11 + 2.0 * t72 * point_21
+    room_right = t73 + t74
+    t75 = _runtime.VANISHING * t49
+    spent_right = room_right <= t75
+    t76 = size / 100000.0
+    t77 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t78 = 1.0 / (t76 + t77)
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t69 = 2.0 * drawn
-    t70 = t65 - point_21
-    t71 = t63 - point_11
-    t72 = t69 * (ctheta2A * t70 - stheta2A * t71)
-    t73 = size / 100000.0
-    t74 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t75 = t73 + t74
-    t76 = _runtime.select(spent_right, size * np.abs(-t72) / t75, 0.0)
-    t77 = -(_runtime.FEASIBILITY * (t46 + t76)) <= room_right
-    room_left = t66 - t67
-    spent_left = room_left <= t68
-    h_left_0 = t65 + point_21
-    r_left_0 = t63 + point_11
-    slope_left = t69 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
-    t78 = _runtime.select(spent_left, size * np.abs(slope_left) / t75, 0.0)
-    t79 = -(_runtime.FEASIBILITY * (t46 + t78)) <= room_left
-    t80 = -(_runtime.FEASIBILITY * t46)
-    t81 = size * size
-    t82 = t81 * t81 / 10000000000.0
-    t83 = t72 * (room_right - np.abs(room_right)) / (2.0 * (t82 + t72 * t72))
-    t84 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t82 + slope_left * slope_left))
-    turn = _runtime.select(spent_right, t83, 0.0) + _runtime.select(spent_left, -t84, 0.0)
-    t85 = t72 * turn
-    t86 = room_right - t85
-    t87 = drawn * turn
-    t88 = ctheta2A * t87
-    t89 = t70 + t88 + t71 * turn
-    t90 = stheta2A * t87
-    t91 = t71 - t70 * turn - t90
-    t92 = t89 * t89 + t91 * t91
-    t93 = gap * gap
-    t94 = L1 - fore_arm
-    t95 = t94 * t94
-    M_mid = t28 * _runtime.select(t52, large_mid, small_mid)
-    t96 = M_mid + gap
-    t97 = _runtime.select(t81 * t92 < t93, t95 - t92, t67 - t85 - t96)
-    t98 = t45 & t77 & t79 & (t80 <= t86) & (t80 <= -t97)
-    t99 = slope_left * turn
-    t100 = room_left + t99
-    h_left = h_left_0 - t88 + r_left_0 * turn
-    r_left = r_left_0 + t90 - h_left_0 * turn
-    t101 = h_left * h_left + r_left * r_left
-    t102 = _runtime.select(t81 * t101 < t93, t101 - t95, t67 + t96 - t99)
-    unreachable = np.logical_not(t98 & (t80 <= t100) & (t80 <= t102))
-    t103 = _runtime.poison(invalid | unreachable)
-    t104 = t16 + t103
-    t105 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.abs(-t89) + np.abs(-t91) <= t105
-    t106 = np.arctan2(stheta2A, ctheta2A)
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t81
-    t107 = 2.0 * _runtime.select(0.0 <= -t53, 1.0, -1.0)
-    t108 = _runtime.VANISHING * (_runtime.VANISHING * (t46 * 16.0))
-    N_right = np.maximum(t86, t108)
+    t79 = 2.0 * drawn
+    t80 = t72 - point_21
+    t81 = t70 - point_11
+    t82 = t79 * (ctheta2A * t80 - stheta2A * t81)
+    t83 = _runtime.select(spent_right, t78 * (size * np.abs(-t82)), 0.0)
+    t84 = -(_runtime.FEASIBILITY * (t49 + t83)) <= room_right
+    room_left = t73 - t74
+    spent_left = room_left <= t75
+    h_left_0 = t72 + point_21
+    r_left_0 = t70 + point_11
+    slope_left = t79 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    t85 = _runtime.select(spent_left, t78 * (size * np.abs(slope_left)), 0.0)
+    t86 = -(_runtime.FEASIBILITY * (t49 + t85)) <= room_left
+    t87 = -(_runtime.FEASIBILITY * t49)
+    t88 = size * size
+    t89 = t88 * t88 / 10000000000.0
+    t90 = t82 * (room_right - np.abs(room_right)) / (2.0 * (t89 + t82 * t82))
+    t91 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t89 + slope_left * slope_left))
+    turn = _runtime.select(spent_right, t90, 0.0) + _runtime.select(spent_left, -t91, 0.0)
+    t92 = t82 * turn
+    t93 = room_right - t92
+    t94 = drawn * turn
+    t95 = ctheta2A * t94
+    t96 = t80 + t95 + t81 * turn
+    t97 = stheta2A * t94
+    t98 = t81 - t80 * turn - t97
+    t99 = t96 * t96 + t98 * t98
+    t100 = gap * gap
+    t101 = L1 - fore_arm
+    t102 = t101 * t101
+    M_mid = t29 * _runtime.select(t57, large_mid, small_mid)
+    t103 = M_mid + gap
+    t104 = _runtime.select(t88 * t99 < t100, t102 - t99, t74 - t92 - t103)
+    t105 = t48 & t84 & t86 & (t87 <= t93) & (t87 <= -t104)
+    t106 = slope_left * turn
+    t107 = room_left + t106
+    h_left = h_left_0 - t95 + r_left_0 * turn
+    r_left = r_left_0 + t97 - h_left_0 * turn
+    t108 = h_left * h_left + r_left * r_left
+    t109 = _runtime.select(t88 * t108 < t100, t108 - t102, t74 + t103 - t106)
+    unreachable = np.logical_not(t105 & (t87 <= t107) & (t87 <= t109))
+    t110 = _runtime.poison(invalid | unreachable)
+    t111 = t17 + t110
+    t112 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.abs(-t96) + np.abs(-t98) <= t112
+    t113 = np.arctan2(stheta2A, ctheta2A)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t88
+    t114 = _runtime.VANISHING * (_runtime.VANISHING * (t49 * 16.0))
+    M_right = np.maximum(-t104, t114)
+    N_right = np.maximum(t93, t114)
+    t115 = 1.0 / (M_right + N_right)
+    t116 = 2.0 * _runtime.select(0.0 <= -t58, 1.0, -1.0)
     rN_right = np.sqrt(N_right)
-    M_right = np.maximum(-t97, t108)
     rM_right = np.sqrt(M_right)
-    whole_right = M_right + N_right
-    s_bend_right = _runtime.select(short_right, 0.0, t107 * rN_right * rM_right / whole_right)
-    t109 = fore_arm * s_bend_right
-    t110 = 2.0 * fore_arm
-    ahead_1_right = _runtime.select(short_right, size, t94 + t110 * M_right / whole_right)
-    t111 = np.arctan2(t91 * t109 - t89 * ahead_1_right, -(t91 * ahead_1_right + t89 * t109))
-    t112 = _runtime.wrap_cut(_runtime.select(folded_right, t106, t111))
-    t113 = t112 + t103
+    s_bend_right = _runtime.select(short_right, 0.0, t115 * (t116 * rN_right * rM_right))
+    t117 = fore_arm * s_bend_right
+    t118 = 2.0 * fore_arm
+    ahead_1_right = _runtime.select(short_right, size, t101 + t118 * M_right * t115)
+    t119 = np.arctan2(t98 * t117 - t96 * ahead_1_right, -(t98 * ahead_1_right + t96 * t117))
+    t120 = _runtime.wrap_cut(_runtime.select(folded_right, t113, t119))
+    t121 = t120 + t110
     bare_right = fore_arm <= _runtime.VANISHING * size
-    s_lag_right = _runtime.select(bare_right, 0.0, L2 / fore_arm)
-    c_lag_right = _runtime.select(bare_right, 1.0, a3 / fore_arm)
-    t114 = np.arctan2(s_lag_right, c_lag_right)
-    t115 = _runtime.select(short_right, 0.0, t107 * np.arctan2(rN_right, rM_right))
-    t116 = _runtime.wrap_cut(_runtime.wrap(t114 + t115))
-    t117 = t116 + t103
-    folded_left = np.abs(h_left) + np.abs(r_left) <= t105
-    M_left = np.maximum(t102, 0.0)
-    N_left = np.maximum(t100, 0.0)
-    whole_left = M_left + N_left
-    ahead_1_left = _runtime.select(short_right, size, t94 + t110 * M_left / whole_left)
-    t118 = h_left * ahead_1_left
+    t122 = 1.0 / fore_arm
+    t123 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t122), _runtime.select(bare_right, 1.0, a3 * t122))
+    t124 = _runtime.select(short_right, 0.0, t116 * np.arctan2(rN_right, rM_right))
+    t125 = _runtime.wrap_cut(_runtime.wrap(t123 + t124))
+    t126 = t125 + t110
+    folded_left = np.abs(h_left) + np.abs(r_left) <= t112
+    M_left = np.maximum(t109, 0.0)
+    N_left = np.maximum(t107, 0.0)
+    t127 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t101 + t118 * M_left * t127)
+    t128 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     rM_left = np.sqrt(M_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t107 * rN_left * rM_left / whole_left)
-    t119 = fore_arm * s_bend_left
-    t120 = r_left * t119
-    t121 = r_left * ahead_1_left
-    t122 = h_left * t119
-    t123 = _runtime.select(folded_left, t106, np.arctan2(t118 - t120, t121 + t122))
-    t124 = _runtime.select(short_right, 0.0, t107 * np.arctan2(rN_left, rM_left))
-    t125 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    t126 = t125 + t103
-    t127 = _runtime.select(folded_left, t106, np.arctan2(t118 + t120, t121 - t122))
-    s_relative_front_elbow_down_alike = t48 + t49
-    c_relative_front_elbow_down_alike = t50 - t51
+    s_bend_left = _runtime.select(short_right, 0.0, t127 * (t116 * rN_left * rM_left))
+    t129 = fore_arm * s_bend_left
+    t130 = r_left * t129
+    t131 = r_left * ahead_1_left
+    t132 = h_left * t129
+    t133 = _runtime.select(folded_left, t113, np.arctan2(t128 - t130, t131 + t132))
+    t134 = _runtime.select(short_right, 0.0, t116 * np.arctan2(rN_left, rM_left))
+    t135 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t136 = t135 + t110
+    t137 = _runtime.select(folded_left, t113, np.arctan2(t128 + t130, t131 - t132))
+    s_relative_front_elbow_down_alike = t53 + t54
+    c_relative_front_elbow_down_alike = t55 - t56
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t128 = 0.0 <= straight_mid_front_elbow_down_alike
-    t129 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    t130 = _runtime.select(t128, straight_mid_front_elbow_down_alike, -straight_mid_front_elbow_down_alike)
-    large_mid_front_elbow_down_alike = fore_arm + t130
-    small_mid_front_elbow_down_alike = t129 * t129 / large_mid_front_elbow_down_alike
-    t131 = _runtime.select(t128, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    out_front_elbow_down_alike = t57 + t58
-    t132 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t133 = t60 - t61
-    norm_front_elbow_down_alike = np.sqrt(t132 + t133 * t133)
-    t134 = out_front_elbow_down_alike / norm_front_elbow_down_alike
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t134)
-    t135 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t136 = _runtime.select(folded, 0.0, t133 / norm_front_elbow_down_alike)
-    ctheta23A_front_elbow_down_alike = t135 + s_relative_front_elbow_down_alike * t136
-    t137 = s_phi * ctheta23A_front_elbow_down_alike / c_phi
-    t138 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t139 = c_relative_front_elbow_down_alike * t136 - t138
-    t140 = d * (t137 + s_psi * t139 / t4)
-    t141 = s_psi * ctheta23A_front_elbow_down_alike / t4
-    t142 = d * (t141 - s_phi * t139 / c_phi)
-    gap_front_elbow_down_alike = t140 * t140 + t142 * t142
-    t143 = t28 * t131 - gap_front_elbow_down_alike
-    t144 = L1 * ctheta2A_front_elbow_down_alike - L2 * t139
-    point_11_front_elbow_down_alike = t144 + a3 * ctheta23A_front_elbow_down_alike
-    t145 = L1 * t136 + L2 * ctheta23A_front_elbow_down_alike
-    t146 = t145 + a3 * t139
-    t147 = 2.0 * t140 * point_11_front_elbow_down_alike - 2.0 * t142 * t146
-    room_right_front_elbow_down_alike = t143 + t147
-    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t68
-    t148 = L1 + L_2W * s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t148 + a_3W * c_relative_front_elbow_down_alike
-    t149 = 2.0 * drawn_front_elbow_down_alike
-    t150 = t142 + t146
-    t151 = t140 - point_11_front_elbow_down_alike
-    t152 = ctheta2A_front_elbow_down_alike * t150 + t136 * t151
-    t153 = t149 * t152
+    t138 = 0.0 <= straight_mid_front_elbow_down_alike
+    t139 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    t140 = _runtime.select(t138, straight_mid_front_elbow_down_alike, -straight_mid_front_elbow_down_alike)
+    large_mid_front_elbow_down_alike = fore_arm + t140
+    small_mid_front_elbow_down_alike = t139 * t139 / large_mid_front_elbow_down_alike
+    t141 = _runtime.select(t138, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    out_front_elbow_down_alike = t63 + t64
+    t142 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t143 = t66 - t67
+    t144 = 1.0 / np.sqrt(t142 + t143 * t143)
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, out_front_elbow_down_alike * t144)
+    t145 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t146 = _runtime.select(folded, 0.0, t143 * t144)
+    ctheta23A_front_elbow_down_alike = t145 + s_relative_front_elbow_down_alike * t146
+    t147 = t60 * (s_phi * ctheta23A_front_elbow_down_alike)
+    t148 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t149 = c_relative_front_elbow_down_alike * t146 - t148
+    t150 = d * (t147 + t5 * (s_psi * t149))
+    t151 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
+    t152 = d * (t151 - t60 * (s_phi * t149))
+    gap_front_elbow_down_alike = t150 * t150 + t152 * t152
+    t153 = t29 * t141 - gap_front_elbow_down_alike
+    t154 = L1 * ctheta2A_front_elbow_down_alike - L2 * t149
+    point_11_front_elbow_down_alike = t154 + a3 * ctheta23A_front_elbow_down_alike
+    t155 = L1 * t146 + L2 * ctheta23A_front_elbow_down_alike
+    t156 = t155 + a3 * t149
+    t157 = 2.0 * t150 * point_11_front_elbow_down_alike - 2.0 * t152 * t156
+    room_right_front_elbow_down_alike = t153 + t157
+    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t75
     tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t154 = t73 + np.abs(tilt_front_elbow_down_alike)
-    t155 = _runtime.select(spent_right_front_elbow_down_alike, size * np.abs(-t153) / t154, 0.0)
-    t156 = -(_runtime.FEASIBILITY * (t46 + t155)) <= room_right_front_elbow_down_alike
-    room_left_front_elbow_down_alike = t143 - t147
-    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t68
-    h_left_0_front_elbow_down_alike = t142 - t146
-    t157 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = t140 + point_11_front_elbow_down_alike
-    t158 = t157 + t136 * r_left_0_front_elbow_down_alike
-    slope_left_front_elbow_down_alike = t149 * t158
-    t159 = size * np.abs(slope_left_front_elbow_down_alike)
-    t160 = _runtime.select(spent_left_front_elbow_down_alike, t159 / t154, 0.0)
-    t161 = -(_runtime.FEASIBILITY * (t46 + t160)) <= room_left_front_elbow_down_alike
-    t162 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
-    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t153 * t162 / (2.0 * (t82 + t153 * t153)), 0.0)
-    t163 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
-    t164 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t165 = slope_left_front_elbow_down_alike * t163 / (2.0 * (t82 + t164))
-    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t165, 0.0)
+    t158 = 1.0 / (t76 + np.abs(tilt_front_elbow_down_alike))
+    t159 = L1 + L_2W * s_relative_front_elbow_down_alike
+    drawn_front_elbow_down_alike = t159 + a_3W * c_relative_front_elbow_down_alike
+    t160 = 2.0 * drawn_front_elbow_down_alike
+    t161 = t152 + t156
+    t162 = t150 - point_11_front_elbow_down_alike
+    t163 = ctheta2A_front_elbow_down_alike * t161 + t146 * t162
+    t164 = t160 * t163
+    t165 = _runtime.select(spent_right_front_elbow_down_alike, t158 * (size * np.abs(-t164)), 0.0)
+    t166 = -(_runtime.FEASIBILITY * (t49 + t165)) <= room_right_front_elbow_down_alike
+    room_left_front_elbow_down_alike = t153 - t157
+    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t75
+    h_left_0_front_elbow_down_alike = t152 - t156
+    t167 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = t150 + point_11_front_elbow_down_alike
+    t168 = t167 + t146 * r_left_0_front_elbow_down_alike
+    slope_left_front_elbow_down_alike = t160 * t168
+    t169 = size * np.abs(slope_left_front_elbow_down_alike)
+    t170 = _runtime.select(spent_left_front_elbow_down_alike, t158 * t169, 0.0)
+    t171 = -(_runtime.FEASIBILITY * (t49 + t170)) <= room_left_front_elbow_down_alike
+    t172 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
+    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t164 * t172 / (2.0 * (t89 + t164 * t164)), 0.0)
+    t173 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
+    t174 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t175 = slope_left_front_elbow_down_alike * t173 / (2.0 * (t89 + t174))
+    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t175, 0.0)
     turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
-    t166 = t153 * turn_front_elbow_down_alike
-    t167 = room_right_front_elbow_down_alike - t166
-    t168 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
-    t169 = ctheta2A_front_elbow_down_alike * t168
-    t170 = t150 + t169 + t151 * turn_front_elbow_down_alike
-    t171 = t136 * t168
-    t172 = t151 - t150 * turn_front_elbow_down_alike + t171
-    t173 = t170 * t170 + t172 * t172
-    t174 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t175 = _runtime.select(t128, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    M_mid_front_elbow_down_alike = t28 * t175
-    t176 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t177 = _runtime.select(t81 * t173 < t174, t95 - t173, t147 - t166 - t176)
-    t178 = t45 & t156 & t161 & (t80 <= t167) & (t80 <= -t177)
-    t179 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
-    t180 = room_left_front_elbow_down_alike + t179
-    t181 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t169 + t181
-    t182 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    t183 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t171 - t183
-    t184 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t185 = t182 + t184
-    t186 = _runtime.select(t81 * t185 < t174, t185 - t95, t147 + t176 - t179)
-    unreachable_2 = np.logical_not(t178 & (t80 <= t180) & (t80 <= t186))
-    t187 = _runtime.poison(invalid | unreachable_2)
-    t188 = t16 + t187
-    folded_right_front_elbow_down_alike = np.abs(-t170) + np.abs(-t172) <= t105
-    t189 = np.arctan2(-t136, ctheta2A_front_elbow_down_alike)
-    t190 = 2.0 * _runtime.select(0.0 <= -t129, 1.0, -1.0)
-    N_right_front_elbow_down_alike = np.maximum(t167, t108)
-    rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    M_right_front_elbow_down_alike = np.maximum(-t177, t108)
-    rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t191 = t190 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    t176 = t164 * turn_front_elbow_down_alike
+    t177 = room_right_front_elbow_down_alike - t176
+    t178 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    t179 = ctheta2A_front_elbow_down_alike * t178
+    t180 = t161 + t179 + t162 * turn_front_elbow_down_alike
+    t181 = t146 * t178
+    t182 = t162 - t161 * turn_front_elbow_down_alike + t181
+    t183 = t180 * t180 + t182 * t182
+    t184 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t185 = _runtime.select(t138, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t29 * t185
+    t186 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t187 = _runtime.select(t88 * t183 < t184, t102 - t183, t157 - t176 - t186)
+    t188 = t48 & t166 & t171 & (t87 <= t177) & (t87 <= -t187)
+    t189 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
+    t190 = room_left_front_elbow_down_alike + t189
+    t191 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t179 + t191
+    t192 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    t193 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t181 - t193
+    t194 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t195 = t192 + t194
+    t196 = _runtime.select(t88 * t195 < t184, t195 - t102, t157 + t186 - t189)
+    unreachable_2 = np.logical_not(t188 & (t87 <= t190) & (t87 <= t196))
+    t197 = _runtime.poison(invalid | unreachable_2)
+    t198 = t17 + t197
+    folded_right_front_elbow_down_alike = np.abs(-t180) + np.abs(-t182) <= t112
+    t199 = np.arctan2(-t146, ctheta2A_front_elbow_down_alike)
+    M_right_front_elbow_down_alike = np.maximum(-t187, t114)
+    N_right_front_elbow_down_alike = np.maximum(t177, t114)
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t191 / whole_right_front_elbow_down_alike)
-    t192 = fore_arm * s_bend_right_front_elbow_down_alike
-    t193 = t110 * M_right_front_elbow_down_alike / whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t94 + t193)
-    up_right_front_elbow_down_alike = t172 * t192 - t170 * ahead_1_right_front_elbow_down_alike
-    t194 = t172 * ahead_1_right_front_elbow_down_alike + t170 * t192
-    t195 = np.arctan2(up_right_front_elbow_down_alike, -t194)
-    t196 = _runtime.select(folded_right_front_elbow_down_alike, t189, t195)
-    t197 = _runtime.wrap_cut(t196) + t187
-    t198 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    t199 = _runtime.select(short_right, 0.0, t190 * t198)
-    t200 = _runtime.wrap_cut(_runtime.wrap(t114 + t199))
-    t201 = t200 + t187
-    t202 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t202 <= t105
-    M_left_front_elbow_down_alike = np.maximum(t186, 0.0)
-    N_left_front_elbow_down_alike = np.maximum(t180, 0.0)
+    t200 = 1.0 / whole_right_front_elbow_down_alike
+    t201 = 2.0 * _runtime.select(0.0 <= -t139, 1.0, -1.0)
+    rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
+    rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
+    t202 = t201 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t200 * t202)
+    t203 = fore_arm * s_bend_right_front_elbow_down_alike
+    t204 = t101 + t118 * M_right_front_elbow_down_alike * t200
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t204)
+    up_right_front_elbow_down_alike = t182 * t203 - t180 * ahead_1_right_front_elbow_down_alike
+    t205 = t182 * ahead_1_right_front_elbow_down_alike + t180 * t203
+    t206 = np.arctan2(up_right_front_elbow_down_alike, -t205)
+    t207 = _runtime.select(folded_right_front_elbow_down_alike, t199, t206)
+    t208 = _runtime.wrap_cut(t207) + t197
+    t209 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t210 = _runtime.select(short_right, 0.0, t201 * t209)
+    t211 = _runtime.wrap_cut(_runtime.wrap(t123 + t210))
+    t212 = t211 + t197
+    t213 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t213 <= t112
+    M_left_front_elbow_down_alike = np.maximum(t196, 0.0)
+    N_left_front_elbow_down_alike = np.maximum(t190, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t203 = t110 * M_left_front_elbow_down_alike / whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t94 + t203)
-    t204 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t214 = 1.0 / whole_left_front_elbow_down_alike
+    t215 = t101 + t118 * M_left_front_elbow_down_alike * t214
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t215)
+    t216 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t205 = t190 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t205 / whole_left_front_elbow_down_alike)
-    t206 = fore_arm * s_bend_left_front_elbow_down_alike
-    t207 = r_left_front_elbow_down_alike * t206
-    t208 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t209 = h_left_front_elbow_down_alike * t206
-    t210 = _runtime.select(folded_left_front_elbow_down_alike, t189, np.arctan2(t204 - t207, t208 + t209))
-    t211 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    t212 = _runtime.select(short_right, 0.0, t190 * t211)
-    t213 = t125 + t187
-    t214 = _runtime.select(folded_left_front_elbow_down_alike, t189, np.arctan2(t204 + t207, t208 - t209))
-    t215 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
-    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -((t35 + t36) / h))
-    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, (t37 - t38) / h)
+    t217 = t201 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t214 * t217)
+    t218 = fore_arm * s_bend_left_front_elbow_down_alike
+    t219 = r_left_front_elbow_down_alike * t218
+    t220 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t221 = h_left_front_elbow_down_alike * t218
+    t222 = _runtime.select(folded_left_front_elbow_down_alike, t199, np.arctan2(t216 - t219, t220 + t221))
+    t223 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t224 = _runtime.select(short_right, 0.0, t201 * t223)
+    t225 = t135 + t197
+    t226 = _runtime.select(folded_left_front_elbow_down_alike, t199, np.arctan2(t216 + t219, t220 - t221))
+    t227 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t16))
+    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -(t35 * (t38 + t39)))
+    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, t35 * (t40 - t41))
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
-    t216 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    square_rear_elbow_up_alike = t33 + t216
-    t217 = t31 - square_rear_elbow_up_alike
-    t218 = square_rear_elbow_up_alike - t43
-    t219 = t26 & (t30 <= t217) & (-t42 <= t218)
-    N_rear_elbow_up_alike = np.maximum(t217, 0.0)
-    M_rear_elbow_up_alike = np.maximum(t218, 0.0)
-    t220 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
+    t228 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    square_rear_elbow_up_alike = t34 + t228
+    t229 = t32 - square_rear_elbow_up_alike
+    t230 = square_rear_elbow_up_alike - t46
+    t231 = t27 & (t31 <= t229) & (-t45 <= t230)
+    N_rear_elbow_up_alike = np.maximum(t229, 0.0)
+    M_rear_elbow_up_alike = np.maximum(t230, 0.0)
+    t232 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
     whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t220 / whole_rear_elbow_up_alike))
-    t221 = s_lag * c_bend_rear_elbow_up_alike
-    t222 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t222 / whole_rear_elbow_up_alike)
-    t223 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t221 + t223
-    t224 = c_lag * c_bend_rear_elbow_up_alike
-    t225 = s_lag * s_bend_rear_elbow_up_alike
-    c_relative_rear_elbow_up_alike = t224 - t225
+    t233 = 1.0 / whole_rear_elbow_up_alike
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t232 * t233))
+    t234 = s_lag * c_bend_rear_elbow_up_alike
+    t235 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t233 * t235)
+    t236 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t234 + t236
+    t237 = c_lag * c_bend_rear_elbow_up_alike
+    t238 = s_lag * s_bend_rear_elbow_up_alike
+    c_relative_rear_elbow_up_alike = t237 - t238
     straight_mid_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
-    t226 = 0.0 <= straight_mid_rear_elbow_up_alike
-    t227 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
-    t228 = _runtime.select(t226, straight_mid_rear_elbow_up_alike, -straight_mid_rear_elbow_up_alike)
-    large_mid_rear_elbow_up_alike = fore_arm + t228
-    small_mid_rear_elbow_up_alike = t227 * t227 / large_mid_rear_elbow_up_alike
-    t229 = _runtime.select(t226, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
-    folded_rear_elbow_up_alike = t55 + np.abs(outward_rear_elbow_up_alike) <= t47
-    t230 = t56 * s_bend_rear_elbow_up_alike
-    t231 = t29 * M_rear_elbow_up_alike / whole_rear_elbow_up_alike
-    ahead_1_rear_elbow_up_alike = _runtime.select(short, t27, t41 + t231)
-    t232 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
-    out_rear_elbow_up_alike = t230 + t232
-    t233 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
-    t234 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
-    t235 = t32 * ahead_1_rear_elbow_up_alike
-    t236 = t234 - t235
-    norm_rear_elbow_up_alike = np.sqrt(t233 + t236 * t236)
-    t237 = out_rear_elbow_up_alike / norm_rear_elbow_up_alike
-    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, t237)
-    t238 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t239 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t236 / norm_rear_elbow_up_alike)
-    ctheta23A_rear_elbow_up_alike = t238 + s_relative_rear_elbow_up_alike * t239
-    t240 = s_phi * ctheta23A_rear_elbow_up_alike / c_phi
-    t241 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t242 = c_relative_rear_elbow_up_alike * t239 - t241
-    t243 = d * (t240 + s_psi * t242 / t4)
-    t244 = s_psi * ctheta23A_rear_elbow_up_alike / t4 - s_phi * t242 / c_phi
-    t245 = d * t244
-    gap_rear_elbow_up_alike = t243 * t243 + t245 * t245
-    t246 = t28 * t229 - gap_rear_elbow_up_alike
-    t247 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t242
-    point_11_rear_elbow_up_alike = t247 + a3 * ctheta23A_rear_elbow_up_alike
-    t248 = L1 * t239 + L2 * ctheta23A_rear_elbow_up_alike
-    t249 = t248 + a3 * t242
-    t250 = 2.0 * t243 * point_11_rear_elbow_up_alike - 2.0 * t245 * t249
-    room_right_rear_elbow_up_alike = t246 + t250
-    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t68
-    drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
-    t251 = 2.0 * drawn_rear_elbow_up_alike
-    t252 = t245 + t249
-    t253 = t243 - point_11_rear_elbow_up_alike
-    t254 = ctheta2A_rear_elbow_up_alike * t252 + t239 * t253
-    t255 = t251 * t254
+    t239 = 0.0 <= straight_mid_rear_elbow_up_alike
+    t240 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
+    t241 = _runtime.select(t239, straight_mid_rear_elbow_up_alike, -straight_mid_rear_elbow_up_alike)
+    large_mid_rear_elbow_up_alike = fore_arm + t241
+    small_mid_rear_elbow_up_alike = t240 * t240 / large_mid_rear_elbow_up_alike
+    t242 = _runtime.select(t239, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
+    folded_rear_elbow_up_alike = t61 + np.abs(outward_rear_elbow_up_alike) <= t51
+    t243 = t62 * s_bend_rear_elbow_up_alike
+    ahead_1_rear_elbow_up_alike = _runtime.select(short, t28, t44 + t233 * (t30 * M_rear_elbow_up_alike))
+    t244 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
+    out_rear_elbow_up_alike = t243 + t244
+    t245 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
+    t246 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
+    t247 = t33 * ahead_1_rear_elbow_up_alike
+    t248 = t246 - t247
+    t249 = 1.0 / np.sqrt(t245 + t248 * t248)
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, out_rear_elbow_up_alike * t249)
+    t250 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t251 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t248 * t249)
+    ctheta23A_rear_elbow_up_alike = t250 + s_relative_rear_elbow_up_alike * t251
+    t252 = t60 * (s_phi * ctheta23A_rear_elbow_up_alike)
+    t253 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t254 = c_relative_rear_elbow_up_alike * t251 - t253
+    t255 = d * (t252 + t5 * (s_psi * t254))
+    t256 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) - t60 * (s_phi * t254)
+    t257 = d * t256
+    gap_rear_elbow_up_alike = t255 * t255 + t257 * t257
+    t258 = t29 * t242 - gap_rear_elbow_up_alike
+    t259 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t254
+    point_11_rear_elbow_up_alike = t259 + a3 * ctheta23A_rear_elbow_up_alike
+    t260 = L1 * t251 + L2 * ctheta23A_rear_elbow_up_alike
+    t261 = t260 + a3 * t254
+    t262 = 2.0 * t255 * point_11_rear_elbow_up_alike - 2.0 * t257 * t261
+    room_right_rear_elbow_up_alike = t258 + t262
+    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t75
     tilt_rear_elbow_up_alike = L_2W * c_relative_rear_elbow_up_alike - a_3W * s_relative_rear_elbow_up_alike
-    t256 = t73 + np.abs(tilt_rear_elbow_up_alike)
-    t257 = _runtime.select(spent_right_rear_elbow_up_alike, size * np.abs(-t255) / t256, 0.0)
-    t258 = -(_runtime.FEASIBILITY * (t46 + t257)) <= room_right_rear_elbow_up_alike
-    room_left_rear_elbow_up_alike = t246 - t250
-    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t68
-    h_left_0_rear_elbow_up_alike = t245 - t249
-    t259 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t243 + point_11_rear_elbow_up_alike
-    slope_left_rear_elbow_up_alike = t251 * (t259 + t239 * r_left_0_rear_elbow_up_alike)
-    t260 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t261 = _runtime.select(spent_left_rear_elbow_up_alike, t260 / t256, 0.0)
-    t262 = -(_runtime.FEASIBILITY * (t46 + t261)) <= room_left_rear_elbow_up_alike
-    t263 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
-    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t255 * t263 / (2.0 * (t82 + t255 * t255)), 0.0)
-    t264 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
-    t265 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t266 = slope_left_rear_elbow_up_alike * t264 / (2.0 * (t82 + t265))
-    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t266, 0.0)
+    t263 = 1.0 / (t76 + np.abs(tilt_rear_elbow_up_alike))
+    drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
+    t264 = 2.0 * drawn_rear_elbow_up_alike
+    t265 = t257 + t261
+    t266 = t255 - point_11_rear_elbow_up_alike
+    t267 = ctheta2A_rear_elbow_up_alike * t265 + t251 * t266
+    t268 = t264 * t267
+    t269 = _runtime.select(spent_right_rear_elbow_up_alike, t263 * (size * np.abs(-t268)), 0.0)
+    t270 = -(_runtime.FEASIBILITY * (t49 + t269)) <= room_right_rear_elbow_up_alike
+    room_left_rear_elbow_up_alike = t258 - t262
+    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t75
+    h_left_0_rear_elbow_up_alike = t257 - t261
+    t271 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t255 + point_11_rear_elbow_up_alike
+    slope_left_rear_elbow_up_alike = t264 * (t271 + t251 * r_left_0_rear_elbow_up_alike)
+    t272 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t273 = _runtime.select(spent_left_rear_elbow_up_alike, t263 * t272, 0.0)
+    t274 = -(_runtime.FEASIBILITY * (t49 + t273)) <= room_left_rear_elbow_up_alike
+    t275 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
+    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t268 * t275 / (2.0 * (t89 + t268 * t268)), 0.0)
+    t276 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
+    t277 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t278 = slope_left_rear_elbow_up_alike * t276 / (2.0 * (t89 + t277))
+    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t278, 0.0)
     turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
-    t267 = t255 * turn_rear_elbow_up_alike
-    t268 = room_right_rear_elbow_up_alike - t267
-    t269 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t270 = ctheta2A_rear_elbow_up_alike * t269
-    t271 = t252 + t270 + t253 * turn_rear_elbow_up_alike
-    t272 = t239 * t269
-    t273 = t253 - t252 * turn_rear_elbow_up_alike + t272
-    t274 = t271 * t271 + t273 * t273
-    t275 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t276 = _runtime.select(t226, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
-    M_mid_rear_elbow_up_alike = t28 * t276
-    t277 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
-    t278 = _runtime.select(t81 * t274 < t275, t95 - t274, t250 - t267 - t277)
-    t279 = t219 & t258 & t262 & (t80 <= t268) & (t80 <= -t278)
-    t280 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    t281 = room_left_rear_elbow_up_alike + t280
-    t282 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t270 + t282
-    t283 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    t284 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t272 - t284
-    t285 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t286 = t283 + t285
-    t287 = _runtime.select(t81 * t286 < t275, t286 - t95, t250 + t277 - t280)
-    unreachable_3 = np.logical_not(t279 & (t80 <= t281) & (t80 <= t287))
-    t288 = _runtime.poison(invalid | unreachable_3)
-    t289 = t215 + t288
-    folded_right_rear_elbow_up_alike = np.abs(-t271) + np.abs(-t273) <= t105
-    t290 = np.arctan2(-t239, ctheta2A_rear_elbow_up_alike)
-    t291 = 2.0 * _runtime.select(0.0 <= -t227, 1.0, -1.0)
-    N_right_rear_elbow_up_alike = np.maximum(t268, t108)
-    rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    M_right_rear_elbow_up_alike = np.maximum(-t278, t108)
-    rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t292 = t291 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    t279 = t268 * turn_rear_elbow_up_alike
+    t280 = room_right_rear_elbow_up_alike - t279
+    t281 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t282 = ctheta2A_rear_elbow_up_alike * t281
+    t283 = t265 + t282 + t266 * turn_rear_elbow_up_alike
+    t284 = t251 * t281
+    t285 = t266 - t265 * turn_rear_elbow_up_alike + t284
+    t286 = t283 * t283 + t285 * t285
+    t287 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t288 = _runtime.select(t239, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
+    M_mid_rear_elbow_up_alike = t29 * t288
+    t289 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
+    t290 = _runtime.select(t88 * t286 < t287, t102 - t286, t262 - t279 - t289)
+    t291 = t231 & t270 & t274 & (t87 <= t280) & (t87 <= -t290)
+    t292 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t293 = room_left_rear_elbow_up_alike + t292
+    t294 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t282 + t294
+    t295 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    t296 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t284 - t296
+    t297 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t298 = t295 + t297
+    t299 = _runtime.select(t88 * t298 < t287, t298 - t102, t262 + t289 - t292)
+    unreachable_3 = np.logical_not(t291 & (t87 <= t293) & (t87 <= t299))
+    t300 = _runtime.poison(invalid | unreachable_3)
+    t301 = t227 + t300
+    folded_right_rear_elbow_up_alike = np.abs(-t283) + np.abs(-t285) <= t112
+    t302 = np.arctan2(-t251, ctheta2A_rear_elbow_up_alike)
+    M_right_rear_elbow_up_alike = np.maximum(-t290, t114)
+    N_right_rear_elbow_up_alike = np.maximum(t280, t114)
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t292 / whole_right_rear_elbow_up_alike)
-    t293 = fore_arm * s_bend_right_rear_elbow_up_alike
-    t294 = t110 * M_right_rear_elbow_up_alike / whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t94 + t294)
-    up_right_rear_elbow_up_alike = t273 * t293 - t271 * ahead_1_right_rear_elbow_up_alike
-    t295 = t273 * ahead_1_right_rear_elbow_up_alike + t271 * t293
-    t296 = np.arctan2(up_right_rear_elbow_up_alike, -t295)
-    t297 = _runtime.select(folded_right_rear_elbow_up_alike, t290, t296)
-    t298 = _runtime.wrap_cut(t297) + t288
-    t299 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    t300 = _runtime.select(short_right, 0.0, t291 * t299)
-    t301 = _runtime.wrap_cut(_runtime.wrap(t114 + t300))
-    t302 = t301 + t288
-    t303 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t303 <= t105
-    M_left_rear_elbow_up_alike = np.maximum(t287, 0.0)
-    N_left_rear_elbow_up_alike = np.maximum(t281, 0.0)
+    t303 = 1.0 / whole_right_rear_elbow_up_alike
+    t304 = 2.0 * _runtime.select(0.0 <= -t240, 1.0, -1.0)
+    rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
+    rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
+    t305 = t304 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t303 * t305)
+    t306 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t307 = t101 + t118 * M_right_rear_elbow_up_alike * t303
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t307)
+    up_right_rear_elbow_up_alike = t285 * t306 - t283 * ahead_1_right_rear_elbow_up_alike
+    t308 = t285 * ahead_1_right_rear_elbow_up_alike + t283 * t306
+    t309 = np.arctan2(up_right_rear_elbow_up_alike, -t308)
+    t310 = _runtime.select(folded_right_rear_elbow_up_alike, t302, t309)
+    t311 = _runtime.wrap_cut(t310) + t300
+    t312 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t313 = _runtime.select(short_right, 0.0, t304 * t312)
+    t314 = _runtime.wrap_cut(_runtime.wrap(t123 + t313))
+    t315 = t314 + t300
+    t316 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t316 <= t112
+    M_left_rear_elbow_up_alike = np.maximum(t299, 0.0)
+    N_left_rear_elbow_up_alike = np.maximum(t293, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t304 = t110 * M_left_rear_elbow_up_alike / whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t94 + t304)
-    t305 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t317 = 1.0 / whole_left_rear_elbow_up_alike
+    t318 = t101 + t118 * M_left_rear_elbow_up_alike * t317
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t318)
+    t319 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t306 = t291 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t306 / whole_left_rear_elbow_up_alike)
-    t307 = fore_arm * s_bend_left_rear_elbow_up_alike
-    t308 = r_left_rear_elbow_up_alike * t307
-    t309 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t310 = h_left_rear_elbow_up_alike * t307
-    t311 = _runtime.select(folded_left_rear_elbow_up_alike, t290, np.arctan2(t305 - t308, t309 + t310))
-    t312 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    t313 = _runtime.select(short_right, 0.0, t291 * t312)
-    t314 = t125 + t288
-    t315 = _runtime.select(folded_left_rear_elbow_up_alike, t290, np.arctan2(t305 + t308, t309 - t310))
-    s_relative_rear_elbow_down_alike = t221 - t223
-    c_relative_rear_elbow_down_alike = t224 + t225
+    t320 = t304 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t317 * t320)
+    t321 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t322 = r_left_rear_elbow_up_alike * t321
+    t323 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t324 = h_left_rear_elbow_up_alike * t321
+    t325 = _runtime.select(folded_left_rear_elbow_up_alike, t302, np.arctan2(t319 - t322, t323 + t324))
+    t326 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t327 = _runtime.select(short_right, 0.0, t304 * t326)
+    t328 = t135 + t300
+    t329 = _runtime.select(folded_left_rear_elbow_up_alike, t302, np.arctan2(t319 + t322, t323 - t324))
+    s_relative_rear_elbow_down_alike = t234 - t236
+    c_relative_rear_elbow_down_alike = t237 + t238
     straight_mid_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
-    t316 = 0.0 <= straight_mid_rear_elbow_down_alike
-    t317 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
-    t318 = _runtime.select(t316, straight_mid_rear_elbow_down_alike, -straight_mid_rear_elbow_down_alike)
-    large_mid_rear_elbow_down_alike = fore_arm + t318
-    small_mid_rear_elbow_down_alike = t317 * t317 / large_mid_rear_elbow_down_alike
-    t319 = _runtime.select(t316, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
-    t320 = t230 - t232
-    up_rear_elbow_down_alike = t234 + t235
-    t321 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
-    norm_rear_elbow_down_alike = np.sqrt(t320 * t320 + t321)
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t320 / norm_rear_elbow_down_alike))
-    t322 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    t323 = up_rear_elbow_down_alike / norm_rear_elbow_down_alike
-    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, t323)
-    t324 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t322 - t324
-    t325 = s_phi * ctheta23A_rear_elbow_down_alike / c_phi
-    t326 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    t327 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t326 + t327
-    t328 = t325 - s_psi * stheta23A_rear_elbow_down_alike / t4
-    t329 = d * t328
-    t330 = s_phi * stheta23A_rear_elbow_down_alike / c_phi
-    t331 = s_psi * ctheta23A_rear_elbow_down_alike / t4 + t330
-    t332 = d * t331
-    gap_rear_elbow_down_alike = t329 * t329 + t332 * t332
-    t333 = t28 * t319 - gap_rear_elbow_down_alike
-    t334 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t334 + a3 * ctheta23A_rear_elbow_down_alike
-    t335 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t335 + a3 * stheta23A_rear_elbow_down_alike
-    t336 = 2.0 * t329 * point_11_rear_elbow_down_alike + 2.0 * t332 * point_21_rear_elbow_down_alike
-    room_right_rear_elbow_down_alike = t333 + t336
-    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t68
-    drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
-    t337 = 2.0 * drawn_rear_elbow_down_alike
-    t338 = t332 - point_21_rear_elbow_down_alike
-    t339 = t329 - point_11_rear_elbow_down_alike
-    t340 = ctheta2A_rear_elbow_down_alike * t338 - stheta2A_rear_elbow_down_alike * t339
-    t341 = t337 * t340
+    t330 = 0.0 <= straight_mid_rear_elbow_down_alike
+    t331 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
+    t332 = _runtime.select(t330, straight_mid_rear_elbow_down_alike, -straight_mid_rear_elbow_down_alike)
+    large_mid_rear_elbow_down_alike = fore_arm + t332
+    small_mid_rear_elbow_down_alike = t331 * t331 / large_mid_rear_elbow_down_alike
+    t333 = _runtime.select(t330, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
+    t334 = t243 - t244
+    up_rear_elbow_down_alike = t246 + t247
+    t335 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
+    t336 = 1.0 / np.sqrt(t334 * t334 + t335)
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t334 * t336))
+    t337 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, up_rear_elbow_down_alike * t336)
+    t338 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t337 - t338
+    t339 = t60 * (s_phi * ctheta23A_rear_elbow_down_alike)
+    t340 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t341 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t340 + t341
+    t342 = t5 * (s_psi * stheta23A_rear_elbow_down_alike)
+    t343 = d * (t339 - t342)
+    t344 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
+    t345 = t60 * (s_phi * stheta23A_rear_elbow_down_alike)
+    t346 = d * (t344 + t345)
+    gap_rear_elbow_down_alike = t343 * t343 + t346 * t346
+    t347 = t29 * t333 - gap_rear_elbow_down_alike
+    t348 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t348 + a3 * ctheta23A_rear_elbow_down_alike
+    t349 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t349 + a3 * stheta23A_rear_elbow_down_alike
+    t350 = 2.0 * t343 * point_11_rear_elbow_down_alike + 2.0 * t346 * point_21_rear_elbow_down_alike
+    room_right_rear_elbow_down_alike = t347 + t350
+    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t75
     tilt_rear_elbow_down_alike = L_2W * c_relative_rear_elbow_down_alike - a_3W * s_relative_rear_elbow_down_alike
-    t342 = t73 + np.abs(tilt_rear_elbow_down_alike)
-    t343 = _runtime.select(spent_right_rear_elbow_down_alike, size * np.abs(-t341) / t342, 0.0)
-    t344 = -(_runtime.FEASIBILITY * (t46 + t343)) <= room_right_rear_elbow_down_alike
-    room_left_rear_elbow_down_alike = t333 - t336
-    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t68
-    h_left_0_rear_elbow_down_alike = t332 + point_21_rear_elbow_down_alike
-    t345 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t329 + point_11_rear_elbow_down_alike
-    t346 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t337 * (t345 - t346)
-    t347 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t348 = _runtime.select(spent_left_rear_elbow_down_alike, t347 / t342, 0.0)
-    t349 = -(_runtime.FEASIBILITY * (t46 + t348)) <= room_left_rear_elbow_down_alike
-    t350 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
-    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t341 * t350 / (2.0 * (t82 + t341 * t341)), 0.0)
-    t351 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
-    t352 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t353 = slope_left_rear_elbow_down_alike * t351 / (2.0 * (t82 + t352))
-    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t353, 0.0)
+    t351 = 1.0 / (t76 + np.abs(tilt_rear_elbow_down_alike))
+    drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
+    t352 = 2.0 * drawn_rear_elbow_down_alike
+    t353 = t346 - point_21_rear_elbow_down_alike
+    t354 = t343 - point_11_rear_elbow_down_alike
+    t355 = ctheta2A_rear_elbow_down_alike * t353 - stheta2A_rear_elbow_down_alike * t354
+    t356 = t352 * t355
+    t357 = _runtime.select(spent_right_rear_elbow_down_alike, t351 * (size * np.abs(-t356)), 0.0)
+    t358 = -(_runtime.FEASIBILITY * (t49 + t357)) <= room_right_rear_elbow_down_alike
+    room_left_rear_elbow_down_alike = t347 - t350
+    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t75
+    h_left_0_rear_elbow_down_alike = t346 + point_21_rear_elbow_down_alike
+    t359 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t343 + point_11_rear_elbow_down_alike
+    t360 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t352 * (t359 - t360)
+    t361 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t362 = _runtime.select(spent_left_rear_elbow_down_alike, t351 * t361, 0.0)
+    t363 = -(_runtime.FEASIBILITY * (t49 + t362)) <= room_left_rear_elbow_down_alike
+    t364 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
+    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t356 * t364 / (2.0 * (t89 + t356 * t356)), 0.0)
+    t365 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
+    t366 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t367 = slope_left_rear_elbow_down_alike * t365 / (2.0 * (t89 + t366))
+    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t367, 0.0)
     turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
-    t354 = t341 * turn_rear_elbow_down_alike
-    t355 = room_right_rear_elbow_down_alike - t354
-    t356 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t357 = ctheta2A_rear_elbow_down_alike * t356
-    t358 = t338 + t357 + t339 * turn_rear_elbow_down_alike
-    t359 = stheta2A_rear_elbow_down_alike * t356
-    t360 = t339 - t338 * turn_rear_elbow_down_alike - t359
-    t361 = t358 * t358 + t360 * t360
-    t362 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t363 = _runtime.select(t316, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
-    M_mid_rear_elbow_down_alike = t28 * t363
-    t364 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
-    t365 = _runtime.select(t81 * t361 < t362, t95 - t361, t336 - t354 - t364)
-    t366 = t219 & t344 & t349 & (t80 <= t355) & (t80 <= -t365)
-    t367 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    t368 = room_left_rear_elbow_down_alike + t367
-    t369 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t357 + t369
-    t370 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    t371 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t359 - t371
-    t372 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t373 = t370 + t372
-    t374 = _runtime.select(t81 * t373 < t362, t373 - t95, t336 + t364 - t367)
-    unreachable_4 = np.logical_not(t366 & (t80 <= t368) & (t80 <= t374))
-    t375 = _runtime.poison(invalid | unreachable_4)
-    t376 = t215 + t375
-    folded_right_rear_elbow_down_alike = np.abs(-t358) + np.abs(-t360) <= t105
-    t377 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    t378 = 2.0 * _runtime.select(0.0 <= -t317, 1.0, -1.0)
-    N_right_rear_elbow_down_alike = np.maximum(t355, t108)
-    rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    M_right_rear_elbow_down_alike = np.maximum(-t365, t108)
-    rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t379 = t378 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    t368 = t356 * turn_rear_elbow_down_alike
+    t369 = room_right_rear_elbow_down_alike - t368
+    t370 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t371 = ctheta2A_rear_elbow_down_alike * t370
+    t372 = t353 + t371 + t354 * turn_rear_elbow_down_alike
+    t373 = stheta2A_rear_elbow_down_alike * t370
+    t374 = t354 - t353 * turn_rear_elbow_down_alike - t373
+    t375 = t372 * t372 + t374 * t374
+    t376 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t377 = _runtime.select(t330, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
+    M_mid_rear_elbow_down_alike = t29 * t377
+    t378 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
+    t379 = _runtime.select(t88 * t375 < t376, t102 - t375, t350 - t368 - t378)
+    t380 = t231 & t358 & t363 & (t87 <= t369) & (t87 <= -t379)
+    t381 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t382 = room_left_rear_elbow_down_alike + t381
+    t383 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t371 + t383
+    t384 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    t385 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t373 - t385
+    t386 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t387 = t384 + t386
+    t388 = _runtime.select(t88 * t387 < t376, t387 - t102, t350 + t378 - t381)
+    unreachable_4 = np.logical_not(t380 & (t87 <= t382) & (t87 <= t388))
+    t389 = _runtime.poison(invalid | unreachable_4)
+    t390 = t227 + t389
+    folded_right_rear_elbow_down_alike = np.abs(-t372) + np.abs(-t374) <= t112
+    t391 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    M_right_rear_elbow_down_alike = np.maximum(-t379, t114)
+    N_right_rear_elbow_down_alike = np.maximum(t369, t114)
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t379 / whole_right_rear_elbow_down_alike)
-    t380 = fore_arm * s_bend_right_rear_elbow_down_alike
-    t381 = t110 * M_right_rear_elbow_down_alike / whole_right_rear_elbow_down_alike
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t94 + t381)
-    up_right_rear_elbow_down_alike = t360 * t380 - t358 * ahead_1_right_rear_elbow_down_alike
-    t382 = t360 * ahead_1_right_rear_elbow_down_alike + t358 * t380
-    t383 = np.arctan2(up_right_rear_elbow_down_alike, -t382)
-    t384 = _runtime.select(folded_right_rear_elbow_down_alike, t377, t383)
-    t385 = _runtime.wrap_cut(t384) + t375
-    t386 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    t387 = _runtime.select(short_right, 0.0, t378 * t386)
-    t388 = _runtime.wrap_cut(_runtime.wrap(t114 + t387))
-    t389 = t388 + t375
-    t390 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t390 <= t105
-    M_left_rear_elbow_down_alike = np.maximum(t374, 0.0)
-    N_left_rear_elbow_down_alike = np.maximum(t368, 0.0)
+    t392 = 1.0 / whole_right_rear_elbow_down_alike
+    t393 = 2.0 * _runtime.select(0.0 <= -t331, 1.0, -1.0)
+    rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
+    rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
+    t394 = t393 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t392 * t394)
+    t395 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t396 = t101 + t118 * M_right_rear_elbow_down_alike * t392
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t396)
+    up_right_rear_elbow_down_alike = t374 * t395 - t372 * ahead_1_right_rear_elbow_down_alike
+    t397 = t374 * ahead_1_right_rear_elbow_down_alike + t372 * t395
+    t398 = np.arctan2(up_right_rear_elbow_down_alike, -t397)
+    t399 = _runtime.select(folded_right_rear_elbow_down_alike, t391, t398)
+    t400 = _runtime.wrap_cut(t399) + t389
+    t401 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t402 = _runtime.select(short_right, 0.0, t393 * t401)
+    t403 = _runtime.wrap_cut(_runtime.wrap(t123 + t402))
+    t404 = t403 + t389
+    t405 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t405 <= t112
+    M_left_rear_elbow_down_alike = np.maximum(t388, 0.0)
+    N_left_rear_elbow_down_alike = np.maximum(t382, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t391 = t110 * M_left_rear_elbow_down_alike / whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t94 + t391)
-    t392 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t406 = 1.0 / whole_left_rear_elbow_down_alike
+    t407 = t101 + t118 * M_left_rear_elbow_down_alike * t406
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t407)
+    t408 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    t393 = t378 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t393 / whole_left_rear_elbow_down_alike)
-    t394 = fore_arm * s_bend_left_rear_elbow_down_alike
-    t395 = r_left_rear_elbow_down_alike * t394
-    t396 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t397 = h_left_rear_elbow_down_alike * t394
-    t398 = _runtime.select(folded_left_rear_elbow_down_alike, t377, np.arctan2(t392 - t395, t396 + t397))
-    t399 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    t400 = _runtime.select(short_right, 0.0, t378 * t399)
-    t401 = t125 + t375
-    t402 = _runtime.select(folded_left_rear_elbow_down_alike, t377, np.arctan2(t392 + t395, t396 - t397))
-    t403 = nowhere | folded | short
-    square_mid = t95 + M_mid
-    t404 = 10000.0 * t81
-    pole = M_mid * square_mid <= _runtime.VANISHING * (t404 * gap)
-    t405 = _runtime.VANISHING * t404
-    t406 = t403 | pole | (square_mid <= t405) | folded_right
-    t407 = _runtime.status(invalid, unreachable, t406 | short_right | folded_left)
-    square_mid_front_elbow_down_alike = t95 + M_mid_front_elbow_down_alike
-    t408 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
-    t409 = _runtime.VANISHING * (t404 * gap_front_elbow_down_alike)
-    t410 = t403 | (t408 <= t409) | (square_mid_front_elbow_down_alike <= t405)
-    t411 = t410 | folded_right_front_elbow_down_alike | short_right
-    t412 = _runtime.status(invalid, unreachable_2, t411 | folded_left_front_elbow_down_alike)
-    t413 = nowhere | folded_rear_elbow_up_alike | short
-    square_mid_rear_elbow_up_alike = t95 + M_mid_rear_elbow_up_alike
-    t414 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
-    t415 = _runtime.VANISHING * (t404 * gap_rear_elbow_up_alike)
-    t416 = t413 | (t414 <= t415) | (square_mid_rear_elbow_up_alike <= t405)
-    t417 = t416 | folded_right_rear_elbow_up_alike | short_right
-    t418 = _runtime.status(invalid, unreachable_3, t417 | folded_left_rear_elbow_up_alike)
-    square_mid_rear_elbow_down_alike = t95 + M_mid_rear_elbow_down_alike
-    t419 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
-    t420 = _runtime.VANISHING * (t404 * gap_rear_elbow_down_alike)
-    t421 = t413 | (t419 <= t420) | (square_mid_rear_elbow_down_alike <= t405)
-    t422 = t421 | folded_right_rear_elbow_down_alike | short_right
-    t423 = _runtime.status(invalid, unreachable_4, t422 | folded_left_rear_elbow_down_alike)
+    t409 = t393 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t406 * t409)
+    t410 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t411 = r_left_rear_elbow_down_alike * t410
+    t412 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t413 = h_left_rear_elbow_down_alike * t410
+    t414 = _runtime.select(folded_left_rear_elbow_down_alike, t391, np.arctan2(t408 - t411, t412 + t413))
+    t415 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t416 = _runtime.select(short_right, 0.0, t393 * t415)
+    t417 = t135 + t389
+    t418 = _runtime.select(folded_left_rear_elbow_down_alike, t391, np.arctan2(t408 + t411, t412 - t413))
+    t419 = nowhere | folded | short
+    square_mid = t102 + M_mid
+    t420 = 10000.0 * t88
+    pole = M_mid * square_mid <= _runtime.VANISHING * (t420 * gap)
+    t421 = _runtime.VANISHING * t420
+    t422 = t419 | pole | (square_mid <= t421) | folded_right
+    t423 = _runtime.status(invalid, unreachable, t422 | short_right | folded_left)
+    square_mid_front_elbow_down_alike = t102 + M_mid_front_elbow_down_alike
+    t424 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t425 = _runtime.VANISHING * (t420 * gap_front_elbow_down_alike)
+    t426 = t419 | (t424 <= t425) | (square_mid_front_elbow_down_alike <= t421)
+    t427 = t426 | folded_right_front_elbow_down_alike | short_right
+    t428 = _runtime.status(invalid, unreachable_2, t427 | folded_left_front_elbow_down_alike)
+    t429 = nowhere | folded_rear_elbow_up_alike | short
+    square_mid_rear_elbow_up_alike = t102 + M_mid_rear_elbow_up_alike
+    t430 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
+    t431 = _runtime.VANISHING * (t420 * gap_rear_elbow_up_alike)
+    t432 = t429 | (t430 <= t431) | (square_mid_rear_elbow_up_alike <= t421)
+    t433 = t432 | folded_right_rear_elbow_up_alike | short_right
+    t434 = _runtime.status(invalid, unreachable_3, t433 | folded_left_rear_elbow_up_alike)
+    square_mid_rear_elbow_down_alike = t102 + M_mid_rear_elbow_down_alike
+    t435 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
+    t436 = _runtime.VANISHING * (t420 * gap_rear_elbow_down_alike)
+    t437 = t429 | (t435 <= t436) | (square_mid_rear_elbow_down_alike <= t421)
+    t438 = t437 | folded_right_rear_elbow_down_alike | short_right
+    t439 = _runtime.status(invalid, unreachable_4, t438 | folded_left_rear_elbow_down_alike)
     return (
-        t104,
-        t113,
-        t117,
-        _runtime.wrap_cut(t123) + t103,
-        _runtime.wrap(t114 + t124) + t103,
+        t111,
+        t121,
         t126,
-        t104,
-        t113,
-        t117,
-        _runtime.wrap_cut(t127) + t103,
-        _runtime.wrap(t114 - t124) + t103,
+        _runtime.wrap_cut(t133) + t110,
+        _runtime.wrap(t123 + t134) + t110,
+        t136,
+        t111,
+        t121,
         t126,
-        t188,
-        t197,
-        t201,
-        _runtime.wrap_cut(t210) + t187,
-        _runtime.wrap(t114 + t212) + t187,
-        t213,
-        t188,
-        t197,
-        t201,
-        _runtime.wrap_cut(t214) + t187,
-        _runtime.wrap(t114 - t212) + t187,
-        t213,
-        t289,
-        t298,
-        t302,
-        _runtime.wrap_cut(t311) + t288,
-        _runtime.wrap(t114 + t313) + t288,
-        t314,
-        t289,
-        t298,
-        t302,
-        _runtime.wrap_cut(t315) + t288,
-        _runtime.wrap(t114 - t313) + t288,
-        t314,
-        t376,
-        t385,
-        t389,
-        _runtime.wrap_cut(t398) + t375,
-        _runtime.wrap(t114 + t400) + t375,
-        t401,
-        t376,
-        t385,
-        t389,
-        _runtime.wrap_cut(t402) + t375,
-        _runtime.wrap(t114 - t400) + t375,
-        t401,
-        t407,
-        t407,
-        t412,
-        t412,
-        t418,
-        t418,
+        _runtime.wrap_cut(t137) + t110,
+        _runtime.wrap(t123 - t134) + t110,
+        t136,
+        t198,
+        t208,
+        t212,
+        _runtime.wrap_cut(t222) + t197,
+        _runtime.wrap(t123 + t224) + t197,
+        t225,
+        t198,
+        t208,
+        t212,
+        _runtime.wrap_cut(t226) + t197,
+        _runtime.wrap(t123 - t224) + t197,
+        t225,
+        t301,
+        t311,
+        t315,
+        _runtime.wrap_cut(t325) + t300,
+        _runtime.wrap(t123 + t327) + t300,
+        t328,
+        t301,
+        t311,
+        t315,
+        _runtime.wrap_cut(t329) + t300,
+        _runtime.wrap(t123 - t327) + t300,
+        t328,
+        t390,
+        t400,
+        t404,
+        _runtime.wrap_cut(t414) + t389,
+        _runtime.wrap(t123 + t416) + t389,
+        t417,
+        t390,
+        t400,
+        t404,
+        _runtime.wrap_cut(t418) + t389,
+        _runtime.wrap(t123 - t416) + t389,
+        t417,
         t423,
         t423,
+        t428,
+        t428,
+        t434,
+        t434,
+        t439,
+        t439,
     )
 
 

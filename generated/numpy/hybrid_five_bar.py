@@ -3,7 +3,7 @@
 # Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
 #     Manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 22 add, 22 compare and select, 5 divide, 18 multiply, 3 sincos, 3 sqrt
+#   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 3 sqrt
 #   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
 #     sqrt
 #   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
@@ -82,9 +82,9 @@ _DEFAULT = Parameters()
 
 
 def _fk(theta1, theta2, theta3, L0, L1, L2):
+    s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
-    s1, c1 = _runtime.sincos(theta1)
     C_r = L1 * s2
     t1 = C_r - L1 * s3
     C_y = L1 * c2
@@ -94,34 +94,35 @@ def _fk(theta1, theta2, theta3, L0, L1, L2):
     t4 = t3 * _runtime.VANISHING
     coincide = apart <= t4
     distance = _runtime.select(coincide, 0.0, apart)
-    t5 = _runtime.select(coincide, 0.0, t1 / apart)
-    t6 = distance * t5 / 2.0
-    n_1 = _runtime.select(coincide, 1.0, -(t2 / apart))
-    t7 = L2 * 2.0
-    t8 = t7 - apart
-    slack = np.maximum(t8, 0.0)
-    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
-    t9 = n_1 * height
-    P_r = C_r - (t6 - t9)
-    t10 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
-    t11 = t10 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
-    t12 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    invalid = np.logical_not(t11 & t12)
-    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
-    t13 = _runtime.poison(invalid | unreachable)
-    t14 = distance * n_1 / 2.0
-    t15 = t5 * height
-    P_r_right_of_CD = C_r - (t6 + t9)
-    t16 = _runtime.status(invalid, unreachable, coincide)
+    t5 = 1.0 / apart
+    t6 = _runtime.select(coincide, 0.0, t1 * t5)
+    t7 = distance * t6 / 2.0
+    t8 = L2 * 2.0
+    t9 = t8 - apart
+    slack = np.maximum(t9, 0.0)
+    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    n_1 = _runtime.select(coincide, 1.0, -(t2 * t5))
+    t10 = height * n_1
+    P_r = C_r - (t7 - t10)
+    t11 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t12 & t13)
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t9)
+    t14 = _runtime.poison(invalid | unreachable)
+    t15 = distance * n_1 / 2.0
+    t16 = height * t6
+    P_r_right_of_CD = C_r - (t7 + t10)
+    t17 = _runtime.status(invalid, unreachable, coincide)
     return (
-        -(P_r * c1) + t13,
-        C_y + (t14 + t15) + t13,
-        P_r * s1 + t13,
-        -(c1 * P_r_right_of_CD) + t13,
-        C_y + (t14 - t15) + t13,
-        s1 * P_r_right_of_CD + t13,
-        t16,
-        t16,
+        -(c1 * P_r) + t14,
+        C_y + (t15 + t16) + t14,
+        s1 * P_r + t14,
+        -(c1 * P_r_right_of_CD) + t14,
+        C_y + (t15 - t16) + t14,
+        s1 * P_r_right_of_CD + t14,
+        t17,
+        t17,
     )
 
 

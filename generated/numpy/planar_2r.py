@@ -11,7 +11,7 @@
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
 #   singularities: 1 sincos
 #   ik: 31 compare and select, 18 add, 3 atan2, 2 divide, 23 multiply, 2 sqrt
-#   ik_pose: 61 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 1 sqrt
+#   ik_pose: 61 compare and select, 25 add, 2 atan2, 1 divide, 27 multiply, 1 sqrt
 #   workspace_radii: 1 compare and select, 2 add
 """Planar 2R arm.
 
@@ -370,35 +370,36 @@ def _ik_pose(
     t1 = l1 + l2
     no_first_link = l1 <= t1 * _runtime.VANISHING
     elbow_y = T24 - T21 * l2
-    s1 = _runtime.select(no_first_link, 0.0, elbow_y / l1)
+    t2 = 1.0 / l1
+    s1 = _runtime.select(no_first_link, 0.0, elbow_y * t2)
     elbow_x = T14 - T11 * l2
-    c1 = _runtime.select(no_first_link, 1.0, elbow_x / l1)
-    t2 = (np.isfinite(l1) & np.isfinite(l2)) & (0.0 <= l1)
-    t3 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t4 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t5 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t6 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t7 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t8 = t2 & (0.0 <= l2) & t3 & t4 & t5 & t6 & (t7 <= _runtime.ROTATION)
-    t9 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t10 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t11 = t8 & (t9 <= _runtime.ROTATION) & t10 & (np.abs(T41) <= _runtime.ROTATION)
-    t12 = t11 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    t13 = t12 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    invalid = np.logical_not(t13)
-    t14 = np.sqrt(elbow_x * elbow_x + elbow_y * elbow_y)
-    t15 = _runtime.FEASIBILITY * t1
-    t16 = (np.abs(l1 - t14) <= t15) & (np.abs(T34) <= t15)
-    t17 = t16 & (np.abs(T13) <= _runtime.FEASIBILITY) & (np.abs(T23) <= _runtime.FEASIBILITY)
-    t18 = t17 & (np.abs(T33 - 1.0) <= _runtime.FEASIBILITY)
-    unreachable = np.logical_not(t18)
-    t19 = _runtime.poison(invalid | unreachable)
-    t20 = np.arctan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1)
-    t21 = _runtime.status(invalid, unreachable, no_first_link)
+    c1 = _runtime.select(no_first_link, 1.0, elbow_x * t2)
+    t3 = (np.isfinite(l1) & np.isfinite(l2)) & (0.0 <= l1)
+    t4 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t5 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t6 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t7 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t8 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t9 = t3 & (0.0 <= l2) & t4 & t5 & t6 & t7 & (t8 <= _runtime.ROTATION)
+    t10 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t11 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t12 = t9 & (t10 <= _runtime.ROTATION) & t11 & (np.abs(T41) <= _runtime.ROTATION)
+    t13 = t12 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    t14 = t13 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    invalid = np.logical_not(t14)
+    t15 = np.sqrt(elbow_x * elbow_x + elbow_y * elbow_y)
+    t16 = _runtime.FEASIBILITY * t1
+    t17 = (np.abs(l1 - t15) <= t16) & (np.abs(T34) <= t16)
+    t18 = t17 & (np.abs(T13) <= _runtime.FEASIBILITY) & (np.abs(T23) <= _runtime.FEASIBILITY)
+    t19 = t18 & (np.abs(T33 - 1.0) <= _runtime.FEASIBILITY)
+    unreachable = np.logical_not(t19)
+    t20 = _runtime.poison(invalid | unreachable)
+    t21 = np.arctan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1)
+    t22 = _runtime.status(invalid, unreachable, no_first_link)
     return (
-        _runtime.wrap_cut(np.arctan2(s1, c1)) + t19,
-        _runtime.wrap_cut(-t20) + t19,
-        t21,
+        _runtime.wrap_cut(np.arctan2(s1, c1)) + t20,
+        _runtime.wrap_cut(-t21) + t20,
+        t22,
     )
 
 

@@ -10,7 +10,7 @@
 #   jacobian_body: 26 add, 61 multiply, 5 sincos
 #   determinant: 9 add, 22 multiply, 3 sincos
 #   singularities: 5 add, 9 multiply, 3 sincos
-#   ik: 133 compare and select, 141 add, 20 atan2, 20 divide, 152 multiply, 10 sqrt
+#   ik: 133 compare and select, 141 add, 20 atan2, 9 divide, 172 multiply, 10 sqrt
 """Puma 560.
 
 A vertical base axis (theta1), two parallel horizontal axes (theta2, theta3) and a spherical
@@ -540,14 +540,14 @@ def _ik(
     t4 = d3 + amplitude
     above = np.maximum(t4, 0.0)
     t5 = below - above
-    t6 = amplitude * (below + above)
-    t7 = T14 * t5 / t6
+    t6 = 1.0 / (amplitude * (below + above))
+    t7 = T14 * t5 * t6
     root = np.sqrt(above) * np.sqrt(below)
     t8 = root * 2.0
-    t9 = T24 * t8 / t6
+    t9 = t6 * (T24 * t8)
     t10 = _runtime.select(free_theta1, 0.0, t7 - t9)
-    t11 = T24 * t5 / t6
-    t12 = T14 * t8 / t6
+    t11 = T24 * t5 * t6
+    t12 = t6 * (T14 * t8)
     c1 = _runtime.select(free_theta1, 1.0, t11 + t12)
     t13 = np.isfinite(a2) & np.isfinite(a3) & np.isfinite(d3) & np.isfinite(d4)
     t14 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
@@ -574,205 +574,211 @@ def _ik(
     t32 = _runtime.poison(invalid | unreachable)
     t33 = _runtime.wrap_cut(-np.arctan2(t10, c1)) + t32
     folded = reach <= t2
-    t34 = _runtime.select(folded, 0.0, T34 / reach)
+    t34 = 1.0 / reach
+    t35 = _runtime.select(folded, 0.0, T34 * t34)
     no_link = a2 * f <= _runtime.VANISHING * (t1 * t1)
-    t35 = folded | no_link
+    t36 = folded | no_link
     S = reach + t1
     B = np.maximum(t29, 0.0)
     SB = S * B
     A = np.maximum(t27, 0.0)
     C = np.maximum(t31, 0.0)
     AC = A * C
-    sides = SB + AC
-    t36 = _runtime.select(t35, 1.0, (SB - AC) / sides)
-    t37 = t34 * t36
+    t37 = 1.0 / (SB + AC)
+    t38 = _runtime.select(t36, 1.0, (SB - AC) * t37)
+    t39 = t35 * t38
     SA = S * A
     BC = B * C
     area = 2.0 * np.sqrt(SA * BC)
-    t38 = _runtime.select(t35, 0.0, area / sides)
-    t39 = root / reach
-    t40 = _runtime.select(folded, 1.0, t39)
-    t41 = t38 * t40
-    s2 = t37 + t41
-    t42 = t34 * t38
-    t43 = t36 * t40
-    t44 = t42 - t43
-    t45 = _runtime.wrap_cut(np.arctan2(s2, -t44)) + t32
+    t40 = _runtime.select(t36, 0.0, t37 * area)
+    t41 = root * t34
+    t42 = _runtime.select(folded, 1.0, t41)
+    t43 = t40 * t42
+    s2 = t39 + t43
+    t44 = t35 * t40
+    t45 = t38 * t42
+    t46 = t44 - t45
+    t47 = _runtime.wrap_cut(np.arctan2(s2, -t46)) + t32
     no_forearm = f <= t2
-    t46 = _runtime.select(no_forearm, 0.0, d4 / f)
-    links = SA + BC
-    t47 = _runtime.select(no_link, 1.0, -((SA - BC) / links))
-    t48 = t46 * t47
-    t49 = _runtime.select(no_link, 0.0, area / links)
-    t50 = _runtime.select(no_forearm, 1.0, a3 / f)
-    t51 = t49 * t50
-    t52 = t48 + t51
-    t53 = t46 * t49
-    t54 = t47 * t50
-    t55 = t53 - t54
-    t56 = _runtime.wrap_cut(-np.arctan2(t52, -t55)) + t32
-    t57 = T13 * t10 + T23 * c1
-    t58 = t57 * t57
-    s23 = t44 * t52 - s2 * t55
-    c23 = t44 * t55 + s2 * t52
+    t48 = 1.0 / f
+    t49 = _runtime.select(no_forearm, 0.0, d4 * t48)
+    t50 = 1.0 / (SA + BC)
+    t51 = _runtime.select(no_link, 1.0, -((SA - BC) * t50))
+    t52 = t49 * t51
+    t53 = _runtime.select(no_link, 0.0, area * t50)
+    t54 = _runtime.select(no_forearm, 1.0, a3 * t48)
+    t55 = t53 * t54
+    t56 = t52 + t55
+    t57 = t49 * t53
+    t58 = t51 * t54
+    t59 = t57 - t58
+    t60 = _runtime.wrap_cut(-np.arctan2(t56, -t59)) + t32
+    t61 = T13 * t10 + T23 * c1
+    t62 = t61 * t61
+    s23 = t46 * t56 - s2 * t59
+    c23 = t46 * t59 + s2 * t56
     R1_13 = T13 * c1 - T23 * t10
     R2_13 = T33 * s23 + c23 * R1_13
-    h = np.sqrt(t58 + R2_13 * R2_13)
-    t59 = _runtime.VANISHING * 16.0
-    aligned = h <= t59
-    t60 = _runtime.select(aligned, 0.0, t57 / h)
-    c4 = _runtime.select(aligned, 1.0, -(R2_13 / h))
-    t61 = np.arctan2(t60, c4)
-    t62 = np.arctan2(t57 * t60 - R2_13 * c4, T33 * c23 - s23 * R1_13)
-    t63 = T11 * t10 + T21 * c1
+    h = np.sqrt(t62 + R2_13 * R2_13)
+    t63 = _runtime.VANISHING * 16.0
+    aligned = h <= t63
+    t64 = 1.0 / h
+    t65 = _runtime.select(aligned, 0.0, t61 * t64)
+    c4 = _runtime.select(aligned, 1.0, -(R2_13 * t64))
+    t66 = np.arctan2(t65, c4)
+    t67 = np.arctan2(t61 * t65 - R2_13 * c4, T33 * c23 - s23 * R1_13)
+    t68 = T11 * t10 + T21 * c1
     R1_11 = T11 * c1 - T21 * t10
-    t64 = T12 * t10 + T22 * c1
+    t69 = T12 * t10 + T22 * c1
     R1_12 = T12 * c1 - T22 * t10
-    t65 = np.arctan2(c4 * t63 + t60 * (T31 * s23 + c23 * R1_11), c4 * t64 + t60 * (T32 * s23 + c23 * R1_12))
+    t70 = np.arctan2(c4 * t68 + t65 * (T31 * s23 + c23 * R1_11), c4 * t69 + t65 * (T32 * s23 + c23 * R1_12))
     flip = _runtime.select(aligned, 0.0, 3.141592653589793)
-    s2_right_down_noflip = t37 - t41
-    c2_right_down_noflip = t42 + t43
-    t66 = np.arctan2(s2_right_down_noflip, c2_right_down_noflip)
-    t67 = _runtime.wrap_cut(t66) + t32
-    t68 = t48 - t51
-    c3_right_down_noflip = t53 + t54
-    t69 = _runtime.wrap_cut(-np.arctan2(t68, c3_right_down_noflip))
-    t70 = t69 + t32
-    t71 = c2_right_down_noflip * t68 - s2_right_down_noflip * c3_right_down_noflip
-    c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t68
-    t72 = T33 * t71 - R1_13 * c23_right_down_noflip
-    h_right_down_noflip = np.sqrt(t58 + t72 * t72)
-    aligned_right_down_noflip = h_right_down_noflip <= t59
-    t73 = _runtime.select(aligned_right_down_noflip, 0.0, t57 / h_right_down_noflip)
-    c4_right_down_noflip = _runtime.select(aligned_right_down_noflip, 1.0, t72 / h_right_down_noflip)
-    t74 = np.arctan2(t73, c4_right_down_noflip)
-    t75 = np.arctan2(t57 * t73 + t72 * c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t71)
-    t76 = t73 * (T31 * t71 - R1_11 * c23_right_down_noflip)
-    t77 = t73 * (T32 * t71 - R1_12 * c23_right_down_noflip)
-    t78 = np.arctan2(t63 * c4_right_down_noflip - t76, t64 * c4_right_down_noflip - t77)
+    s2_right_down_noflip = t39 - t43
+    c2_right_down_noflip = t44 + t45
+    t71 = np.arctan2(s2_right_down_noflip, c2_right_down_noflip)
+    t72 = _runtime.wrap_cut(t71) + t32
+    t73 = t52 - t55
+    c3_right_down_noflip = t57 + t58
+    t74 = _runtime.wrap_cut(-np.arctan2(t73, c3_right_down_noflip))
+    t75 = t74 + t32
+    t76 = c2_right_down_noflip * t73 - s2_right_down_noflip * c3_right_down_noflip
+    c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t73
+    t77 = T33 * t76 - R1_13 * c23_right_down_noflip
+    h_right_down_noflip = np.sqrt(t62 + t77 * t77)
+    aligned_right_down_noflip = h_right_down_noflip <= t63
+    t78 = 1.0 / h_right_down_noflip
+    t79 = _runtime.select(aligned_right_down_noflip, 0.0, t61 * t78)
+    c4_right_down_noflip = _runtime.select(aligned_right_down_noflip, 1.0, t77 * t78)
+    t80 = np.arctan2(t79, c4_right_down_noflip)
+    t81 = np.arctan2(t61 * t79 + t77 * c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t76)
+    t82 = t79 * (T31 * t76 - R1_11 * c23_right_down_noflip)
+    t83 = t79 * (T32 * t76 - R1_12 * c23_right_down_noflip)
+    t84 = np.arctan2(t68 * c4_right_down_noflip - t82, t69 * c4_right_down_noflip - t83)
     flip_right_down_flip = _runtime.select(aligned_right_down_noflip, 0.0, 3.141592653589793)
-    t79 = _runtime.wrap(flip_right_down_flip - t74) + t32
-    t80 = _runtime.wrap(t78 + flip_right_down_flip) + t32
-    t81 = _runtime.select(free_theta1, 0.0, t7 + t9)
+    t85 = _runtime.wrap(flip_right_down_flip - t80) + t32
+    t86 = _runtime.wrap(t84 + flip_right_down_flip) + t32
+    t87 = _runtime.select(free_theta1, 0.0, t7 + t9)
     c1_left_up_noflip = _runtime.select(free_theta1, 1.0, t11 - t12)
-    t82 = _runtime.wrap_cut(-np.arctan2(t81, c1_left_up_noflip))
-    t83 = t82 + t32
-    t84 = _runtime.select(folded, 1.0, -t39)
-    t85 = t38 * t84
-    s2_left_up_noflip = t37 - t85
-    t86 = t36 * t84
-    c2_left_up_noflip = t42 + t86
-    t87 = np.arctan2(s2_left_up_noflip, c2_left_up_noflip)
-    t88 = _runtime.wrap_cut(t87) + t32
-    t89 = T13 * t81 + T23 * c1_left_up_noflip
-    t90 = t89 * t89
-    t91 = t68 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip
-    c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t68 * s2_left_up_noflip
-    R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t81
-    t92 = T33 * t91 - c23_left_up_noflip * R1_13_left_up_noflip
-    h_left_up_noflip = np.sqrt(t90 + t92 * t92)
-    aligned_left_up_noflip = h_left_up_noflip <= t59
-    t93 = _runtime.select(aligned_left_up_noflip, 0.0, t89 / h_left_up_noflip)
-    c4_left_up_noflip = _runtime.select(aligned_left_up_noflip, 1.0, t92 / h_left_up_noflip)
-    t94 = np.arctan2(t93, c4_left_up_noflip)
-    R2_33_left_up_noflip = T33 * c23_left_up_noflip + t91 * R1_13_left_up_noflip
-    t95 = np.arctan2(t89 * t93 + t92 * c4_left_up_noflip, R2_33_left_up_noflip)
-    t96 = T11 * t81 + T21 * c1_left_up_noflip
-    R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t81
-    t97 = T31 * t91 - c23_left_up_noflip * R1_11_left_up_noflip
-    t98 = T12 * t81 + T22 * c1_left_up_noflip
-    R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t81
-    t99 = T32 * t91 - c23_left_up_noflip * R1_12_left_up_noflip
-    t100 = np.arctan2(c4_left_up_noflip * t96 - t93 * t97, c4_left_up_noflip * t98 - t93 * t99)
+    t88 = _runtime.wrap_cut(-np.arctan2(t87, c1_left_up_noflip))
+    t89 = t88 + t32
+    t90 = _runtime.select(folded, 1.0, -t41)
+    t91 = t40 * t90
+    s2_left_up_noflip = t39 - t91
+    t92 = t38 * t90
+    c2_left_up_noflip = t44 + t92
+    t93 = np.arctan2(s2_left_up_noflip, c2_left_up_noflip)
+    t94 = _runtime.wrap_cut(t93) + t32
+    t95 = T13 * t87 + T23 * c1_left_up_noflip
+    t96 = t95 * t95
+    t97 = t73 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip
+    c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t73 * s2_left_up_noflip
+    R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t87
+    t98 = T33 * t97 - c23_left_up_noflip * R1_13_left_up_noflip
+    h_left_up_noflip = np.sqrt(t96 + t98 * t98)
+    aligned_left_up_noflip = h_left_up_noflip <= t63
+    t99 = 1.0 / h_left_up_noflip
+    t100 = _runtime.select(aligned_left_up_noflip, 0.0, t95 * t99)
+    c4_left_up_noflip = _runtime.select(aligned_left_up_noflip, 1.0, t98 * t99)
+    t101 = np.arctan2(t100, c4_left_up_noflip)
+    R2_33_left_up_noflip = T33 * c23_left_up_noflip + t97 * R1_13_left_up_noflip
+    t102 = np.arctan2(t95 * t100 + t98 * c4_left_up_noflip, R2_33_left_up_noflip)
+    t103 = T11 * t87 + T21 * c1_left_up_noflip
+    R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t87
+    t104 = T31 * t97 - c23_left_up_noflip * R1_11_left_up_noflip
+    t105 = T12 * t87 + T22 * c1_left_up_noflip
+    R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t87
+    t106 = T32 * t97 - c23_left_up_noflip * R1_12_left_up_noflip
+    t107 = np.arctan2(c4_left_up_noflip * t103 - t100 * t104, c4_left_up_noflip * t105 - t100 * t106)
     flip_left_up_flip = _runtime.select(aligned_left_up_noflip, 0.0, 3.141592653589793)
-    t101 = _runtime.wrap(t100 + flip_left_up_flip) + t32
-    s2_left_down_noflip = t37 + t85
-    t102 = t42 - t86
-    t103 = _runtime.wrap_cut(np.arctan2(s2_left_down_noflip, -t102))
-    t104 = t103 + t32
-    s23_left_down_noflip = t52 * t102 - t55 * s2_left_down_noflip
-    c23_left_down_noflip = t55 * t102 + t52 * s2_left_down_noflip
+    t108 = _runtime.wrap(flip_left_up_flip - t101) + t32
+    t109 = _runtime.wrap(t107 + flip_left_up_flip) + t32
+    s2_left_down_noflip = t39 + t91
+    t110 = t44 - t92
+    t111 = _runtime.wrap_cut(np.arctan2(s2_left_down_noflip, -t110))
+    t112 = t111 + t32
+    s23_left_down_noflip = t56 * t110 - t59 * s2_left_down_noflip
+    c23_left_down_noflip = t59 * t110 + t56 * s2_left_down_noflip
     R2_13_left_down_noflip = T33 * s23_left_down_noflip + R1_13_left_up_noflip * c23_left_down_noflip
-    t105 = R2_13_left_down_noflip * R2_13_left_down_noflip
-    h_left_down_noflip = np.sqrt(t90 + t105)
-    aligned_left_down_noflip = h_left_down_noflip <= t59
-    t106 = _runtime.select(aligned_left_down_noflip, 0.0, t89 / h_left_down_noflip)
-    t107 = -(R2_13_left_down_noflip / h_left_down_noflip)
-    c4_left_down_noflip = _runtime.select(aligned_left_down_noflip, 1.0, t107)
-    t108 = np.arctan2(t106, c4_left_down_noflip)
-    t109 = t89 * t106 - R2_13_left_down_noflip * c4_left_down_noflip
+    t113 = R2_13_left_down_noflip * R2_13_left_down_noflip
+    h_left_down_noflip = np.sqrt(t96 + t113)
+    aligned_left_down_noflip = h_left_down_noflip <= t63
+    t114 = 1.0 / h_left_down_noflip
+    t115 = _runtime.select(aligned_left_down_noflip, 0.0, t95 * t114)
+    c4_left_down_noflip = _runtime.select(aligned_left_down_noflip, 1.0, -(R2_13_left_down_noflip * t114))
+    t116 = np.arctan2(t115, c4_left_down_noflip)
+    t117 = t95 * t115 - R2_13_left_down_noflip * c4_left_down_noflip
     R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip * s23_left_down_noflip
-    t110 = np.arctan2(t109, R2_33_left_down_noflip)
+    t118 = np.arctan2(t117, R2_33_left_down_noflip)
     R2_11_left_down_noflip = T31 * s23_left_down_noflip + R1_11_left_up_noflip * c23_left_down_noflip
-    t111 = t96 * c4_left_down_noflip + t106 * R2_11_left_down_noflip
+    t119 = t103 * c4_left_down_noflip + t115 * R2_11_left_down_noflip
     R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip * c23_left_down_noflip
-    t112 = t98 * c4_left_down_noflip + t106 * R2_12_left_down_noflip
-    t113 = np.arctan2(t111, t112)
+    t120 = t105 * c4_left_down_noflip + t115 * R2_12_left_down_noflip
+    t121 = np.arctan2(t119, t120)
     flip_left_down_flip = _runtime.select(aligned_left_down_noflip, 0.0, 3.141592653589793)
-    t114 = _runtime.wrap(flip_left_down_flip - t108) + t32
-    t115 = _runtime.wrap(t113 + flip_left_down_flip) + t32
-    t116 = free_theta1 | no_link | folded | no_forearm
-    t117 = _runtime.status(invalid, unreachable, t116 | aligned)
-    t118 = _runtime.status(invalid, unreachable, t116 | aligned_right_down_noflip)
-    t119 = _runtime.status(invalid, unreachable, t116 | aligned_left_up_noflip)
-    t120 = _runtime.status(invalid, unreachable, t116 | aligned_left_down_noflip)
+    t122 = _runtime.wrap(flip_left_down_flip - t116) + t32
+    t123 = _runtime.wrap(t121 + flip_left_down_flip) + t32
+    t124 = free_theta1 | no_link | folded | no_forearm
+    t125 = _runtime.status(invalid, unreachable, t124 | aligned)
+    t126 = _runtime.status(invalid, unreachable, t124 | aligned_right_down_noflip)
+    t127 = _runtime.status(invalid, unreachable, t124 | aligned_left_up_noflip)
+    t128 = _runtime.status(invalid, unreachable, t124 | aligned_left_down_noflip)
     return (
         t33,
-        t45,
-        t56,
-        _runtime.wrap_cut(-t61) + t32,
-        _runtime.wrap_cut(t62) + t32,
-        _runtime.wrap_cut(t65) + t32,
+        t47,
+        t60,
+        _runtime.wrap_cut(-t66) + t32,
+        _runtime.wrap_cut(t67) + t32,
+        _runtime.wrap_cut(t70) + t32,
         t33,
-        t45,
-        t56,
-        _runtime.wrap(flip - t61) + t32,
-        _runtime.wrap_cut(-t62) + t32,
-        _runtime.wrap(t65 + flip) + t32,
+        t47,
+        t60,
+        _runtime.wrap(flip - t66) + t32,
+        _runtime.wrap_cut(-t67) + t32,
+        _runtime.wrap(t70 + flip) + t32,
         t33,
-        t67,
-        t70,
-        _runtime.wrap_cut(-t74) + t32,
-        _runtime.wrap_cut(t75) + t32,
-        _runtime.wrap_cut(t78) + t32,
+        t72,
+        t75,
+        _runtime.wrap_cut(-t80) + t32,
+        _runtime.wrap_cut(t81) + t32,
+        _runtime.wrap_cut(t84) + t32,
         t33,
-        t67,
-        t70,
-        t79,
-        _runtime.wrap_cut(-t75) + t32,
-        t80,
-        t83,
-        t88,
-        t70,
-        _runtime.wrap_cut(-t94) + t32,
-        _runtime.wrap_cut(t95) + t32,
-        _runtime.wrap_cut(t100) + t32,
-        t83,
-        t88,
-        t70,
-        _runtime.wrap(flip_left_up_flip - t94) + t32,
-        _runtime.wrap_cut(-t95) + t32,
-        t101,
-        t83,
-        t104,
-        t56,
-        _runtime.wrap_cut(-t108) + t32,
-        _runtime.wrap_cut(t110) + t32,
-        _runtime.wrap_cut(t113) + t32,
-        t83,
-        t104,
-        t56,
-        t114,
-        _runtime.wrap_cut(-t110) + t32,
-        t115,
-        t117,
-        t117,
-        t118,
-        t118,
-        t119,
-        t119,
-        t120,
-        t120,
+        t72,
+        t75,
+        t85,
+        _runtime.wrap_cut(-t81) + t32,
+        t86,
+        t89,
+        t94,
+        t75,
+        _runtime.wrap_cut(-t101) + t32,
+        _runtime.wrap_cut(t102) + t32,
+        _runtime.wrap_cut(t107) + t32,
+        t89,
+        t94,
+        t75,
+        t108,
+        _runtime.wrap_cut(-t102) + t32,
+        t109,
+        t89,
+        t112,
+        t60,
+        _runtime.wrap_cut(-t116) + t32,
+        _runtime.wrap_cut(t118) + t32,
+        _runtime.wrap_cut(t121) + t32,
+        t89,
+        t112,
+        t60,
+        t122,
+        _runtime.wrap_cut(-t118) + t32,
+        t123,
+        t125,
+        t125,
+        t126,
+        t126,
+        t127,
+        t127,
+        t128,
+        t128,
     )
 
 

@@ -2,7 +2,7 @@
 # derivations/rpr_planar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 10 add, 24 compare and select, 4 divide, 9 multiply, 4 sqrt
+#   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 4 sqrt
 #   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
 #   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 4 sqrt
 #   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 4 sqrt
@@ -70,8 +70,8 @@ def _fk(rho1, rho2, b):
     coincide = b <= t3
     n_1 = _runtime.select(coincide, 1.0, b / b)
     t4 = rho1 - rho2
-    t5 = b * 2.0
-    t6 = _runtime.select(coincide, rho1, b / 2.0 + t4 * t1 / t5)
+    t5 = 1.0 / (b * 2.0)
+    t6 = _runtime.select(coincide, rho1, b / 2.0 + t4 * t1 * t5)
     t7 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     invalid = np.logical_not(t7)
     t8 = -(_runtime.FEASIBILITY * t2)
@@ -83,7 +83,7 @@ def _fk(rho1, rho2, b):
     t13 = n_1 * t6 + t12
     slack = np.maximum(t9, 0.0)
     t14 = np.sqrt(np.maximum(t11, 0.0)) * np.sqrt(np.maximum(t10, 0.0))
-    t15 = _runtime.select(coincide, 0.0, t14 * np.sqrt(slack) * np.sqrt(t2) / t5)
+    t15 = _runtime.select(coincide, 0.0, t5 * (t14 * np.sqrt(slack) * np.sqrt(t2)))
     P_y = n_1 * _runtime.select(slack <= t3, 0.0, t15)
     t16 = _runtime.status(invalid, unreachable, coincide)
     return (

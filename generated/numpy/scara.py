@@ -9,7 +9,7 @@
 #   singularities: 1 sincos
 #   jacobian_space: 4 add, 8 multiply, 2 sincos
 #   jacobian_body: 4 add, 8 multiply, 2 sincos
-#   ik: 32 add, 39 compare and select, 5 atan2, 10 divide, 35 multiply, 1 sincos, 5 sqrt
+#   ik: 32 add, 39 compare and select, 5 atan2, 5 divide, 43 multiply, 1 sincos, 5 sqrt
 """SCARA arm (RRPR).
 
 Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a
@@ -364,63 +364,64 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     r_elbow = np.sqrt(x_x * x_x + x_y * x_y)
     t1 = l1 + l2
     folded_elbow = r_elbow <= _runtime.VANISHING * t1
+    t2 = 1.0 / r_elbow
     no_link_elbow = l1 * l2 <= _runtime.VANISHING * (t1 * t1)
-    t2 = t1 - r_elbow
-    A_elbow = np.maximum(t2, 0.0)
-    t3 = l1 - l2
-    t4 = r_elbow - t3
-    C_elbow = np.maximum(t4, 0.0)
-    t5 = A_elbow * C_elbow
+    t3 = t1 - r_elbow
+    A_elbow = np.maximum(t3, 0.0)
+    t4 = l1 - l2
+    t5 = r_elbow - t4
+    C_elbow = np.maximum(t5, 0.0)
+    t6 = A_elbow * C_elbow
     S_elbow = r_elbow + t1
-    t6 = r_elbow + t3
-    B_elbow = np.maximum(t6, 0.0)
-    t7 = S_elbow * B_elbow
-    width_elbow = t5 + t7
-    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t5 - t7) / width_elbow))
-    t8 = x_y * c_base_elbow / r_elbow
-    t9 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
-    area_elbow = t9 * np.sqrt(S_elbow)
-    s_base_elbow = _runtime.select(no_link_elbow, 0.0, area_elbow / width_elbow)
-    t10 = x_x * s_base_elbow / r_elbow
-    s1 = _runtime.select(folded_elbow, 0.0, t8 - t10)
-    t11 = x_x * c_base_elbow / r_elbow
-    t12 = x_y * s_base_elbow / r_elbow
-    c1 = _runtime.select(folded_elbow, 1.0, t11 + t12)
-    t13 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(h)
-    t14 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z) & np.isfinite(x_yaw)
-    t15 = t13 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= h) & t14
-    invalid = np.logical_not(t15)
-    t16 = -(_runtime.FEASIBILITY * (l1 / 2.0 + l2 / 2.0))
-    unreachable = np.logical_not((t16 <= t2) & (t16 <= t6) & (t16 <= t4))
-    t17 = _runtime.poison(invalid | unreachable)
-    t18 = A_elbow * S_elbow
-    t19 = C_elbow * B_elbow
-    sum_elbow = t18 + t19
-    s2 = _runtime.select(no_link_elbow, 0.0, area_elbow / sum_elbow)
-    c2 = _runtime.select(no_link_elbow, 1.0, -((t18 - t19) / sum_elbow))
-    t20 = np.arctan2(s2, c2)
-    t21 = h - x_z + t17
-    t22 = c1 * c2 - s1 * s2
-    t23 = c1 * s2 + s1 * c2
-    t24 = np.arctan2(s_x_yaw * t22 - c_x_yaw * t23, c_x_yaw * t22 + s_x_yaw * t23)
-    s1_right = _runtime.select(folded_elbow, 0.0, t8 + t10)
-    c1_right = _runtime.select(folded_elbow, 1.0, t11 - t12)
-    t25 = _runtime.wrap_cut(np.arctan2(s1_right, c1_right))
-    t26 = c2 * c1_right + s2 * s1_right
-    t27 = s2 * c1_right - c2 * s1_right
-    t28 = np.arctan2(s_x_yaw * t26 + c_x_yaw * t27, c_x_yaw * t26 - s_x_yaw * t27)
-    t29 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
+    t7 = r_elbow + t4
+    B_elbow = np.maximum(t7, 0.0)
+    t8 = S_elbow * B_elbow
+    t9 = 1.0 / (t6 + t8)
+    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t6 - t8) * t9))
+    t10 = t2 * (x_y * c_base_elbow)
+    t11 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
+    area_elbow = t11 * np.sqrt(S_elbow)
+    s_base_elbow = _runtime.select(no_link_elbow, 0.0, t9 * area_elbow)
+    t12 = t2 * (x_x * s_base_elbow)
+    s1 = _runtime.select(folded_elbow, 0.0, t10 - t12)
+    t13 = t2 * (x_x * c_base_elbow)
+    t14 = t2 * (x_y * s_base_elbow)
+    c1 = _runtime.select(folded_elbow, 1.0, t13 + t14)
+    t15 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(h)
+    t16 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z) & np.isfinite(x_yaw)
+    t17 = t15 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= h) & t16
+    invalid = np.logical_not(t17)
+    t18 = -(_runtime.FEASIBILITY * (l1 / 2.0 + l2 / 2.0))
+    unreachable = np.logical_not((t18 <= t3) & (t18 <= t7) & (t18 <= t5))
+    t19 = _runtime.poison(invalid | unreachable)
+    t20 = A_elbow * S_elbow
+    t21 = C_elbow * B_elbow
+    t22 = 1.0 / (t20 + t21)
+    s2 = _runtime.select(no_link_elbow, 0.0, area_elbow * t22)
+    c2 = _runtime.select(no_link_elbow, 1.0, -(t22 * (t20 - t21)))
+    t23 = np.arctan2(s2, c2)
+    t24 = h - x_z + t19
+    t25 = c1 * c2 - s1 * s2
+    t26 = c1 * s2 + s1 * c2
+    t27 = np.arctan2(s_x_yaw * t25 - c_x_yaw * t26, c_x_yaw * t25 + s_x_yaw * t26)
+    s1_right = _runtime.select(folded_elbow, 0.0, t10 + t12)
+    c1_right = _runtime.select(folded_elbow, 1.0, t13 - t14)
+    t28 = _runtime.wrap_cut(np.arctan2(s1_right, c1_right))
+    t29 = c2 * c1_right + s2 * s1_right
+    t30 = s2 * c1_right - c2 * s1_right
+    t31 = np.arctan2(s_x_yaw * t29 + c_x_yaw * t30, c_x_yaw * t29 - s_x_yaw * t30)
+    t32 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
     return (
-        _runtime.wrap_cut(np.arctan2(s1, c1)) + t17,
-        _runtime.wrap_cut(t20) + t17,
-        t21,
-        _runtime.wrap_cut(-t24) + t17,
-        t25 + t17,
-        _runtime.wrap_cut(-t20) + t17,
-        t21,
-        _runtime.wrap_cut(-t28) + t17,
-        t29,
-        t29,
+        _runtime.wrap_cut(np.arctan2(s1, c1)) + t19,
+        _runtime.wrap_cut(t23) + t19,
+        t24,
+        _runtime.wrap_cut(-t27) + t19,
+        t28 + t19,
+        _runtime.wrap_cut(-t23) + t19,
+        t24,
+        _runtime.wrap_cut(-t31) + t19,
+        t32,
+        t32,
     )
 
 

@@ -9,7 +9,7 @@
 #   jacobian_body: 2 multiply, 2 sincos
 #   determinant: 1 sincos
 #   singularities: 1 sincos
-#   ik: 32 compare and select, 26 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
+#   ik: 32 compare and select, 26 add, 3 atan2, 1 divide, 25 multiply, 1 sqrt
 """Spherical wrist.
 
 Three revolute joints with axes through one point.  theta4 turns about z, theta5 about the y
@@ -286,31 +286,32 @@ def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = Non
 def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33, d6):
     h = np.sqrt(R13 * R13 + R23 * R23)
     aligned = h <= _runtime.VANISHING
-    s4 = _runtime.select(aligned, 0.0, R23 / h)
-    c4 = _runtime.select(aligned, 1.0, R13 / h)
-    t1 = np.arctan2(s4, c4)
-    t2 = np.abs(R13 - R21 * R32 + R22 * R31) <= _runtime.ROTATION
-    t3 = np.abs(R23 + R11 * R32 - R12 * R31) <= _runtime.ROTATION
-    t4 = np.abs(R33 - R11 * R22 + R12 * R21) <= _runtime.ROTATION
-    t5 = np.abs(1.0 - R11 * R11 - R21 * R21 - R31 * R31)
-    t6 = np.isfinite(d6) & t2 & t3 & t4 & (t5 <= _runtime.ROTATION)
-    t7 = np.abs(1.0 - R12 * R12 - R22 * R22 - R32 * R32)
-    t8 = np.abs(R11 * R12 + R21 * R22 + R31 * R32) <= _runtime.ROTATION
-    invalid = np.logical_not(t6 & (t7 <= _runtime.ROTATION) & t8)
-    t9 = _runtime.poison(invalid)
-    t10 = np.arctan2(R13 * c4 + R23 * s4, R33)
-    t11 = np.arctan2(R11 * s4 - R21 * c4, R22 * c4 - R12 * s4)
+    t1 = 1.0 / h
+    s4 = _runtime.select(aligned, 0.0, R23 * t1)
+    c4 = _runtime.select(aligned, 1.0, R13 * t1)
+    t2 = np.arctan2(s4, c4)
+    t3 = np.abs(R13 - R21 * R32 + R22 * R31) <= _runtime.ROTATION
+    t4 = np.abs(R23 + R11 * R32 - R12 * R31) <= _runtime.ROTATION
+    t5 = np.abs(R33 - R11 * R22 + R12 * R21) <= _runtime.ROTATION
+    t6 = np.abs(1.0 - R11 * R11 - R21 * R21 - R31 * R31)
+    t7 = np.isfinite(d6) & t3 & t4 & t5 & (t6 <= _runtime.ROTATION)
+    t8 = np.abs(1.0 - R12 * R12 - R22 * R22 - R32 * R32)
+    t9 = np.abs(R11 * R12 + R21 * R22 + R31 * R32) <= _runtime.ROTATION
+    invalid = np.logical_not(t7 & (t8 <= _runtime.ROTATION) & t9)
+    t10 = _runtime.poison(invalid)
+    t11 = np.arctan2(R13 * c4 + R23 * s4, R33)
+    t12 = np.arctan2(R11 * s4 - R21 * c4, R22 * c4 - R12 * s4)
     flip = _runtime.select(aligned, 0.0, 3.141592653589793)
-    t12 = _runtime.status(invalid, np.False_, aligned)
+    t13 = _runtime.status(invalid, np.False_, aligned)
     return (
-        _runtime.wrap_cut(t1) + t9,
-        _runtime.wrap_cut(t10) + t9,
-        _runtime.wrap_cut(-t11) + t9,
-        _runtime.wrap(t1 + flip) + t9,
-        _runtime.wrap_cut(-t10) + t9,
-        _runtime.wrap(flip - t11) + t9,
-        t12,
-        t12,
+        _runtime.wrap_cut(t2) + t10,
+        _runtime.wrap_cut(t11) + t10,
+        _runtime.wrap_cut(-t12) + t10,
+        _runtime.wrap(flip + t2) + t10,
+        _runtime.wrap_cut(-t11) + t10,
+        _runtime.wrap(flip - t12) + t10,
+        t13,
+        t13,
     )
 
 

@@ -10,7 +10,7 @@
 #   jacobian_body: 14 add, 41 multiply, 4 sincos
 #   determinant: 3 multiply, 2 sincos
 #   singularities: 2 sincos
-#   ik: 107 compare and select, 111 add, 16 atan2, 14 divide, 102 multiply, 9 sqrt
+#   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 9 sqrt
 """Stanford arm.
 
 A vertical base axis (theta1), a horizontal shoulder (theta2), a boom that slides through it
@@ -492,14 +492,14 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t5 = d2 + amplitude
     above = np.maximum(t5, 0.0)
     t6 = below - above
-    t7 = amplitude * (below + above)
-    t8 = T14 * t6 / t7
+    t7 = 1.0 / (amplitude * (below + above))
+    t8 = T14 * t6 * t7
     root = np.sqrt(above) * np.sqrt(below)
     t9 = root * 2.0
-    t10 = T24 * t9 / t7
+    t10 = t7 * (T24 * t9)
     s1 = _runtime.select(free_theta1, 0.0, t8 + t10)
-    t11 = T14 * t9 / t7
-    t12 = T24 * t6 / t7
+    t11 = t7 * (T14 * t9)
+    t12 = T24 * t6 * t7
     c1 = _runtime.select(free_theta1, 1.0, t11 - t12)
     t13 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t14 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
@@ -519,159 +519,163 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t26 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t25
     reach = np.sqrt(t2 + root * root)
     drawn_in = reach <= t3
-    s2 = _runtime.select(drawn_in, 0.0, root / reach)
-    t27 = T34 / reach
-    c2 = _runtime.select(drawn_in, 1.0, t27)
-    t28 = np.arctan2(s2, c2)
-    t29 = _runtime.wrap_cut(t28) + t25
-    t30 = reach + t25
-    t31 = T13 * s1 - T23 * c1
-    t32 = t31 * t31
-    t33 = T33 * s2
+    t27 = 1.0 / reach
+    s2 = _runtime.select(drawn_in, 0.0, root * t27)
+    t28 = T34 * t27
+    c2 = _runtime.select(drawn_in, 1.0, t28)
+    t29 = np.arctan2(s2, c2)
+    t30 = _runtime.wrap_cut(t29) + t25
+    t31 = reach + t25
+    t32 = T13 * s1 - T23 * c1
+    t33 = t32 * t32
+    t34 = T33 * s2
     R1_13 = T13 * c1 + T23 * s1
-    t34 = t33 - c2 * R1_13
-    h = np.sqrt(t32 + t34 * t34)
-    t35 = _runtime.VANISHING * 16.0
-    aligned = h <= t35
-    t36 = _runtime.select(aligned, 0.0, t31 / h)
-    c4 = _runtime.select(aligned, 1.0, -(t34 / h))
-    t37 = np.arctan2(t36, c4)
-    t38 = T33 * c2
-    t39 = s2 * R1_13
-    t40 = np.arctan2(t31 * t36 - t34 * c4, t38 + t39)
-    t41 = T11 * s1 - T21 * c1
-    t42 = T31 * s2
+    t35 = t34 - c2 * R1_13
+    h = np.sqrt(t33 + t35 * t35)
+    t36 = _runtime.VANISHING * 16.0
+    aligned = h <= t36
+    t37 = 1.0 / h
+    t38 = _runtime.select(aligned, 0.0, t32 * t37)
+    c4 = _runtime.select(aligned, 1.0, -(t35 * t37))
+    t39 = np.arctan2(t38, c4)
+    t40 = T33 * c2
+    t41 = s2 * R1_13
+    t42 = np.arctan2(t32 * t38 - t35 * c4, t40 + t41)
+    t43 = T11 * s1 - T21 * c1
+    t44 = T31 * s2
     R1_11 = T11 * c1 + T21 * s1
-    t43 = T12 * s1 - T22 * c1
-    t44 = T32 * s2
+    t45 = T12 * s1 - T22 * c1
+    t46 = T32 * s2
     R1_12 = T12 * c1 + T22 * s1
-    t45 = np.arctan2(c4 * t41 + t36 * (t42 - c2 * R1_11), -(c4 * t43 + t36 * (t44 - c2 * R1_12)))
+    t47 = np.arctan2(c4 * t43 + t38 * (t44 - c2 * R1_11), -(c4 * t45 + t38 * (t46 - c2 * R1_12)))
     flip = _runtime.select(aligned, 0.0, 3.141592653589793)
-    c2_right_back_noflip = _runtime.select(drawn_in, 1.0, -t27)
-    t46 = np.arctan2(s2, c2_right_back_noflip)
-    t47 = _runtime.wrap_cut(-t46) + t25
-    t48 = -reach + t25
-    R2_13_right_back_noflip = t33 + R1_13 * c2_right_back_noflip
-    t49 = R2_13_right_back_noflip * R2_13_right_back_noflip
-    h_right_back_noflip = np.sqrt(t32 + t49)
-    aligned_right_back_noflip = h_right_back_noflip <= t35
-    t50 = _runtime.select(aligned_right_back_noflip, 0.0, t31 / h_right_back_noflip)
-    t51 = R2_13_right_back_noflip / h_right_back_noflip
-    c4_right_back_noflip = _runtime.select(aligned_right_back_noflip, 1.0, t51)
-    t52 = np.arctan2(t50, c4_right_back_noflip)
-    t53 = R2_13_right_back_noflip * c4_right_back_noflip
-    t54 = T33 * c2_right_back_noflip
-    t55 = np.arctan2(t31 * t50 + t53, t54 - t39)
-    t56 = t41 * c4_right_back_noflip - t50 * (t42 + R1_11 * c2_right_back_noflip)
-    t57 = t50 * (t44 + R1_12 * c2_right_back_noflip) - t43 * c4_right_back_noflip
-    t58 = np.arctan2(t56, t57)
+    c2_right_back_noflip = _runtime.select(drawn_in, 1.0, -t28)
+    t48 = np.arctan2(s2, c2_right_back_noflip)
+    t49 = _runtime.wrap_cut(-t48) + t25
+    t50 = -reach + t25
+    R2_13_right_back_noflip = t34 + R1_13 * c2_right_back_noflip
+    t51 = R2_13_right_back_noflip * R2_13_right_back_noflip
+    h_right_back_noflip = np.sqrt(t33 + t51)
+    aligned_right_back_noflip = h_right_back_noflip <= t36
+    t52 = 1.0 / h_right_back_noflip
+    t53 = _runtime.select(aligned_right_back_noflip, 0.0, t32 * t52)
+    c4_right_back_noflip = _runtime.select(aligned_right_back_noflip, 1.0, R2_13_right_back_noflip * t52)
+    t54 = np.arctan2(t53, c4_right_back_noflip)
+    t55 = R2_13_right_back_noflip * c4_right_back_noflip
+    t56 = T33 * c2_right_back_noflip
+    t57 = np.arctan2(t32 * t53 + t55, t56 - t41)
+    t58 = t43 * c4_right_back_noflip - t53 * (t44 + R1_11 * c2_right_back_noflip)
+    t59 = t53 * (t46 + R1_12 * c2_right_back_noflip) - t45 * c4_right_back_noflip
+    t60 = np.arctan2(t58, t59)
     flip_right_back_flip = _runtime.select(aligned_right_back_noflip, 0.0, 3.141592653589793)
-    t59 = _runtime.wrap(flip_right_back_flip - t52) + t25
-    t60 = _runtime.wrap(flip_right_back_flip - t58) + t25
+    t61 = _runtime.wrap(flip_right_back_flip - t54) + t25
+    t62 = _runtime.wrap(flip_right_back_flip - t60) + t25
     s1_left_out_noflip = _runtime.select(free_theta1, 0.0, t8 - t10)
     c1_left_out_noflip = _runtime.select(free_theta1, 1.0, -(t12 + t11))
-    t61 = np.arctan2(s1_left_out_noflip, c1_left_out_noflip)
-    t62 = _runtime.wrap_cut(t61) + t25
-    t63 = _runtime.wrap_cut(-t28) + t25
-    t64 = T13 * s1_left_out_noflip - T23 * c1_left_out_noflip
-    t65 = t64 * t64
+    t63 = np.arctan2(s1_left_out_noflip, c1_left_out_noflip)
+    t64 = _runtime.wrap_cut(t63) + t25
+    t65 = _runtime.wrap_cut(-t29) + t25
+    t66 = T13 * s1_left_out_noflip - T23 * c1_left_out_noflip
+    t67 = t66 * t66
     R1_13_left_out_noflip = T13 * c1_left_out_noflip + T23 * s1_left_out_noflip
-    R2_13_left_out_noflip = t33 + c2 * R1_13_left_out_noflip
-    t66 = R2_13_left_out_noflip * R2_13_left_out_noflip
-    h_left_out_noflip = np.sqrt(t65 + t66)
-    aligned_left_out_noflip = h_left_out_noflip <= t35
-    t67 = _runtime.select(aligned_left_out_noflip, 0.0, t64 / h_left_out_noflip)
-    c4_left_out_noflip = _runtime.select(aligned_left_out_noflip, 1.0, R2_13_left_out_noflip / h_left_out_noflip)
-    t68 = np.arctan2(t67, c4_left_out_noflip)
-    t69 = t64 * t67 + R2_13_left_out_noflip * c4_left_out_noflip
-    t70 = s2 * R1_13_left_out_noflip
-    t71 = np.arctan2(t69, t38 - t70)
-    t72 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip
+    R2_13_left_out_noflip = t34 + c2 * R1_13_left_out_noflip
+    t68 = R2_13_left_out_noflip * R2_13_left_out_noflip
+    h_left_out_noflip = np.sqrt(t67 + t68)
+    aligned_left_out_noflip = h_left_out_noflip <= t36
+    t69 = 1.0 / h_left_out_noflip
+    t70 = _runtime.select(aligned_left_out_noflip, 0.0, t66 * t69)
+    c4_left_out_noflip = _runtime.select(aligned_left_out_noflip, 1.0, R2_13_left_out_noflip * t69)
+    t71 = np.arctan2(t70, c4_left_out_noflip)
+    t72 = t66 * t70 + R2_13_left_out_noflip * c4_left_out_noflip
+    t73 = s2 * R1_13_left_out_noflip
+    t74 = np.arctan2(t72, t40 - t73)
+    t75 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip
     R1_11_left_out_noflip = T11 * c1_left_out_noflip + T21 * s1_left_out_noflip
-    t73 = c4_left_out_noflip * t72 - t67 * (t42 + c2 * R1_11_left_out_noflip)
+    t76 = c4_left_out_noflip * t75 - t70 * (t44 + c2 * R1_11_left_out_noflip)
     R1_12_left_out_noflip = T12 * c1_left_out_noflip + T22 * s1_left_out_noflip
-    t74 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip
-    t75 = t67 * (t44 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t74
-    t76 = np.arctan2(t73, t75)
+    t77 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip
+    t78 = t70 * (t46 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t77
+    t79 = np.arctan2(t76, t78)
     flip_left_out_flip = _runtime.select(aligned_left_out_noflip, 0.0, 3.141592653589793)
-    t77 = _runtime.wrap(flip_left_out_flip - t68) + t25
-    t78 = _runtime.wrap(flip_left_out_flip - t76) + t25
-    t79 = _runtime.wrap_cut(t46) + t25
-    t80 = t33 - c2_right_back_noflip * R1_13_left_out_noflip
-    h_left_back_noflip = np.sqrt(t65 + t80 * t80)
-    aligned_left_back_noflip = h_left_back_noflip <= t35
-    t81 = _runtime.select(aligned_left_back_noflip, 0.0, t64 / h_left_back_noflip)
-    c4_left_back_noflip = _runtime.select(aligned_left_back_noflip, 1.0, -(t80 / h_left_back_noflip))
-    t82 = np.arctan2(t81, c4_left_back_noflip)
-    t83 = np.arctan2(t64 * t81 - t80 * c4_left_back_noflip, t54 + t70)
-    t84 = t42 - c2_right_back_noflip * R1_11_left_out_noflip
-    t85 = t44 - c2_right_back_noflip * R1_12_left_out_noflip
-    t86 = np.arctan2(t72 * c4_left_back_noflip + t81 * t84, -(t74 * c4_left_back_noflip + t81 * t85))
+    t80 = _runtime.wrap(flip_left_out_flip - t71) + t25
+    t81 = _runtime.wrap(flip_left_out_flip - t79) + t25
+    t82 = _runtime.wrap_cut(t48) + t25
+    t83 = t34 - c2_right_back_noflip * R1_13_left_out_noflip
+    h_left_back_noflip = np.sqrt(t67 + t83 * t83)
+    aligned_left_back_noflip = h_left_back_noflip <= t36
+    t84 = 1.0 / h_left_back_noflip
+    t85 = _runtime.select(aligned_left_back_noflip, 0.0, t66 * t84)
+    c4_left_back_noflip = _runtime.select(aligned_left_back_noflip, 1.0, -(t83 * t84))
+    t86 = np.arctan2(t85, c4_left_back_noflip)
+    t87 = np.arctan2(t66 * t85 - t83 * c4_left_back_noflip, t56 + t73)
+    t88 = t44 - c2_right_back_noflip * R1_11_left_out_noflip
+    t89 = t46 - c2_right_back_noflip * R1_12_left_out_noflip
+    t90 = np.arctan2(t75 * c4_left_back_noflip + t85 * t88, -(t77 * c4_left_back_noflip + t85 * t89))
     flip_left_back_flip = _runtime.select(aligned_left_back_noflip, 0.0, 3.141592653589793)
-    t87 = _runtime.wrap(flip_left_back_flip - t82) + t25
-    t88 = _runtime.wrap(flip_left_back_flip - t86) + t25
-    t89 = free_theta1 | drawn_in
-    t90 = _runtime.status(invalid, unreachable, t89 | aligned)
-    t91 = _runtime.status(invalid, unreachable, t89 | aligned_right_back_noflip)
-    t92 = _runtime.status(invalid, unreachable, t89 | aligned_left_out_noflip)
-    t93 = _runtime.status(invalid, unreachable, t89 | aligned_left_back_noflip)
+    t91 = _runtime.wrap(flip_left_back_flip - t86) + t25
+    t92 = _runtime.wrap(flip_left_back_flip - t90) + t25
+    t93 = free_theta1 | drawn_in
+    t94 = _runtime.status(invalid, unreachable, t93 | aligned)
+    t95 = _runtime.status(invalid, unreachable, t93 | aligned_right_back_noflip)
+    t96 = _runtime.status(invalid, unreachable, t93 | aligned_left_out_noflip)
+    t97 = _runtime.status(invalid, unreachable, t93 | aligned_left_back_noflip)
     return (
         t26,
-        t29,
         t30,
-        _runtime.wrap_cut(-t37) + t25,
-        _runtime.wrap_cut(t40) + t25,
-        _runtime.wrap_cut(-t45) + t25,
+        t31,
+        _runtime.wrap_cut(-t39) + t25,
+        _runtime.wrap_cut(t42) + t25,
+        _runtime.wrap_cut(-t47) + t25,
         t26,
-        t29,
         t30,
-        _runtime.wrap(flip - t37) + t25,
-        _runtime.wrap_cut(-t40) + t25,
-        _runtime.wrap(flip - t45) + t25,
+        t31,
+        _runtime.wrap(flip - t39) + t25,
+        _runtime.wrap_cut(-t42) + t25,
+        _runtime.wrap(flip - t47) + t25,
         t26,
-        t47,
-        t48,
-        _runtime.wrap_cut(-t52) + t25,
-        _runtime.wrap_cut(t55) + t25,
-        _runtime.wrap_cut(-t58) + t25,
+        t49,
+        t50,
+        _runtime.wrap_cut(-t54) + t25,
+        _runtime.wrap_cut(t57) + t25,
+        _runtime.wrap_cut(-t60) + t25,
         t26,
-        t47,
-        t48,
-        t59,
-        _runtime.wrap_cut(-t55) + t25,
-        t60,
+        t49,
+        t50,
+        t61,
+        _runtime.wrap_cut(-t57) + t25,
         t62,
-        t63,
-        t30,
-        _runtime.wrap_cut(-t68) + t25,
-        _runtime.wrap_cut(t71) + t25,
-        _runtime.wrap_cut(-t76) + t25,
-        t62,
-        t63,
-        t30,
-        t77,
+        t64,
+        t65,
+        t31,
         _runtime.wrap_cut(-t71) + t25,
-        t78,
-        t62,
-        t79,
-        t48,
-        _runtime.wrap_cut(-t82) + t25,
-        _runtime.wrap_cut(t83) + t25,
+        _runtime.wrap_cut(t74) + t25,
+        _runtime.wrap_cut(-t79) + t25,
+        t64,
+        t65,
+        t31,
+        t80,
+        _runtime.wrap_cut(-t74) + t25,
+        t81,
+        t64,
+        t82,
+        t50,
         _runtime.wrap_cut(-t86) + t25,
-        t62,
-        t79,
-        t48,
-        t87,
-        _runtime.wrap_cut(-t83) + t25,
-        t88,
-        t90,
-        t90,
+        _runtime.wrap_cut(t87) + t25,
+        _runtime.wrap_cut(-t90) + t25,
+        t64,
+        t82,
+        t50,
         t91,
-        t91,
+        _runtime.wrap_cut(-t87) + t25,
         t92,
-        t92,
-        t93,
-        t93,
+        t94,
+        t94,
+        t95,
+        t95,
+        t96,
+        t96,
+        t97,
+        t97,
     )
 
 

@@ -9,7 +9,7 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 46 add, 76 multiply, 5 sincos
 #   jacobian_body: 34 add, 64 multiply, 5 sincos
-#   ik: 302 compare and select, 279 add, 30 atan2, 78 divide, 298 multiply, 47 sqrt
+#   ik: 302 compare and select, 279 add, 30 atan2, 37 divide, 362 multiply, 47 sqrt
 """UR-type arm (three parallel axes).
 
 theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and
@@ -575,13 +575,13 @@ def _ik(
     t5 = d4 + h1
     above1 = np.maximum(t5, 0.0)
     t6 = below1 - above1
-    t7 = h1 * (below1 + above1)
-    t8 = w_x * t6 / t7
+    t7 = 1.0 / (h1 * (below1 + above1))
+    t8 = w_x * t6 * t7
     t9 = 2.0 * (np.sqrt(above1) * np.sqrt(below1))
-    t10 = w_y * t9 / t7
+    t10 = t7 * (w_y * t9)
     t11 = _runtime.select(free1, 0.0, t8 + t10)
-    t12 = w_y * t6 / t7
-    t13 = w_x * t9 / t7
+    t12 = w_y * t6 * t7
+    t13 = t7 * (w_x * t9)
     c1 = _runtime.select(free1, 1.0, t12 - t13)
     t14 = _runtime.wrap_cut(-np.arctan2(t11, c1))
     t15 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
@@ -622,476 +622,478 @@ def _ik(
     n_mid = k_mid + d_mid
     t40 = _runtime.VANISHING * (t2 * t2)
     any_mid = n_mid <= t40
-    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) / n_mid)
-    t41 = 2.0 * np.sqrt(d_mid) * np.sqrt(k_mid) / n_mid
-    us_mid = _runtime.select(any_mid, 0.0, t41)
-    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t34 * us_mid) / r_hub)
-    s_phi = _runtime.select(aligned_wrist, 0.0, T33 / h_wrist)
-    t42 = d5 * s_phi
-    t43 = across - t42
-    t44 = M_13 / h_wrist
-    c_phi = _runtime.select(aligned_wrist, 1.0, t44)
-    t45 = t34 - d5 * c_phi
-    here = np.sqrt(t43 * t43 + t45 * t45)
+    t41 = 1.0 / n_mid
+    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t41)
+    t42 = t41 * (2.0 * np.sqrt(d_mid) * np.sqrt(k_mid))
+    us_mid = _runtime.select(any_mid, 0.0, t42)
+    t43 = 1.0 / r_hub
+    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t34 * us_mid) * t43)
+    t44 = 1.0 / h_wrist
+    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t44)
+    t45 = d5 * s_phi
+    t46 = across - t45
+    t47 = M_13 * t44
+    c_phi = _runtime.select(aligned_wrist, 1.0, t47)
+    t48 = t34 - d5 * c_phi
+    here = np.sqrt(t46 * t46 + t48 * t48)
     in_reach = np.minimum(t1, np.maximum(here, t38))
     k_near = np.maximum(0.0, (t36 - in_reach) * (t36 + in_reach))
     d_near = np.maximum(0.0, -((t39 - in_reach) * (t39 + in_reach)))
     n_near = k_near + d_near
     any_near = n_near <= t40
-    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) / n_near)
-    t46 = t34 * s_phi
-    t47 = across * c_phi - t46
-    t48 = np.abs(t47)
-    side = _runtime.select(t48 <= t3, 1.0, -(t47 / t48))
-    t49 = 2.0 * side * np.sqrt(d_near) * np.sqrt(k_near)
-    us_near = _runtime.select(any_near, 0.0, t49 / n_near)
-    c_near = _runtime.select(hub_mid, 1.0, (across * uc_near + t34 * us_near) / r_hub)
-    t50 = s_phi - c_near
-    s_near = _runtime.select(hub_mid, 0.0, (across * us_near - t34 * uc_near) / r_hub)
-    t51 = c_phi + s_near
-    t52 = _runtime.VANISHING * 4.0
-    within_rounding = h_wrist * np.sqrt(t50 * t50 + t51 * t51) <= t52
+    t49 = 1.0 / n_near
+    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t49)
+    t50 = t34 * s_phi
+    t51 = across * c_phi - t50
+    t52 = np.abs(t51)
+    side = _runtime.select(t52 <= t3, 1.0, -(t51 / t52))
+    t53 = 2.0 * side * np.sqrt(d_near) * np.sqrt(k_near)
+    us_near = _runtime.select(any_near, 0.0, t49 * t53)
+    c_near = _runtime.select(hub_mid, 1.0, t43 * (across * uc_near + t34 * us_near))
+    t54 = s_phi - c_near
+    s_near = _runtime.select(hub_mid, 0.0, t43 * (across * us_near - t34 * uc_near))
+    t55 = c_phi + s_near
+    t56 = _runtime.VANISHING * 4.0
+    within_rounding = h_wrist * np.sqrt(t54 * t54 + t55 * t55) <= t56
     inside = np.abs(here - in_reach) <= t3
-    t53 = _runtime.select(within_rounding, _runtime.select(inside, s_phi, c_near), s_phi)
-    sphi = _runtime.select(aligned_wrist, c_mid, t53)
-    t54 = across - d5 * sphi
-    s_mid = _runtime.select(hub_mid, 0.0, (across * us_mid - t34 * uc_mid) / r_hub)
-    t55 = _runtime.select(within_rounding, -_runtime.select(inside, -c_phi, s_near), c_phi)
-    cphi = _runtime.select(aligned_wrist, -s_mid, t55)
+    t57 = _runtime.select(within_rounding, _runtime.select(inside, s_phi, c_near), s_phi)
+    sphi = _runtime.select(aligned_wrist, c_mid, t57)
+    t58 = across - d5 * sphi
+    s_mid = _runtime.select(hub_mid, 0.0, t43 * (across * us_mid - t34 * uc_mid))
+    t59 = _runtime.select(within_rounding, -_runtime.select(inside, -c_phi, s_near), c_phi)
+    cphi = _runtime.select(aligned_wrist, -s_mid, t59)
     ey = t34 - d5 * cphi
-    r_elbow = np.sqrt(t54 * t54 + ey * ey)
-    t56 = t1 - r_elbow
-    t57 = t37 + r_elbow
-    t58 = r_elbow - t37
-    t59 = t31 & (t30 <= t56) & (t30 <= t57) & (t30 <= t58)
-    unreachable = np.logical_not(t59)
-    t60 = _runtime.poison(invalid | unreachable)
-    t61 = t14 + t60
+    r_elbow = np.sqrt(t58 * t58 + ey * ey)
+    t60 = t1 - r_elbow
+    t61 = t37 + r_elbow
+    t62 = r_elbow - t37
+    t63 = t31 & (t30 <= t60) & (t30 <= t61) & (t30 <= t62)
+    unreachable = np.logical_not(t63)
+    t64 = _runtime.poison(invalid | unreachable)
+    t65 = t14 + t64
     folded_elbow = r_elbow <= t3
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (t1 * t1)
-    A_elbow = np.maximum(t56, 0.0)
-    C_elbow = np.maximum(t58, 0.0)
-    t62 = A_elbow * C_elbow
+    A_elbow = np.maximum(t60, 0.0)
+    C_elbow = np.maximum(t62, 0.0)
+    t66 = A_elbow * C_elbow
     S_elbow = t1 + r_elbow
-    B_elbow = np.maximum(t57, 0.0)
-    t63 = S_elbow * B_elbow
-    width_elbow = t62 + t63
-    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t62 - t63) / width_elbow))
-    t64 = ey * c_base_elbow / r_elbow
-    t65 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
-    area_elbow = t65 * np.sqrt(S_elbow)
-    s_base_elbow = _runtime.select(no_link_elbow, 0.0, area_elbow / width_elbow)
-    t66 = t54 * s_base_elbow / r_elbow
-    s2 = _runtime.select(folded_elbow, 0.0, t64 + t66)
-    t67 = ey * s_base_elbow / r_elbow
-    t68 = t54 * c_base_elbow / r_elbow
-    c2 = _runtime.select(folded_elbow, 1.0, t67 - t68)
-    t69 = A_elbow * S_elbow
-    t70 = C_elbow * B_elbow
-    sum_elbow = t69 + t70
-    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow / sum_elbow)
-    c3 = _runtime.select(no_link_elbow, 1.0, -((t69 - t70) / sum_elbow))
-    t71 = np.arctan2(s3, c3)
-    t72 = sphi * c2 - cphi * s2
-    t73 = cphi * c2 + sphi * s2
-    t74 = np.arctan2(c3 * t72 - s3 * t73, c3 * t73 + s3 * t72)
+    B_elbow = np.maximum(t61, 0.0)
+    t67 = S_elbow * B_elbow
+    t68 = 1.0 / (t66 + t67)
+    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t66 - t67) * t68))
+    t69 = 1.0 / r_elbow
+    t70 = ey * c_base_elbow * t69
+    t71 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
+    area_elbow = t71 * np.sqrt(S_elbow)
+    s_base_elbow = _runtime.select(no_link_elbow, 0.0, t68 * area_elbow)
+    t72 = t69 * (t58 * s_base_elbow)
+    s2 = _runtime.select(folded_elbow, 0.0, t70 + t72)
+    t73 = t69 * (ey * s_base_elbow)
+    t74 = t69 * (t58 * c_base_elbow)
+    c2 = _runtime.select(folded_elbow, 1.0, t73 - t74)
+    t75 = A_elbow * S_elbow
+    t76 = C_elbow * B_elbow
+    t77 = 1.0 / (t75 + t76)
+    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t77)
+    c3 = _runtime.select(no_link_elbow, 1.0, -(t77 * (t75 - t76)))
+    t78 = np.arctan2(s3, c3)
+    t79 = sphi * c2 - cphi * s2
+    t80 = cphi * c2 + sphi * s2
+    t81 = np.arctan2(c3 * t79 - s3 * t80, c3 * t80 + s3 * t79)
     M_33 = -(T13 * t11 + T23 * c1)
-    t75 = _runtime.wrap_cut(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
-    t76 = t75 + t60
+    t82 = _runtime.wrap_cut(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
+    t83 = t82 + t64
     M_11 = T11 * c1 - T21 * t11
     M_12 = T12 * c1 - T22 * t11
-    t77 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
-    t78 = _runtime.wrap_cut(-t77) + t60
-    s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t64 - t66)
-    c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t68 + t67))
-    t79 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
-    t80 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
-    t81 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
-    t82 = np.arctan2(c3 * t80 + s3 * t81, c3 * t81 - s3 * t80)
-    t83 = across + t42
-    c_phi_left_flip_up = _runtime.select(aligned_wrist, 1.0, -t44)
-    t84 = t34 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t83 * t83 + t84 * t84)
+    t84 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
+    t85 = _runtime.wrap_cut(-t84) + t64
+    s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t70 - t72)
+    c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t74 + t73))
+    t86 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t87 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t88 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    t89 = np.arctan2(c3 * t87 + s3 * t88, c3 * t88 - s3 * t87)
+    t90 = across + t45
+    c_phi_left_flip_up = _runtime.select(aligned_wrist, 1.0, -t47)
+    t91 = t34 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t90 * t90 + t91 * t91)
     in_reach_left_flip_up = np.minimum(t1, np.maximum(here_left_flip_up, t38))
-    t85 = (t36 - in_reach_left_flip_up) * (t36 + in_reach_left_flip_up)
-    k_near_left_flip_up = np.maximum(0.0, t85)
-    t86 = (t39 - in_reach_left_flip_up) * (t39 + in_reach_left_flip_up)
-    d_near_left_flip_up = np.maximum(0.0, -t86)
+    t92 = (t36 - in_reach_left_flip_up) * (t36 + in_reach_left_flip_up)
+    k_near_left_flip_up = np.maximum(0.0, t92)
+    t93 = (t39 - in_reach_left_flip_up) * (t39 + in_reach_left_flip_up)
+    d_near_left_flip_up = np.maximum(0.0, -t93)
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
     any_near_left_flip_up = n_near_left_flip_up <= t40
-    t87 = (k_near_left_flip_up - d_near_left_flip_up) / n_near_left_flip_up
-    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t87)
-    t88 = t46 + across * c_phi_left_flip_up
-    t89 = np.abs(t88)
-    side_left_flip_up = _runtime.select(t89 <= t3, 1.0, -(t88 / t89))
-    t90 = 2.0 * side_left_flip_up * np.sqrt(d_near_left_flip_up)
-    t91 = t90 * np.sqrt(k_near_left_flip_up) / n_near_left_flip_up
-    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t91)
-    t92 = across * uc_near_left_flip_up + t34 * us_near_left_flip_up
-    c_near_left_flip_up = _runtime.select(hub_mid, 1.0, t92 / r_hub)
-    t93 = s_phi + c_near_left_flip_up
-    t94 = across * us_near_left_flip_up - t34 * uc_near_left_flip_up
-    s_near_left_flip_up = _runtime.select(hub_mid, 0.0, t94 / r_hub)
-    t95 = c_phi_left_flip_up + s_near_left_flip_up
-    within_rounding_left_flip_up = h_wrist * np.sqrt(t93 * t93 + t95 * t95) <= t52
-    t96 = np.abs(here_left_flip_up - in_reach_left_flip_up)
-    inside_left_flip_up = t96 <= t3
+    t94 = 1.0 / n_near_left_flip_up
+    t95 = (k_near_left_flip_up - d_near_left_flip_up) * t94
+    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t95)
+    t96 = t50 + across * c_phi_left_flip_up
+    t97 = np.abs(t96)
+    side_left_flip_up = _runtime.select(t97 <= t3, 1.0, -(t96 / t97))
+    t98 = 2.0 * side_left_flip_up * np.sqrt(d_near_left_flip_up)
+    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t94 * (t98 * np.sqrt(k_near_left_flip_up)))
+    t99 = across * uc_near_left_flip_up + t34 * us_near_left_flip_up
+    c_near_left_flip_up = _runtime.select(hub_mid, 1.0, t43 * t99)
+    t100 = s_phi + c_near_left_flip_up
+    t101 = across * us_near_left_flip_up - t34 * uc_near_left_flip_up
+    s_near_left_flip_up = _runtime.select(hub_mid, 0.0, t43 * t101)
+    t102 = c_phi_left_flip_up + s_near_left_flip_up
+    within_rounding_left_flip_up = h_wrist * np.sqrt(t100 * t100 + t102 * t102) <= t56
+    t103 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    inside_left_flip_up = t103 <= t3
     c_moved_left_flip_up = _runtime.select(inside_left_flip_up, -s_phi, c_near_left_flip_up)
-    t97 = _runtime.select(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
-    sphi_left_flip_up = _runtime.select(aligned_wrist, c_mid, t97)
-    t98 = across - d5 * sphi_left_flip_up
+    t104 = _runtime.select(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
+    sphi_left_flip_up = _runtime.select(aligned_wrist, c_mid, t104)
+    t105 = across - d5 * sphi_left_flip_up
     s_moved_left_flip_up = _runtime.select(inside_left_flip_up, -c_phi_left_flip_up, s_near_left_flip_up)
-    t99 = _runtime.select(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
-    cphi_left_flip_up = _runtime.select(aligned_wrist, -s_mid, t99)
+    t106 = _runtime.select(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
+    cphi_left_flip_up = _runtime.select(aligned_wrist, -s_mid, t106)
     ey_left_flip_up = t34 - d5 * cphi_left_flip_up
-    t100 = t98 * t98 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t100)
-    t101 = t1 - r_elbow_left_flip_up
-    t102 = t37 + r_elbow_left_flip_up
-    t103 = r_elbow_left_flip_up - t37
-    t104 = t31 & (t30 <= t101) & (t30 <= t102) & (t30 <= t103)
-    unreachable_2 = np.logical_not(t104)
-    t105 = _runtime.poison(invalid | unreachable_2)
-    t106 = t14 + t105
+    t107 = t105 * t105 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t107)
+    t108 = t1 - r_elbow_left_flip_up
+    t109 = t37 + r_elbow_left_flip_up
+    t110 = r_elbow_left_flip_up - t37
+    t111 = t31 & (t30 <= t108) & (t30 <= t109) & (t30 <= t110)
+    unreachable_2 = np.logical_not(t111)
+    t112 = _runtime.poison(invalid | unreachable_2)
+    t113 = t14 + t112
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t3
-    A_elbow_left_flip_up = np.maximum(t101, 0.0)
-    C_elbow_left_flip_up = np.maximum(t103, 0.0)
-    t107 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    A_elbow_left_flip_up = np.maximum(t108, 0.0)
+    C_elbow_left_flip_up = np.maximum(t110, 0.0)
+    t114 = A_elbow_left_flip_up * C_elbow_left_flip_up
     S_elbow_left_flip_up = t1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t102, 0.0)
-    t108 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    width_elbow_left_flip_up = t107 + t108
-    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t107 - t108) / width_elbow_left_flip_up))
-    t109 = ey_left_flip_up * c_base_elbow_left_flip_up / r_elbow_left_flip_up
-    t110 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
-    area_elbow_left_flip_up = t110 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
-    t111 = area_elbow_left_flip_up / width_elbow_left_flip_up
-    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t111)
-    t112 = t98 * s_base_elbow_left_flip_up / r_elbow_left_flip_up
-    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t109 + t112)
-    t113 = ey_left_flip_up * s_base_elbow_left_flip_up / r_elbow_left_flip_up
-    t114 = t98 * c_base_elbow_left_flip_up / r_elbow_left_flip_up
-    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t113 - t114)
-    t115 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t116 = A_elbow_left_flip_up * S_elbow_left_flip_up
-    t117 = C_elbow_left_flip_up * B_elbow_left_flip_up
-    sum_elbow_left_flip_up = t116 + t117
-    t118 = area_elbow_left_flip_up / sum_elbow_left_flip_up
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, t118)
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t116 - t117) / sum_elbow_left_flip_up))
-    t119 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t120 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t121 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
-    t122 = c3_left_flip_up * t120 - s3_left_flip_up * t121
-    t123 = c3_left_flip_up * t121 + s3_left_flip_up * t120
-    t124 = _runtime.wrap_cut(np.arctan2(t122, t123)) + t105
-    t125 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
-    t126 = _runtime.wrap_cut(-np.arctan2(t125, M_33)) + t105
-    t127 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
-    t128 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
-    t129 = _runtime.wrap_cut(-np.arctan2(t127, t128)) + t105
-    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t109 - t112)
-    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t114 + t113))
-    t130 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t131 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t132 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
-    t133 = c3_left_flip_up * t131 + s3_left_flip_up * t132
-    t134 = c3_left_flip_up * t132 - s3_left_flip_up * t131
-    t135 = _runtime.wrap_cut(np.arctan2(t133, t134)) + t105
-    t136 = _runtime.select(free1, 0.0, t8 - t10)
+    B_elbow_left_flip_up = np.maximum(t109, 0.0)
+    t115 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t116 = 1.0 / (t114 + t115)
+    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t114 - t115) * t116))
+    t117 = 1.0 / r_elbow_left_flip_up
+    t118 = ey_left_flip_up * c_base_elbow_left_flip_up * t117
+    t119 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
+    area_elbow_left_flip_up = t119 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
+    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t116 * area_elbow_left_flip_up)
+    t120 = t117 * (t105 * s_base_elbow_left_flip_up)
+    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t118 + t120)
+    t121 = t117 * (ey_left_flip_up * s_base_elbow_left_flip_up)
+    t122 = t117 * (t105 * c_base_elbow_left_flip_up)
+    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t121 - t122)
+    t123 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t124 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t125 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t126 = 1.0 / (t124 + t125)
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t126)
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t126 * (t124 - t125)))
+    t127 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t128 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t129 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    t130 = c3_left_flip_up * t128 - s3_left_flip_up * t129
+    t131 = c3_left_flip_up * t129 + s3_left_flip_up * t128
+    t132 = _runtime.wrap_cut(np.arctan2(t130, t131)) + t112
+    t133 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t134 = _runtime.wrap_cut(-np.arctan2(t133, M_33)) + t112
+    t135 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
+    t136 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
+    t137 = _runtime.wrap_cut(-np.arctan2(t135, t136)) + t112
+    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t118 - t120)
+    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t122 + t121))
+    t138 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t139 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t140 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t141 = c3_left_flip_up * t139 + s3_left_flip_up * t140
+    t142 = c3_left_flip_up * t140 - s3_left_flip_up * t139
+    t143 = _runtime.wrap_cut(np.arctan2(t141, t142)) + t112
+    t144 = _runtime.select(free1, 0.0, t8 - t10)
     c1_right_noflip_up = _runtime.select(free1, 1.0, t12 + t13)
-    t137 = _runtime.wrap_cut(np.arctan2(-t136, c1_right_noflip_up))
-    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t136
-    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t136
-    t138 = t32 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t138)
+    t145 = _runtime.wrap_cut(np.arctan2(-t144, c1_right_noflip_up))
+    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t144
+    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t144
+    t146 = t32 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t146)
     aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t33
-    t139 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t35 + t139)
+    t147 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t35 + t147)
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t3
-    t140 = d5 + r_hub_right_noflip_up
-    t141 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(t1, t140) / 2.0 + np.maximum(t38, np.abs(t141)) / 2.0
-    t142 = (t140 - mid_reach_right_noflip_up) * (t140 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t142)
-    t143 = (t141 - mid_reach_right_noflip_up) * (t141 + mid_reach_right_noflip_up)
-    d_mid_right_noflip_up = np.maximum(0.0, -t143)
+    t148 = d5 + r_hub_right_noflip_up
+    t149 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(t1, t148) / 2.0 + np.maximum(t38, np.abs(t149)) / 2.0
+    t150 = (t148 - mid_reach_right_noflip_up) * (t148 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t150)
+    t151 = (t149 - mid_reach_right_noflip_up) * (t149 + mid_reach_right_noflip_up)
+    d_mid_right_noflip_up = np.maximum(0.0, -t151)
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
     any_mid_right_noflip_up = n_mid_right_noflip_up <= t40
-    t144 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t144 / n_mid_right_noflip_up)
-    t145 = across_right_noflip_up * uc_mid_right_noflip_up
-    t146 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t146 / n_mid_right_noflip_up)
-    t147 = (t145 + t34 * us_mid_right_noflip_up) / r_hub_right_noflip_up
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t147)
-    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 / h_wrist_right_noflip_up)
-    t148 = d5 * s_phi_right_noflip_up
-    t149 = across_right_noflip_up - t148
-    t150 = M_13_right_noflip_up / h_wrist_right_noflip_up
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, t150)
-    t151 = t34 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t149 * t149 + t151 * t151)
+    t152 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    t153 = 1.0 / n_mid_right_noflip_up
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t152 * t153)
+    t154 = across_right_noflip_up * uc_mid_right_noflip_up
+    t155 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t153 * t155)
+    t156 = 1.0 / r_hub_right_noflip_up
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t154 + t34 * us_mid_right_noflip_up) * t156)
+    t157 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t157)
+    t158 = d5 * s_phi_right_noflip_up
+    t159 = across_right_noflip_up - t158
+    t160 = M_13_right_noflip_up * t157
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, t160)
+    t161 = t34 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t159 * t159 + t161 * t161)
     in_reach_right_noflip_up = np.minimum(t1, np.maximum(here_right_noflip_up, t38))
-    t152 = (t140 - in_reach_right_noflip_up) * (t140 + in_reach_right_noflip_up)
-    k_near_right_noflip_up = np.maximum(0.0, t152)
-    t153 = (t141 - in_reach_right_noflip_up) * (t141 + in_reach_right_noflip_up)
-    d_near_right_noflip_up = np.maximum(0.0, -t153)
+    t162 = (t148 - in_reach_right_noflip_up) * (t148 + in_reach_right_noflip_up)
+    k_near_right_noflip_up = np.maximum(0.0, t162)
+    t163 = (t149 - in_reach_right_noflip_up) * (t149 + in_reach_right_noflip_up)
+    d_near_right_noflip_up = np.maximum(0.0, -t163)
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
     any_near_right_noflip_up = n_near_right_noflip_up <= t40
-    t154 = k_near_right_noflip_up - d_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t154 / n_near_right_noflip_up)
-    t155 = across_right_noflip_up * uc_near_right_noflip_up
-    t156 = across_right_noflip_up * c_phi_right_noflip_up
-    t157 = t34 * s_phi_right_noflip_up
-    t158 = t156 - t157
-    t159 = np.abs(t158)
-    side_right_noflip_up = _runtime.select(t159 <= t3, 1.0, -(t158 / t159))
-    t160 = 2.0 * side_right_noflip_up * np.sqrt(d_near_right_noflip_up)
-    t161 = t160 * np.sqrt(k_near_right_noflip_up) / n_near_right_noflip_up
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t161)
-    t162 = (t155 + t34 * us_near_right_noflip_up) / r_hub_right_noflip_up
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t162)
-    t163 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t164 = across_right_noflip_up * us_near_right_noflip_up
-    t165 = (t164 - t34 * uc_near_right_noflip_up) / r_hub_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t165)
-    t166 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t167 = h_wrist_right_noflip_up * np.sqrt(t163 * t163 + t166 * t166)
-    within_rounding_right_noflip_up = t167 <= t52
-    t168 = here_right_noflip_up - in_reach_right_noflip_up
-    inside_right_noflip_up = np.abs(t168) <= t3
+    t164 = k_near_right_noflip_up - d_near_right_noflip_up
+    t165 = 1.0 / n_near_right_noflip_up
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t164 * t165)
+    t166 = across_right_noflip_up * uc_near_right_noflip_up
+    t167 = across_right_noflip_up * c_phi_right_noflip_up
+    t168 = t34 * s_phi_right_noflip_up
+    t169 = t167 - t168
+    t170 = np.abs(t169)
+    side_right_noflip_up = _runtime.select(t170 <= t3, 1.0, -(t169 / t170))
+    t171 = 2.0 * side_right_noflip_up * np.sqrt(d_near_right_noflip_up)
+    t172 = t165 * (t171 * np.sqrt(k_near_right_noflip_up))
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t172)
+    t173 = t156 * (t166 + t34 * us_near_right_noflip_up)
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t173)
+    t174 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t175 = across_right_noflip_up * us_near_right_noflip_up
+    t176 = t156 * (t175 - t34 * uc_near_right_noflip_up)
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t176)
+    t177 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t178 = h_wrist_right_noflip_up * np.sqrt(t174 * t174 + t177 * t177)
+    within_rounding_right_noflip_up = t178 <= t56
+    t179 = here_right_noflip_up - in_reach_right_noflip_up
+    inside_right_noflip_up = np.abs(t179) <= t3
     c_moved_right_noflip_up = _runtime.select(inside_right_noflip_up, s_phi_right_noflip_up, c_near_right_noflip_up)
-    t169 = _runtime.select(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t169)
-    t170 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t171 = across_right_noflip_up * us_mid_right_noflip_up
-    t172 = (t171 - t34 * uc_mid_right_noflip_up) / r_hub_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t172)
+    t180 = _runtime.select(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t180)
+    t181 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t182 = across_right_noflip_up * us_mid_right_noflip_up
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t156 * (t182 - t34 * uc_mid_right_noflip_up))
     s_moved_right_noflip_up = _runtime.select(inside_right_noflip_up, -c_phi_right_noflip_up, s_near_right_noflip_up)
-    t173 = _runtime.select(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t173)
+    t183 = _runtime.select(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t183)
     ey_right_noflip_up = t34 - d5 * cphi_right_noflip_up
-    t174 = t170 * t170 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t174)
-    t175 = t1 - r_elbow_right_noflip_up
-    t176 = t37 + r_elbow_right_noflip_up
-    t177 = r_elbow_right_noflip_up - t37
-    t178 = t31 & (t30 <= t175) & (t30 <= t176) & (t30 <= t177)
-    unreachable_3 = np.logical_not(t178)
-    t179 = _runtime.poison(invalid | unreachable_3)
-    t180 = t137 + t179
+    t184 = t181 * t181 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t184)
+    t185 = t1 - r_elbow_right_noflip_up
+    t186 = t37 + r_elbow_right_noflip_up
+    t187 = r_elbow_right_noflip_up - t37
+    t188 = t31 & (t30 <= t185) & (t30 <= t186) & (t30 <= t187)
+    unreachable_3 = np.logical_not(t188)
+    t189 = _runtime.poison(invalid | unreachable_3)
+    t190 = t145 + t189
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
-    A_elbow_right_noflip_up = np.maximum(t175, 0.0)
-    C_elbow_right_noflip_up = np.maximum(t177, 0.0)
-    t181 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    A_elbow_right_noflip_up = np.maximum(t185, 0.0)
+    C_elbow_right_noflip_up = np.maximum(t187, 0.0)
+    t191 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t176, 0.0)
-    t182 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    width_elbow_right_noflip_up = t181 + t182
-    t183 = -((t181 - t182) / width_elbow_right_noflip_up)
-    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, t183)
-    t184 = ey_right_noflip_up * c_base_elbow_right_noflip_up
-    t185 = t184 / r_elbow_right_noflip_up
-    t186 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
-    area_elbow_right_noflip_up = t186 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
-    t187 = area_elbow_right_noflip_up / width_elbow_right_noflip_up
-    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t187)
-    t188 = t170 * s_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t185 + t188)
-    t189 = ey_right_noflip_up * s_base_elbow_right_noflip_up
-    t190 = t189 / r_elbow_right_noflip_up
-    t191 = t170 * c_base_elbow_right_noflip_up / r_elbow_right_noflip_up
-    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t190 - t191)
-    t192 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t193 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
-    t194 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
-    sum_elbow_right_noflip_up = t193 + t194
-    t195 = area_elbow_right_noflip_up / sum_elbow_right_noflip_up
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t195)
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t193 - t194) / sum_elbow_right_noflip_up))
-    t196 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t197 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t198 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
-    t199 = c3_right_noflip_up * t197 - s3_right_noflip_up * t198
-    t200 = c3_right_noflip_up * t198 + s3_right_noflip_up * t197
-    t201 = _runtime.wrap_cut(np.arctan2(t199, t200)) + t179
-    t202 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
-    M_33_right_noflip_up = -(T13 * t136 + T23 * c1_right_noflip_up)
-    t203 = _runtime.wrap_cut(-np.arctan2(t202, M_33_right_noflip_up))
-    t204 = t203 + t179
-    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t136
-    t205 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
-    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t136
-    t206 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
-    t207 = _runtime.wrap_cut(-np.arctan2(t205, t206)) + t179
-    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t185 - t188)
-    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t191 + t190))
-    t208 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t209 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t210 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
-    t211 = c3_right_noflip_up * t209 + s3_right_noflip_up * t210
-    t212 = c3_right_noflip_up * t210 - s3_right_noflip_up * t209
-    t213 = _runtime.wrap_cut(np.arctan2(t211, t212)) + t179
-    t214 = across_right_noflip_up + t148
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, -t150)
-    t215 = t34 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t214 * t214 + t215 * t215)
+    B_elbow_right_noflip_up = np.maximum(t186, 0.0)
+    t192 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t193 = 1.0 / (t191 + t192)
+    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t191 - t192) * t193))
+    t194 = ey_right_noflip_up * c_base_elbow_right_noflip_up
+    t195 = 1.0 / r_elbow_right_noflip_up
+    t196 = t194 * t195
+    t197 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
+    area_elbow_right_noflip_up = t197 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
+    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t193 * area_elbow_right_noflip_up)
+    t198 = t195 * (t181 * s_base_elbow_right_noflip_up)
+    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t196 + t198)
+    t199 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    t200 = t195 * t199
+    t201 = t195 * (t181 * c_base_elbow_right_noflip_up)
+    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t200 - t201)
+    t202 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t203 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t204 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t205 = 1.0 / (t203 + t204)
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t205)
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t205 * (t203 - t204)))
+    t206 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t207 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t208 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    t209 = c3_right_noflip_up * t207 - s3_right_noflip_up * t208
+    t210 = c3_right_noflip_up * t208 + s3_right_noflip_up * t207
+    t211 = _runtime.wrap_cut(np.arctan2(t209, t210)) + t189
+    t212 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    M_33_right_noflip_up = -(T13 * t144 + T23 * c1_right_noflip_up)
+    t213 = _runtime.wrap_cut(-np.arctan2(t212, M_33_right_noflip_up))
+    t214 = t213 + t189
+    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t144
+    t215 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t144
+    t216 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t217 = _runtime.wrap_cut(-np.arctan2(t215, t216)) + t189
+    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t196 - t198)
+    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t201 + t200))
+    t218 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t219 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t220 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t221 = c3_right_noflip_up * t219 + s3_right_noflip_up * t220
+    t222 = c3_right_noflip_up * t220 - s3_right_noflip_up * t219
+    t223 = _runtime.wrap_cut(np.arctan2(t221, t222)) + t189
+    t224 = across_right_noflip_up + t158
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, -t160)
+    t225 = t34 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t224 * t224 + t225 * t225)
     in_reach_right_flip_up = np.minimum(t1, np.maximum(here_right_flip_up, t38))
-    t216 = (t140 - in_reach_right_flip_up) * (t140 + in_reach_right_flip_up)
-    k_near_right_flip_up = np.maximum(0.0, t216)
-    t217 = (t141 - in_reach_right_flip_up) * (t141 + in_reach_right_flip_up)
-    d_near_right_flip_up = np.maximum(0.0, -t217)
+    t226 = (t148 - in_reach_right_flip_up) * (t148 + in_reach_right_flip_up)
+    k_near_right_flip_up = np.maximum(0.0, t226)
+    t227 = (t149 - in_reach_right_flip_up) * (t149 + in_reach_right_flip_up)
+    d_near_right_flip_up = np.maximum(0.0, -t227)
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
     any_near_right_flip_up = n_near_right_flip_up <= t40
-    t218 = (k_near_right_flip_up - d_near_right_flip_up) / n_near_right_flip_up
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t218)
-    t219 = across_right_noflip_up * uc_near_right_flip_up
-    t220 = t157 + across_right_noflip_up * c_phi_right_flip_up
-    t221 = np.abs(t220)
-    side_right_flip_up = _runtime.select(t221 <= t3, 1.0, -(t220 / t221))
-    t222 = 2.0 * side_right_flip_up * np.sqrt(d_near_right_flip_up)
-    t223 = t222 * np.sqrt(k_near_right_flip_up) / n_near_right_flip_up
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t223)
-    t224 = (t219 + t34 * us_near_right_flip_up) / r_hub_right_noflip_up
-    c_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t224)
-    t225 = s_phi_right_noflip_up + c_near_right_flip_up
-    t226 = across_right_noflip_up * us_near_right_flip_up
-    t227 = (t226 - t34 * uc_near_right_flip_up) / r_hub_right_noflip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t227)
-    t228 = c_phi_right_flip_up + s_near_right_flip_up
-    t229 = h_wrist_right_noflip_up * np.sqrt(t225 * t225 + t228 * t228)
-    within_rounding_right_flip_up = t229 <= t52
-    t230 = np.abs(here_right_flip_up - in_reach_right_flip_up)
-    inside_right_flip_up = t230 <= t3
+    t228 = 1.0 / n_near_right_flip_up
+    t229 = (k_near_right_flip_up - d_near_right_flip_up) * t228
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t229)
+    t230 = across_right_noflip_up * uc_near_right_flip_up
+    t231 = t168 + across_right_noflip_up * c_phi_right_flip_up
+    t232 = np.abs(t231)
+    side_right_flip_up = _runtime.select(t232 <= t3, 1.0, -(t231 / t232))
+    t233 = 2.0 * side_right_flip_up * np.sqrt(d_near_right_flip_up)
+    t234 = t228 * (t233 * np.sqrt(k_near_right_flip_up))
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t234)
+    c_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t156 * (t230 + t34 * us_near_right_flip_up))
+    t235 = s_phi_right_noflip_up + c_near_right_flip_up
+    t236 = across_right_noflip_up * us_near_right_flip_up
+    s_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t156 * (t236 - t34 * uc_near_right_flip_up))
+    t237 = c_phi_right_flip_up + s_near_right_flip_up
+    t238 = h_wrist_right_noflip_up * np.sqrt(t235 * t235 + t237 * t237)
+    within_rounding_right_flip_up = t238 <= t56
+    t239 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    inside_right_flip_up = t239 <= t3
     c_moved_right_flip_up = _runtime.select(inside_right_flip_up, -s_phi_right_noflip_up, c_near_right_flip_up)
-    t231 = _runtime.select(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t231)
-    t232 = across_right_noflip_up - d5 * sphi_right_flip_up
+    t240 = _runtime.select(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t240)
+    t241 = across_right_noflip_up - d5 * sphi_right_flip_up
     s_moved_right_flip_up = _runtime.select(inside_right_flip_up, -c_phi_right_flip_up, s_near_right_flip_up)
-    t233 = _runtime.select(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t233)
+    t242 = _runtime.select(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t242)
     ey_right_flip_up = t34 - d5 * cphi_right_flip_up
-    t234 = t232 * t232 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t234)
-    t235 = t1 - r_elbow_right_flip_up
-    t236 = t37 + r_elbow_right_flip_up
-    t237 = r_elbow_right_flip_up - t37
-    t238 = t31 & (t30 <= t235) & (t30 <= t236) & (t30 <= t237)
-    unreachable_4 = np.logical_not(t238)
-    t239 = _runtime.poison(invalid | unreachable_4)
-    t240 = t137 + t239
+    t243 = t241 * t241 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t243)
+    t244 = t1 - r_elbow_right_flip_up
+    t245 = t37 + r_elbow_right_flip_up
+    t246 = r_elbow_right_flip_up - t37
+    t247 = t31 & (t30 <= t244) & (t30 <= t245) & (t30 <= t246)
+    unreachable_4 = np.logical_not(t247)
+    t248 = _runtime.poison(invalid | unreachable_4)
+    t249 = t145 + t248
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3
-    A_elbow_right_flip_up = np.maximum(t235, 0.0)
-    C_elbow_right_flip_up = np.maximum(t237, 0.0)
-    t241 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    A_elbow_right_flip_up = np.maximum(t244, 0.0)
+    C_elbow_right_flip_up = np.maximum(t246, 0.0)
+    t250 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = t1 + r_elbow_right_flip_up
-    B_elbow_right_flip_up = np.maximum(t236, 0.0)
-    t242 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    width_elbow_right_flip_up = t241 + t242
-    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t241 - t242) / width_elbow_right_flip_up))
-    t243 = ey_right_flip_up * c_base_elbow_right_flip_up
-    t244 = t243 / r_elbow_right_flip_up
-    t245 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
-    area_elbow_right_flip_up = t245 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
-    t246 = area_elbow_right_flip_up / width_elbow_right_flip_up
-    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t246)
-    t247 = t232 * s_base_elbow_right_flip_up / r_elbow_right_flip_up
-    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t244 + t247)
-    t248 = ey_right_flip_up * s_base_elbow_right_flip_up
-    t249 = t248 / r_elbow_right_flip_up
-    t250 = t232 * c_base_elbow_right_flip_up / r_elbow_right_flip_up
-    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t249 - t250)
-    t251 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t252 = A_elbow_right_flip_up * S_elbow_right_flip_up
-    t253 = C_elbow_right_flip_up * B_elbow_right_flip_up
-    sum_elbow_right_flip_up = t252 + t253
-    t254 = area_elbow_right_flip_up / sum_elbow_right_flip_up
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, t254)
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t252 - t253) / sum_elbow_right_flip_up))
-    t255 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t256 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t257 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
-    t258 = c3_right_flip_up * t256 - s3_right_flip_up * t257
-    t259 = c3_right_flip_up * t257 + s3_right_flip_up * t256
-    t260 = _runtime.wrap_cut(np.arctan2(t258, t259)) + t239
-    t261 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
-    t262 = _runtime.wrap_cut(-np.arctan2(t261, M_33_right_noflip_up))
-    t263 = t262 + t239
-    t264 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
-    t265 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
-    t266 = _runtime.wrap_cut(-np.arctan2(t264, t265)) + t239
-    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t244 - t247)
-    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t250 + t249))
-    t267 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t268 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t269 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
-    t270 = c3_right_flip_up * t268 + s3_right_flip_up * t269
-    t271 = c3_right_flip_up * t269 - s3_right_flip_up * t268
-    t272 = _runtime.wrap_cut(np.arctan2(t270, t271)) + t239
-    t273 = free1 | aligned_wrist | no_link_elbow
-    t274 = _runtime.status(invalid, unreachable, t273 | folded_elbow)
-    t275 = _runtime.status(invalid, unreachable_2, t273 | folded_elbow_left_flip_up)
-    t276 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
-    t277 = _runtime.status(invalid, unreachable_3, t276 | folded_elbow_right_noflip_up)
-    t278 = _runtime.status(invalid, unreachable_4, t276 | folded_elbow_right_flip_up)
+    B_elbow_right_flip_up = np.maximum(t245, 0.0)
+    t251 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    t252 = 1.0 / (t250 + t251)
+    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t250 - t251) * t252))
+    t253 = ey_right_flip_up * c_base_elbow_right_flip_up
+    t254 = 1.0 / r_elbow_right_flip_up
+    t255 = t253 * t254
+    t256 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
+    area_elbow_right_flip_up = t256 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t252 * area_elbow_right_flip_up)
+    t257 = t254 * (t241 * s_base_elbow_right_flip_up)
+    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t255 + t257)
+    t258 = ey_right_flip_up * s_base_elbow_right_flip_up
+    t259 = t254 * t258
+    t260 = t254 * (t241 * c_base_elbow_right_flip_up)
+    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t259 - t260)
+    t261 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t262 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t263 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t264 = 1.0 / (t262 + t263)
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t264)
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t264 * (t262 - t263)))
+    t265 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t266 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t267 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    t268 = c3_right_flip_up * t266 - s3_right_flip_up * t267
+    t269 = c3_right_flip_up * t267 + s3_right_flip_up * t266
+    t270 = _runtime.wrap_cut(np.arctan2(t268, t269)) + t248
+    t271 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t272 = _runtime.wrap_cut(-np.arctan2(t271, M_33_right_noflip_up))
+    t273 = t272 + t248
+    t274 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
+    t275 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
+    t276 = _runtime.wrap_cut(-np.arctan2(t274, t275)) + t248
+    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t255 - t257)
+    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t260 + t259))
+    t277 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t278 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t279 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t280 = c3_right_flip_up * t278 + s3_right_flip_up * t279
+    t281 = c3_right_flip_up * t279 - s3_right_flip_up * t278
+    t282 = _runtime.wrap_cut(np.arctan2(t280, t281)) + t248
+    t283 = free1 | aligned_wrist | no_link_elbow
+    t284 = _runtime.status(invalid, unreachable, t283 | folded_elbow)
+    t285 = _runtime.status(invalid, unreachable_2, t283 | folded_elbow_left_flip_up)
+    t286 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t287 = _runtime.status(invalid, unreachable_3, t286 | folded_elbow_right_noflip_up)
+    t288 = _runtime.status(invalid, unreachable_4, t286 | folded_elbow_right_flip_up)
     return (
-        t61,
-        _runtime.wrap_cut(np.arctan2(s2, c2)) + t60,
-        _runtime.wrap_cut(t71) + t60,
-        _runtime.wrap_cut(t74) + t60,
-        t76,
-        t78,
-        t61,
-        _runtime.wrap_cut(t79) + t60,
-        _runtime.wrap_cut(-t71) + t60,
-        _runtime.wrap_cut(t82) + t60,
-        t76,
-        t78,
-        t106,
-        t115 + t105,
-        _runtime.wrap_cut(t119) + t105,
-        t124,
-        t126,
-        t129,
-        t106,
-        _runtime.wrap_cut(t130) + t105,
-        _runtime.wrap_cut(-t119) + t105,
-        t135,
-        t126,
-        t129,
-        t180,
-        _runtime.wrap_cut(t192) + t179,
-        _runtime.wrap_cut(t196) + t179,
-        t201,
-        t204,
-        t207,
-        t180,
-        _runtime.wrap_cut(t208) + t179,
-        _runtime.wrap_cut(-t196) + t179,
-        t213,
-        t204,
-        t207,
-        t240,
-        _runtime.wrap_cut(t251) + t239,
-        _runtime.wrap_cut(t255) + t239,
-        t260,
-        t263,
-        t266,
-        t240,
-        _runtime.wrap_cut(t267) + t239,
-        _runtime.wrap_cut(-t255) + t239,
-        t272,
-        t263,
-        t266,
-        t274,
-        t274,
-        t275,
-        t275,
-        t277,
-        t277,
-        t278,
-        t278,
+        t65,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t64,
+        _runtime.wrap_cut(t78) + t64,
+        _runtime.wrap_cut(t81) + t64,
+        t83,
+        t85,
+        t65,
+        _runtime.wrap_cut(t86) + t64,
+        _runtime.wrap_cut(-t78) + t64,
+        _runtime.wrap_cut(t89) + t64,
+        t83,
+        t85,
+        t113,
+        t123 + t112,
+        _runtime.wrap_cut(t127) + t112,
+        t132,
+        t134,
+        t137,
+        t113,
+        _runtime.wrap_cut(t138) + t112,
+        _runtime.wrap_cut(-t127) + t112,
+        t143,
+        t134,
+        t137,
+        t190,
+        _runtime.wrap_cut(t202) + t189,
+        _runtime.wrap_cut(t206) + t189,
+        t211,
+        t214,
+        t217,
+        t190,
+        _runtime.wrap_cut(t218) + t189,
+        _runtime.wrap_cut(-t206) + t189,
+        t223,
+        t214,
+        t217,
+        t249,
+        _runtime.wrap_cut(t261) + t248,
+        _runtime.wrap_cut(t265) + t248,
+        t270,
+        t273,
+        t276,
+        t249,
+        _runtime.wrap_cut(t277) + t248,
+        _runtime.wrap_cut(-t265) + t248,
+        t282,
+        t273,
+        t276,
+        t284,
+        t284,
+        t285,
+        t285,
+        t287,
+        t287,
+        t288,
+        t288,
     )
 
 

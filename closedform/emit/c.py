@@ -21,7 +21,8 @@ from closedform.emit.code import COMPARE, WRAPS, Printer, Text
 from closedform.emit.text import WIDTH, banner, describe, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.lower.graph import Node, hardly_ever
+from closedform.lower.graph import Node, hardly_ever, strip_sign
+from closedform.lower.program import LEAVES
 from closedform.names import C_WORDS
 from closedform.tolerances import DOUBLE, FLOAT
 
@@ -100,9 +101,15 @@ class CPrinter(Printer):
             return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
         if op == "finite":
             return Text(f"{' + '.join(f'cf_nought({a})' for a in args)} == 0", COMPARE)
-        if op in RARE and (op != "select" or hardly_ever(node.args[0])):
+        if op in RARE and (op != "select" or self._spares(node)):
             return Text(f"{RARE[op]}({', '.join(['single', *args])})")
         return Text(f"{CALLS[op]}({', '.join(args)})")
+
+    @staticmethod
+    def _spares(select: Node) -> bool:
+        """Whether a jump spares the work for a value that is hardly ever selected."""
+        condition, value, _ = select.args
+        return hardly_ever(condition) and strip_sign(value).op not in LEAVES
 
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
         """Comparisons of calls get a name: clang warns of ``&`` between them, names are int."""

@@ -120,15 +120,17 @@ CF_INLINE real_t cf_select(int condition, real_t a, real_t b)
     return cf_from_word((cf_to_word(a) & mask) | (cf_to_word(b) & ~mask));
 }
 
-/* The same where `condition` hardly ever is 1. A single call jumps, which a processor foresees, so
- * that nothing waits for the condition; a batch selects. */
+/* The same where `condition` hardly ever is 1 and a is much work. A single call jumps over that; a
+ * batch selects. Where a is no work jumps cost more than they spare: nothing across them becomes one
+ * vector. */
 CF_INLINE real_t cf_rarely(int single, int condition, real_t a, real_t b)
 {
     if (single) return CF_UNLIKELY(condition) ? a : b;
     return cf_select(condition, a, b);
 }
 
-/* NaN where `failed`, else zero: added to an answer, it is one selection for all entries. */
+/* NaN where `failed`, else zero: added to an answer, it is one selection for all entries. A single
+ * call jumps, so that nothing waits for the condition. */
 CF_INLINE real_t cf_poison(int single, int failed)
 {
     return cf_rarely(single, failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));

@@ -375,12 +375,12 @@ CF_INLINE void planar_2r_ik_kernel(const int single, const planar_2r_params *par
     const real_t M = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = t2 - r2;
     const real_t N = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t ahead = cf_rarely(single, no_link, CLOSEDFORM_C(1.0), t1 * M + N * t3);
+    const real_t ahead = cf_select(no_link, CLOSEDFORM_C(1.0), t1 * M + N * t3);
     const real_t t6 = py * ahead;
     const real_t t7 = l2 * CLOSEDFORM_C(2.0);
     const real_t t8 = cf_sqrt(M);
     const real_t t9 = cf_sqrt(N);
-    const real_t beyond = cf_rarely(single, no_link, CLOSEDFORM_C(0.0), t7 * t8 * t9);
+    const real_t beyond = cf_select(no_link, CLOSEDFORM_C(0.0), t7 * t8 * t9);
     const real_t t10 = px * beyond;
     const real_t t11 = px * ahead;
     const real_t t12 = py * beyond;
@@ -404,9 +404,9 @@ CF_INLINE void planar_2r_ik_kernel(const int single, const planar_2r_params *par
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
     }
-    const real_t t21 = cf_rarely(single, at_base, CLOSEDFORM_C(0.0), angles[0]);
-    const real_t t22 = cf_rarely(single, no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
-    const real_t t23 = cf_rarely(single, at_base, CLOSEDFORM_C(0.0), angles[2]);
+    const real_t t21 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[0]);
+    const real_t t22 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
+    const real_t t23 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[2]);
     q[0] = cf_wrap_cut(t21) + t19;
     q[1] = t22 + t19;
     q[2] = cf_wrap_cut(t23) + t19;
@@ -482,9 +482,9 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int single, const planar_2r_params
     const int no_first_link = l1 <= t1 * CLOSEDFORM_VANISHING;
     const real_t elbow_y = T24 - T21 * l2;
     const real_t t2 = CLOSEDFORM_C(1.0) / l1;
-    const real_t s1 = cf_rarely(single, no_first_link, CLOSEDFORM_C(0.0), elbow_y * t2);
+    const real_t s1 = cf_select(no_first_link, CLOSEDFORM_C(0.0), elbow_y * t2);
     const real_t elbow_x = T14 - T11 * l2;
-    const real_t c1 = cf_rarely(single, no_first_link, CLOSEDFORM_C(1.0), elbow_x * t2);
+    const real_t c1 = cf_select(no_first_link, CLOSEDFORM_C(1.0), elbow_x * t2);
     const int t3 = cf_nought(l1) + cf_nought(l2) == 0;
     const int t4 = t3 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
     const int t5 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;

@@ -22,10 +22,10 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const real_t t2 = b + t1;
     const real_t t3 = CLOSEDFORM_VANISHING * t2;
     const int coincide = b <= t3;
-    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t4 = rho1 - rho2;
     const real_t t5 = CLOSEDFORM_C(1.0) / (b * CLOSEDFORM_C(2.0));
-    const real_t t6 = cf_rarely(single, coincide, rho1, b / CLOSEDFORM_C(2.0) + t4 * t1 * t5);
+    const real_t t6 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t4 * t1 * t5);
     const int t7 = cf_nought(b) == 0;
     const int t8 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const int invalid = !(t7 & (CLOSEDFORM_C(0.0) <= b) & t8);
@@ -38,8 +38,8 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const real_t t14 = n_1 * t6 + t13;
     const real_t slack = cf_max(t10, CLOSEDFORM_C(0.0));
     const real_t t15 = cf_sqrt(cf_max(t12, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0)));
-    const real_t t16 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t5 * (t15 * cf_sqrt(slack) * cf_sqrt(t2)));
-    const real_t height = cf_rarely(single, slack <= t3, CLOSEDFORM_C(0.0), t16);
+    const real_t t16 = cf_select(coincide, CLOSEDFORM_C(0.0), t5 * (t15 * cf_sqrt(slack) * cf_sqrt(t2)));
+    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t16);
     const real_t P_y = n_1 * height;
     const real_t t17 = cf_status(single, invalid, unreachable, coincide);
     p[0] = t14;
@@ -102,7 +102,7 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
     const real_t t2 = b + t1;
     const real_t t3 = CLOSEDFORM_VANISHING * t2;
     const int coincide = b <= t3;
-    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t4 = t1 - b;
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
@@ -110,10 +110,10 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
     const real_t t7 = b + t5;
     const real_t t8 = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
     const real_t t9 = b * CLOSEDFORM_C(2.0);
-    const real_t t10 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t8 * cf_sqrt(slack) * cf_sqrt(t2) / t9);
-    const real_t height = cf_rarely(single, slack <= t3, CLOSEDFORM_C(0.0), t10);
+    const real_t t10 = cf_select(coincide, CLOSEDFORM_C(0.0), t8 * cf_sqrt(slack) * cf_sqrt(t2) / t9);
+    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t10);
     const real_t P_y = n_1 * height;
-    const real_t t11 = cf_rarely(single, coincide, rho1, b / CLOSEDFORM_C(2.0) + t5 * t1 / t9);
+    const real_t t11 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t5 * t1 / t9);
     const real_t P_x = n_1 * t11;
     const int t12 = cf_nought(b) == 0;
     const int t13 = cf_nought(rho1) + cf_nought(rho2) == 0;
@@ -184,14 +184,14 @@ CF_INLINE void rpr_planar_jacobian_kernel(const int single, const rpr_planar_par
     const real_t t12 = -(rho2 / b) + t10;
     const real_t t13 = CLOSEDFORM_VANISHING * t4;
     const int coincide = b <= t13;
-    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t14 = b * CLOSEDFORM_C(2.0);
-    const real_t t15 = cf_rarely(single, coincide, rho1, b / CLOSEDFORM_C(2.0) + t7 * t3 / t14);
+    const real_t t15 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t7 * t3 / t14);
     const real_t P_x = n_1 * t15;
     const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
     const real_t t16 = cf_sqrt(cf_max(t9, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0)));
-    const real_t t17 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t16 * cf_sqrt(slack) * cf_sqrt(t4) / t14);
-    const real_t height = cf_rarely(single, slack <= t13, CLOSEDFORM_C(0.0), t17);
+    const real_t t17 = cf_select(coincide, CLOSEDFORM_C(0.0), t16 * cf_sqrt(slack) * cf_sqrt(t4) / t14);
+    const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), t17);
     const real_t t18 = b * (n_1 * height);
     const real_t t19 = (rho1 * b - rho1 * P_x) / t18;
     const real_t t20 = rho2 * P_x / t18;
@@ -247,7 +247,7 @@ CF_INLINE void rpr_planar_determinant_kernel(const int single, const rpr_planar_
     const real_t t2 = b + t1;
     const real_t t3 = CLOSEDFORM_VANISHING * t2;
     const int coincide = b <= t3;
-    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t4 = t1 - b;
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
@@ -255,16 +255,15 @@ CF_INLINE void rpr_planar_determinant_kernel(const int single, const rpr_planar_
     const real_t t7 = b + t5;
     const real_t t8 = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
     const real_t t9 = t8 * cf_sqrt(slack) * cf_sqrt(t2) / (b * CLOSEDFORM_C(2.0));
-    const real_t t10 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t9);
-    const real_t height = cf_rarely(single, slack <= t3, CLOSEDFORM_C(0.0), t10);
-    const real_t t11 = rho1 * rho2 / (b * (n_1 * height));
-    const int t12 = cf_nought(b) == 0;
-    const int t13 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t14 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= b) & t13)) | (!((t14 <= t4) & (t14 <= t7) & (t14 <= t6)));
-    const real_t t15 = cf_poison(single, failed);
-    det[0] = t11 + t15;
-    det[1] = -t11 + t15;
+    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
+    const real_t t10 = rho1 * rho2 / (b * (n_1 * height));
+    const int t11 = cf_nought(b) == 0;
+    const int t12 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t13 = -(CLOSEDFORM_FEASIBILITY * t2);
+    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b) & t12)) | (!((t13 <= t4) & (t13 <= t7) & (t13 <= t6)));
+    const real_t t14 = cf_poison(single, failed);
+    det[0] = t10 + t14;
+    det[1] = -t10 + t14;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -314,12 +313,11 @@ CF_INLINE void rpr_planar_singularities_kernel(const int single, const rpr_plana
     const real_t t12 = rho2 + t10;
     const real_t t13 = CLOSEDFORM_VANISHING * t4;
     const int coincide = b <= t13;
-    const real_t n_1 = cf_rarely(single, coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
     const real_t t14 = cf_sqrt(cf_max(t9, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0)));
     const real_t t15 = t14 * cf_sqrt(slack) * cf_sqrt(t4) / (b * CLOSEDFORM_C(2.0));
-    const real_t t16 = cf_rarely(single, coincide, CLOSEDFORM_C(0.0), t15);
-    const real_t height = cf_rarely(single, slack <= t13, CLOSEDFORM_C(0.0), t16);
+    const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t15));
     const real_t P_y = n_1 * height;
     factors[0] = t11;
     factors[1] = t12;

@@ -373,8 +373,8 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single,
     const real_t h = cf_sqrt(R13 * R13 + R23 * R23);
     const int aligned = h <= CLOSEDFORM_VANISHING;
     const real_t t1 = CLOSEDFORM_C(1.0) / h;
-    const real_t s4 = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), R23 * t1);
-    const real_t c4 = cf_rarely(single, aligned, CLOSEDFORM_C(1.0), R13 * t1);
+    const real_t s4 = cf_select(aligned, CLOSEDFORM_C(0.0), R23 * t1);
+    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), R13 * t1);
     const int t2 = cf_nought(d6) == 0;
     const int t3 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
     const int t4 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
@@ -386,7 +386,7 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single,
     const int t10 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
     const int invalid = !(t2 & t3 & t4 & t5 & t7 & t9 & t10);
     const real_t t11 = cf_poison(single, invalid);
-    const real_t flip = cf_rarely(single, aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
     const real_t t12 = cf_status(single, invalid, 0, aligned);
     const real_t opposite[4] = { s4, R13 * c4 + R23 * s4, R11 * s4 - R21 * c4 };
     const real_t adjacent[4] = { c4, R33, R22 * c4 - R12 * s4 };

@@ -148,10 +148,9 @@ class Reduction:
     """An inverse that is too large for one Groebner basis, certified lemma by lemma.
 
     ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas`` and names of the
-    program.  The equations
-    of the lemmas, multiplied by the invertible matrix ``combination``, are those of the inverse: so
-    both have the same solutions, and each lemma is proved to give all of its own.  Where a side
-    condition keeps one in ``kept_of`` of them, ``because`` says why.
+    program.  The equations of the lemmas, multiplied by the invertible matrix ``combination``, are
+    those of the inverse: so both have the same solutions, and each lemma is proved to give all of
+    its own.  Where a side condition keeps one in ``kept_of`` of them, ``because`` says why.
     """
 
     lemmas: tuple[Lemma, ...]

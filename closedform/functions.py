@@ -365,6 +365,11 @@ def choose(flag: sp.Symbol, when_true: Number, otherwise: Number) -> sp.Expr:
     return sp.Piecewise((when_true, flag), (otherwise, True))
 
 
+def sign_of(value: Number) -> sp.Expr:
+    """1 where ``value`` is not negative, else -1."""
+    return sp.Piecewise((1, value >= 0), (-1, True))
+
+
 __all__ = [
     "SINGLE",
     "Array",
@@ -382,5 +387,6 @@ __all__ = [
     "choose",
     "real",
     "reject_floats",
+    "sign_of",
     "substitute",
 ]

@@ -15,9 +15,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import sympy as sp
-from sympy import Rational
 
-from closedform.functions import Program, Statement, choose
+from closedform.functions import Program, Statement, choose, sign_of
 
 
 @dataclass(frozen=True)
@@ -389,7 +388,7 @@ def two_sines(
     """
     x, y = unknowns
     area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
-    sigma = program.let("sigma_uv", sp.Piecewise((1, area >= 0), (-1, True)))
+    sigma = program.let("sigma_uv", sign_of(area))
     start = len(program.body)
     size = sp.sqrt(u[0] ** 2 + u[1] ** 2)
     size = size if size.is_Symbol else program.let("size_u", size, nonnegative=True)
@@ -407,7 +406,7 @@ def two_sines(
     rest = program.let("rest", ahead - part / whole * lean)
     left = program.let("left_along", size - sp.Abs(rest))
     spent = program.vanishes("spent_along", left, scale, "no room: a sine is at most 1")
-    loose = sp.Abs(lean) / (aside + Rational(1, 10**9) * size)
+    loose = sp.Abs(lean) / (aside + sp.Rational(1, 10**9) * size)
     play = program.let("play_along", scale * (1 + choose(spent, loose, 0)))
     program.bound("kept_along", left, play, "a sine is at most 1")
     lacking = (sp.Abs(left) - left) / 2 * lean / (lean**2 + aside**2)

@@ -157,7 +157,10 @@ def _arm(
     start: int,
     rest: tuple[Number, Number],
 ) -> Lemma:
-    """The lemma of an arm from N and M, the flags of :func:`_degenerate`, and what they free."""
+    """The lemma of an arm from N and M and the flags of :func:`_degenerate`.
+
+    ``rest`` is the direction of the upper arm where the end is on the shoulder.
+    """
     (upper, along, across), (r, h), (x, y), (N, M) = lengths, target, unknowns, squares
     folded, short = flags
     rN, rM = (program.let(f"r{e.name}", sp.sqrt(e), nonnegative=True) for e in (N, M))

@@ -51,7 +51,7 @@ from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform.derivation import Derivation, Inverse, Reduction
 from closedform.frames import homogeneous, rotation
-from closedform.functions import Program, branches, choose, real
+from closedform.functions import Program, branches, choose, real, sign_of
 from closedform.lemmas import two_sines
 
 d = Derivation(
@@ -204,7 +204,7 @@ def averages(p: Program) -> tuple[Pair, Pair]:
             ("2A", means[theta2A], means[alpha]),
             ("23A", means[theta23A], means[beta]),
         )
-        for side in [p.let(f"side{n}", sp.Piecewise((1, cos(half) >= 0), (-1, True)))]
+        for side in [p.let(f"side{n}", sign_of(cos(half)))]
     )
     return upper, fore
 
@@ -378,7 +378,7 @@ for sine in ("alpha", "beta"):
     }[sine]
     whole = p.let(f"whole_{sine}", m.L1 * v[0])
     part = p.let(f"part_{sine}", part)
-    to_whole, to_part = (sp.Piecewise((1, e >= 0), (-1, True)) for e in (whole, part))
+    to_whole, to_part = map(sign_of, (whole, part))
     room = p.let(f"room_{sine}", to_whole * whole - to_part * part)
     slope = p.let(f"slope_{sine}", -to_whole * free.drawn * v[1] - to_part * rate)
     spent, turn = free.easing(sine, room, slope, "a sine is at most 1")

@@ -42,7 +42,7 @@ from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform.derivation import Derivation, Inverse, Reduction
 from closedform.frames import rotation
-from closedform.functions import Program, branches, real
+from closedform.functions import Program, branches, real, sign_of
 from closedform.two_link import elbow_squares, two_link_arm_beside
 
 d = Derivation(
@@ -192,7 +192,7 @@ def stand(p: Program) -> Posture:
         squares[name], bent[name] = elbow_squares(
             p, lengths, second, pair(angle), suffix=f"_{name}"
         )
-    side = p.let("sigma_side", sp.Piecewise((1, bent["right"] >= 0), (-1, True)))
+    side = p.let("sigma_side", sign_of(bent["right"]))
     point = tuple(p.let(n, e) for n, e in zip(("r_I", "h_I"), midway, strict=True))
     p.let("ahead", gap_half[0])
     p.let("higher", gap_half[1])
@@ -379,7 +379,7 @@ mid = solve_mid_plane(p, m, q, wrist, half_base)
 upper, fore = mid.posture.upper, mid.posture.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
 (N, M), bent = elbow_squares(p, lengths, second, mid.elbow, suffix="_mid")
-side = p.let("sigma_right", sp.Piecewise((1, bent >= 0), (-1, True)))
+side = p.let("sigma_right", sign_of(bent))
 opposite = p.let("sigma_other", side * sigma_left)
 by_pairs = {cos(theta23A): fore.c, sin(theta23A): fore.s}
 by_pairs |= {tan(e): sin(e) / cos(e) for e in (psi, phi)}

@@ -355,19 +355,24 @@ class FreeTurn:
         return spent, self.program.let(f"turn_{name}", choose(spent, turn, 0))
 
 
+def bent_whole(m: Dimensions, bend: Pair) -> tuple[sp.Expr, sp.Expr]:
+    """Of the virtual arm with the wrist: its fore-arm across its upper arm, and all along it."""
+    along, across = real("L_2W"), real("a_3W")
+    return along * bend.c - across * bend.s, m.L1 + along * bend.s + across * bend.c
+
+
 def free_turn(program: Program, m: Dimensions, bend: Pair, size: sp.Symbol) -> FreeTurn:
     """The free turn of a virtual arm from the angle of its elbow and its length when stretched."""
-    along, across = real("L_2W"), real("a_3W")
-    tilt = program.let("tilt", along * bend.c - across * bend.s)
-    drawn = program.let("drawn", m.L1 + along * bend.s + across * bend.c)
-    return FreeTurn(program, size, size * m.d, tilt, drawn)
+    tilt, drawn = bent_whole(m, bend)
+    return FreeTurn(
+        program, size, size * m.d, program.let("tilt", tilt), program.let("drawn", drawn)
+    )
 
 
 def turn_step(d: Derivation, m: Dimensions) -> None:
     """The step of the derivation that says what the free turn is for."""
-    along, across, bend = real("L_2W"), real("a_3W"), pair(theta23A - theta2A)
-    tilt, drawn = along * bend.c - across * bend.s, m.L1 + along * bend.s + across * bend.c
-    p = reach(m, pair(theta2A), pair(theta23A), along, across)
+    tilt, drawn = bent_whole(m, pair(theta23A - theta2A))
+    p = reach(m, pair(theta2A), pair(theta23A), real("L_2W"), real("a_3W"))
     rate = p.diff(theta23A) + (1 - drawn / m.L1) * p.diff(theta2A)
     d.step(
         "Arms at their limit under a straight virtual arm",

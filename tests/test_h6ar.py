@@ -81,6 +81,13 @@ def hand(T3: np.ndarray, psi: float, phi: float, theta: float, wrist: float) -> 
     return T
 
 
+def missed(model, solutions: np.ndarray, x: np.ndarray, params=P) -> np.ndarray:
+    """What the branches of an inverse miss their targets by, angles on the shorter arc."""
+    off = model.fk(solutions, params) - x[:, None]
+    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    return off
+
+
 def test_names(model) -> None:
     assert model.Parameters._fields == ("L1", "L2", "a3", "d1", "d", "gs", "al", "loff", "lp")
     assert tuple(P) == (0.4, 0.4, 0.05, 0.5, 0.1, 0.02, 0.12, 0.05, 0.1)
@@ -227,8 +234,7 @@ def test_inverse_inverts(model) -> None:
     found = status == OK
     assert found.any(-1).all() and (np.isnan(solutions).all(-1) == ~found).all()
     assert (np.abs(solutions[found]) <= np.pi).all()
-    off = model.fk(solutions) - x[:, None]
-    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    off = missed(model, solutions, x)
     assert np.abs(off[found]).max() < TOL
     gap = np.abs(np.angle(np.exp(1j * (solutions - q[:, None])))).max(-1)
     assert np.nanmin(gap, axis=-1).max() < 1e-7
@@ -254,8 +260,7 @@ def test_straight_arms(model, small: float, which: str) -> None:
     solutions, status = model.ik(x)
     found = np.isin(status, (OK, SINGULAR))
     assert len(q) > 250 and found.any(-1).all()
-    off = model.fk(solutions) - x[:, None]
-    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    off = missed(model, solutions, x)
     assert np.abs(off[found]).max() < TOL
 
 
@@ -300,8 +305,7 @@ def test_averages_of_a_straight_arm(published) -> None:
     solutions, status = published.ik(x, wide)
     found = np.isin(status, (OK, SINGULAR))
     assert found.any(-1).all() and (status == SINGULAR).any(-1).mean() > 0.9
-    off = published.fk(solutions, wide) - x[:, None]
-    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    off = missed(published, solutions, x, wide)
     assert np.abs(off[found]).max() < 2e-12
     # the reach of the gap: more than the upper arms alone can make up
     gap = np.linalg.norm(P.d * np.tan(x[:, 3:5]), axis=1)
@@ -338,8 +342,7 @@ def test_no_posture_is_lost_where_two_events_meet(model, dimensions: dict) -> No
     solutions, status = model.ik(x, params)
     found = np.isin(status, (OK, SINGULAR))
     assert found.any(-1).all()
-    off = model.fk(solutions, params) - x[:, None]
-    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    off = missed(model, solutions, x, params)
     lost = np.abs(off[status == OK]).max(-1) > 1e-12 * sum(params)
     if model.__name__.endswith("h6ar"):
         assert not lost.any()
@@ -423,8 +426,7 @@ def test_straight_arm_under_a_straight_virtual_arm(closed, bend: float, tilt: fl
     x = closed.fk(q)
     solutions, status = closed.ik(x)
     assert len(q) > 100 and (status == OK).any(-1).all()
-    off = closed.fk(solutions) - x[:, None]
-    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    off = missed(closed, solutions, x)
     assert np.abs(off[status == OK]).max() < TOL
 
 
@@ -444,8 +446,7 @@ def test_arms_of_equal_links_folded_onto_their_shoulders(closed, small: float, w
     found = np.isin(status, (OK, SINGULAR))
     assert found.any(-1).all()
     assert (status == SINGULAR).any() == (small < 1e-12)
-    off = closed.fk(solutions, equal) - x[:, None]
-    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    off = missed(closed, solutions, x, equal)
     assert np.abs(off[found]).max() < TOL
 
 
@@ -459,8 +460,7 @@ def test_other_dimensions(model, change: dict) -> None:
     x = x[np.isfinite(x).all(-1)]
     solutions, status = model.ik(x, dimensions)
     assert len(x) > 200 and (status == OK).any(-1).all()
-    off = model.fk(solutions, dimensions) - x[:, None]
-    off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
+    off = missed(model, solutions, x, dimensions)
     assert np.abs(off[status == OK]).max() < TOL
 
 

@@ -37,9 +37,10 @@ CALLS = {
     "select": "cf_select",
 }
 RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
-LOCALS = frozenset(
-    ["params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start"]
-) | frozenset(["single", "opposite", "adjacent", "angles"])
+LOCALS = frozenset({
+    "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
+    "single", "opposite", "adjacent", "angles",
+})  # fmt: skip
 RESERVED = LOCALS | C_WORDS
 
 

@@ -4,6 +4,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import sympy as sp
+from closedform.derivations.h6ar_mechanism import arm_frames, product
 from sympy import asin, cos, sin, sqrt, tan
 
 from closedform.claims import Count, Enumeration, Every, Identity, Undecidable, Under
@@ -227,9 +228,7 @@ def wrist(d: Derivation, r: Robot) -> None:
     claim = partial(d.claim, where="3.4 Wrist")
 
     def third(upper: sp.Expr, fore: sp.Expr) -> list[sp.Expr]:
-        first = denavit_hartenberg(0, sp.pi / 2, m.d1, r.theta1)
-        second = denavit_hartenberg(m.L1, 0, sp.S.Zero, upper)
-        frame = first * second * denavit_hartenberg(m.a3, sp.pi / 2, 0, fore - upper)
+        frame = product(arm_frames(m, r.theta1, upper, fore - upper, sp.S.Zero))
         return list(frame[:3, :3])
 
     virtual, right_arm = third(r.A, r.B), third(r.A + r.alpha, r.B + r.beta)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -96,6 +97,7 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
         else:
             lines.append(f"{cosine} = np.cos({code})")
     lines += [f"{line.name} = {line.code}" for line in printer.lines]
+    values = [v for result in results for v in result]
     entries = [str(e) for a in function.inputs for e in a.entries]
     parameters = list(program.parameters)
     names = [e if e in used else f"_{e}" for e in entries] + parameters
@@ -108,12 +110,31 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
         f"_runtime.{function.result}(*result)" if function.result else "result",
         docstring(derivation, function),
         _wrapped(", ".join(names), f"def _{function.name}():"),
-        tuple(lines),
-        tuple(v for result in results for v in result),
+        tuple(_until_last_use(lines, values)),
+        tuple(values),
         _arrays((a.name, a.shape, "real") for a in function.inputs),
         _arrays((r.name, r.shape, r.kind) for r in program.results),
         repr(program.parameters),
     )
+
+
+def _until_last_use(lines: Sequence[str], values: Sequence[str]) -> Iterator[str]:
+    """The lines, each followed by the deletion of what no later one uses.
+
+    The array that is made next then takes the place of one that is still in the cache.
+    """
+    name = re.compile(r"\b[A-Za-z_]\w*")
+    made = {n for line in lines for n in name.findall(line.partition(" = ")[0])}
+    later = made.intersection(n for value in values for n in name.findall(value))
+    spent: list[list[str]] = []
+    for line in reversed(lines):
+        used = made.intersection(name.findall(line))
+        spent.append(sorted(used - later))
+        later |= used
+    for line, names in zip(lines, reversed(spent), strict=True):
+        yield line
+        if names:
+            yield f"del {', '.join(names)}"
 
 
 def _wrapped(arguments: str, around: str) -> str:

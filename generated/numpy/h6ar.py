@@ -105,59 +105,90 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t2 = s2L_half * s2R_half
     side2A = _runtime.select(0.0 <= t1 + t2, 1.0, -1.0)
     t3 = t1 - t2
+    del t1, t2
     t4 = c3L_half * c3R_half
     t5 = s3L_half * s3R_half
     t6 = t4 + t5
     t7 = s3L_half * c3R_half
+    del c3R_half, s3L_half
     t8 = c3L_half * s3R_half
+    del c3L_half, s3R_half
     t9 = t7 - t8
     t10 = c2R_half * t6 + s2R_half * t9
     t11 = s2R_half * t6 - c2R_half * t9
+    del t6, t9
     side23A = _runtime.select(0.0 <= c2L_half * t10 + s2L_half * t11, 1.0, -1.0)
     t12 = t4 - t5
+    del t4, t5
     t13 = t7 + t8
+    del t7, t8
     t14 = c2R_half * t12 - s2R_half * t13
     t15 = s2R_half * t12 + c2R_half * t13
+    del t12, t13
     t16 = c2L_half * t14 - s2L_half * t15
     c23A = side23A * t16
     t17 = lp * s
     t18 = d * d
     t19 = s2L_half * t10 - c2L_half * t11
+    del t10, t11
     t20 = s2L_half * t14 + c2L_half * t15
+    del t14, t15
     t21 = s2L_half * c2R_half
+    del c2R_half, s2L_half
     t22 = c2L_half * s2R_half
+    del c2L_half, s2R_half
     t23 = L1 * (t21 - t22)
     t24 = t19 * (L2 * t20 + a3 * t16) + t3 * t23
     rise = np.sqrt(t18 + t24 * t24)
     c_phi = d / rise
     t25 = t24 / rise
+    del rise, t24
     t26 = t21 + t22
+    del t21, t22
     t27 = t19 * (L2 * t16 - a3 * t20) - t26 * t23
+    del t16, t19, t23
     base = np.sqrt(t18 + t27 * t27)
+    del t18
     t28 = t27 / base
+    del t27
     t29 = base - (gs - al)
     t30 = gs + al
     t31 = t30 - base
     wrist = np.sqrt(np.maximum(t29, 0.0)) * np.sqrt(np.maximum(t31, 0.0))
     t32 = loff + lp * c + wrist
+    del wrist
     t33 = t28 * t32
     t34 = a3 + t17 * c_phi + t25 * t33
     s23A = side23A * t20
+    del side23A, t20
     c_psi = d / base
+    del base
     t35 = L2 + c_psi * t32
+    del t32
     t36 = L1 * (side2A * t3) + c23A * t34 + s23A * t35
+    del t3
     t37 = t17 * t25 - c_phi * t33
+    del t17, t33
     t38 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t39 = t38 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t38
     t40 = t39 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t39
     t41 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     invalid = np.logical_not(t40 & (0.0 <= loff) & (0.0 <= lp) & t41)
+    del t40, t41
     t42 = -(_runtime.FEASIBILITY * t30)
+    del t30
     failed = invalid | np.logical_not((t42 <= t31) & (t42 <= t29))
+    del invalid, t29, t31, t42
     t43 = _runtime.poison(failed)
+    del failed
     t44 = d1 + L1 * (side2A * t26) - c23A * t35 + s23A * t34
+    del c23A, s23A, side2A, t26, t34, t35
     t45 = _runtime.wrap_cut(np.arctan2(-t28, c_psi)) + t43
+    del c_psi, t28
     t46 = _runtime.wrap_cut(-np.arctan2(t25, c_phi)) + t43
+    del c_phi, t25
     return (
         c1 * t36 - s1 * t37 + t43,
         c1 * t37 + s1 * t36 + t43,
@@ -203,54 +234,77 @@ def _pose(
     t2 = s3L_half * s3R_half
     t3 = t1 + t2
     t4 = s3L_half * c3R_half
+    del c3R_half, s3L_half
     t5 = c3L_half * s3R_half
+    del c3L_half, s3R_half
     t6 = t4 - t5
     t7 = c2R_half * t3 + s2R_half * t6
     t8 = s2R_half * t3 - c2R_half * t6
+    del t3, t6
     side23A = _runtime.select(0.0 <= c2L_half * t7 + s2L_half * t8, 1.0, -1.0)
     t9 = t1 - t2
+    del t1, t2
     t10 = t4 + t5
+    del t4, t5
     t11 = c2R_half * t9 - s2R_half * t10
     t12 = s2R_half * t9 + c2R_half * t10
+    del t10, t9
     t13 = c2L_half * t11 - s2L_half * t12
     c23A = side23A * t13
     t14 = c23A * c1
     t15 = d * d
     t16 = s2L_half * t7 - c2L_half * t8
+    del t7, t8
     t17 = s2L_half * t11 + c2L_half * t12
+    del t11, t12
     t18 = c2L_half * c2R_half
     t19 = s2L_half * s2R_half
     t20 = t18 - t19
     t21 = s2L_half * c2R_half
+    del c2R_half, s2L_half
     t22 = c2L_half * s2R_half
+    del c2L_half, s2R_half
     t23 = L1 * (t21 - t22)
     t24 = t16 * (L2 * t17 + a3 * t13) + t20 * t23
     rise = np.sqrt(t15 + t24 * t24)
     c_phi = d / rise
     t25 = t21 + t22
+    del t21, t22
     t26 = t16 * (L2 * t13 - a3 * t17) - t25 * t23
+    del t13, t16, t23
     base = np.sqrt(t15 + t26 * t26)
+    del t15
     t27 = t26 / base
+    del t26
     t28 = t24 / rise
+    del rise, t24
     t29 = t27 * t28
     hand_11 = c * c_phi - s * t29
     t30 = c_phi * t27
     t31 = s * t30 + c * t28
     s23A = side23A * t17
+    del side23A, t17
     t32 = s23A * c1
     c_psi = d / base
     t33 = s * c_psi
     t34 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t35 = t34 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t34
     t36 = t35 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t35
     t37 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     invalid = np.logical_not(t36 & (0.0 <= loff) & (0.0 <= lp) & t37)
+    del t36, t37
     t38 = gs + al
     t39 = -(_runtime.FEASIBILITY * t38)
     t40 = t38 - base
+    del t38
     t41 = base - (gs - al)
+    del base
     failed = invalid | np.logical_not((t39 <= t40) & (t39 <= t41))
+    del invalid, t39
     t42 = _runtime.poison(failed)
+    del failed
     hand_12 = t28 * c_psi
     hand_22 = c_phi * c_psi
     t43 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t42
@@ -259,18 +313,29 @@ def _pose(
     hand_33 = c * c_psi
     t45 = t14 * hand_13 + s1 * t44 + t32 * hand_33 + t42
     side2A = _runtime.select(0.0 <= t18 + t19, 1.0, -1.0)
+    del t18, t19
     t46 = lp * s
+    del s
     wrist = np.sqrt(np.maximum(t41, 0.0)) * np.sqrt(np.maximum(t40, 0.0))
+    del t40, t41
     t47 = loff + lp * c + wrist
+    del c, wrist
     t48 = a3 + t46 * c_phi + t29 * t47
+    del c_phi, t29
     t49 = L2 + c_psi * t47
+    del c_psi
     t50 = L1 * (side2A * t20) + c23A * t48 + s23A * t49
+    del t20
     t51 = t46 * t28 - t30 * t47
+    del t28, t30, t46, t47
     t52 = c23A * s1
     t53 = s23A * s1
     t54 = t52 * hand_12 - c1 * hand_22 - t53 * t27 + t42
+    del hand_22
     t55 = t52 * hand_13 - c1 * t44 + t53 * hand_33 + t42
+    del t44
     t56 = d1 + L1 * (side2A * t25) - c23A * t49 + s23A * t48
+    del side2A, t25, t48, t49
     t57 = 0.0 + t42
     return (
         t14 * hand_11 - s1 * t31 - t32 * t33 + t42,
@@ -323,11 +388,15 @@ def _arm_tips(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2, a3, d1
     t1 = d * s1
     s2R3R = s2R * c3R + c2R * s3R
     c2R3R = c2R * c3R - s2R * s3R
+    del c3R, s3R
     t2 = L1 * c2R + L2 * s2R3R + a3 * c2R3R
+    del c2R
     t3 = d * c1
     s2L3L = s2L * c3L + c2L * s3L
     c2L3L = c2L * c3L - s2L * s3L
+    del c3L, s3L
     t4 = L1 * c2L + L2 * s2L3L + a3 * c2L3L
+    del c2L
     return (
         t1 + c1 * t2,
         s1 * t2 - t3,
@@ -372,18 +441,28 @@ def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2,
     t4 = s3L_half * s3R_half
     t5 = t3 + t4
     t6 = s3L_half * c3R_half
+    del c3R_half, s3L_half
     t7 = c3L_half * s3R_half
+    del c3L_half, s3R_half
     t8 = t6 - t7
     t9 = c2L_half * (c2R_half * t5 + s2R_half * t8) + s2L_half * (s2R_half * t5 - c2R_half * t8)
+    del t5, t8
     side23A = _runtime.select(0.0 <= t9, 1.0, -1.0)
+    del t9
     t10 = t3 - t4
+    del t3, t4
     t11 = t6 + t7
+    del t6, t7
     t12 = c2R_half * t10 - s2R_half * t11
     t13 = s2R_half * t10 + c2R_half * t11
+    del t10, t11
     s23A = side23A * (s2L_half * t12 + c2L_half * t13)
     c23A = side23A * (c2L_half * t12 - s2L_half * t13)
+    del side23A, t12, t13
     t14 = L1 * (side2A * (t1 - t2)) + L2 * s23A + a3 * c23A
+    del t1, t2
     s2A = side2A * (s2L_half * c2R_half + c2L_half * s2R_half)
+    del c2L_half, c2R_half, s2L_half, s2R_half, side2A
     return (
         t14 * c1,
         t14 * s1,
@@ -422,6 +501,7 @@ def _jacobian(
     s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     t1 = lp * s
+    del s
     t2 = c3L_half * c3R_half
     t3 = s3L_half * s3R_half
     t4 = t2 + t3
@@ -430,13 +510,18 @@ def _jacobian(
     t7 = t5 - t6
     t8 = c2R_half * t4 + s2R_half * t7
     t9 = s2R_half * t4 - c2R_half * t7
+    del t4, t7
     t10 = s2L_half * t8 - c2L_half * t9
     t11 = t2 - t3
+    del t2, t3
     t12 = t5 + t6
+    del t5, t6
     t13 = c2R_half * t11 - s2R_half * t12
     t14 = s2R_half * t11 + c2R_half * t12
+    del t11, t12
     t15 = s2L_half * t13 + c2L_half * t14
     t16 = c2L_half * t13 - s2L_half * t14
+    del t13, t14
     t17 = c2L_half * c2R_half
     t18 = s2L_half * s2R_half
     t19 = t17 - t18
@@ -448,14 +533,20 @@ def _jacobian(
     t25 = t23 * t23
     rise = np.sqrt(t24 + t25)
     t26 = t23 / rise
+    del t23
     t27 = t20 + t21
+    del t20, t21
     t28 = t10 * (L2 * t16 - a3 * t15) - t27 * t22
+    del t10, t22
     t29 = t28 * t28
     base = np.sqrt(t24 + t29)
     t30 = t28 / base
+    del t28
     c_phi = d / rise
+    del rise
     t31 = t30 * c_phi
     t32 = lp * c
+    del c
     t33 = base - (gs - al)
     t34 = gs + al
     t35 = t34 - base
@@ -463,88 +554,140 @@ def _jacobian(
     t36 = loff + t32 + wrist
     t37 = t1 * t26 - t31 * t36
     side2A = _runtime.select(0.0 <= t17 + t18, 1.0, -1.0)
+    del t17, t18
     outer_32 = L1 * (side2A * t19)
+    del t19
     side23A = _runtime.select(0.0 <= c2L_half * t8 + s2L_half * t9, 1.0, -1.0)
+    del t8, t9
     c23A = side23A * t16
+    del t16
     t38 = t30 * t26
     t39 = t1 * c_phi + t38 * t36
     t40 = a3 + t39
     s23A = side23A * t15
+    del side23A, t15
     c_psi = d / base
+    del base
     t41 = c_psi * t36
     t42 = L2 + t41
     outer_33 = c23A * t40 + s23A * t42
     t43 = outer_32 + outer_33
     t44 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t45 = t44 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t44
     t46 = t45 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t45
     t47 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     t48 = -(_runtime.FEASIBILITY * t34)
+    del t34
     failed = np.logical_not(t46 & (0.0 <= lp) & t47) | np.logical_not((t48 <= t35) & (t48 <= t33))
+    del t33, t35, t46, t47, t48
     t49 = _runtime.poison(failed)
+    del failed
     t50 = c23A * t37
     outer_15 = c1 * t50 + s1 * t39
     t51 = c2R_half * c2R_half - s2R_half * s2R_half
     t52 = s2R_half * c2R_half
+    del c2R_half, s2R_half
     t53 = t52 + t52
+    del t52
     t54 = c3R_half * c3R_half - s3R_half * s3R_half
     t55 = s3R_half * c3R_half
+    del c3R_half, s3R_half
     t56 = t55 + t55
+    del t55
     s2R3R = t53 * t54 + t51 * t56
     c2R3R = t51 * t54 - t53 * t56
+    del t54, t56
     t57 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
     t58 = d * (1.0 + t25 / t24)
+    del t25
     inner_52 = (L1 * t51 / 2.0 + t57) / t58
+    del t51
     t59 = L1 * (side2A * t27)
+    del side2A, t27
     t60 = c23A * t42 - s23A * t40
+    del t40, t42
     t61 = c1 * t60 / 2.0
     t62 = c1 * t59 / 2.0 - t61
     t63 = c_phi * t41
     t64 = t26 * t41
+    del t41
     t65 = t30 * t36
+    del t36
     t66 = c23A * t64 - s23A * t65
     t67 = (gs - d / c_psi) * (d * t30)
+    del t30
     t68 = s23A * c_psi
     t69 = c23A * t38 + t68
     t70 = c_psi * c_psi * wrist
+    del wrist
     t71 = s1 * t63 + c1 * t66 + t67 * (s1 * t31 + c1 * t69) / t70
     t72 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
+    del c2R3R, s2R3R
     t73 = d * (1.0 + t29 / t24)
+    del t24, t29
     t74 = (L1 * t53 / 2.0 - t72) / t73
+    del t53
     t75 = outer_15 * inner_52 - (t62 - t71 * t74) + t49
     inner_43 = t72 / t73
+    del t72
     inner_53 = t57 / t58
+    del t57
     t76 = t61 - inner_43 * t71 + inner_53 * outer_15 + t49
     t77 = s2L_half * c2L_half
     t78 = t77 + t77
+    del t77
     t79 = c2L_half * c2L_half - s2L_half * s2L_half
+    del c2L_half, s2L_half
     t80 = c3L_half * c3L_half - s3L_half * s3L_half
     t81 = s3L_half * c3L_half
+    del c3L_half, s3L_half
     t82 = t81 + t81
+    del t81
     c2L3L = t79 * t80 - t78 * t82
     s2L3L = t78 * t80 + t79 * t82
+    del t80, t82
     t83 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
     inner_44 = (L1 * t78 / 2.0 - t83) / t73
+    del t78
     t84 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
+    del c2L3L, s2L3L
     t85 = (L1 * t79 / 2.0 + t84) / t58
+    del t79
     t86 = -(t62 + t71 * inner_44 + outer_15 * t85) + t49
+    del t62
     t87 = t83 / t73
+    del t73, t83
     t88 = t84 / t58
+    del t58, t84
     t89 = t32 * c_phi - t1 * t38
+    del c_phi
     t90 = c23A * t89 - t1 * t68
+    del t68
     t91 = t1 * t31 + t32 * t26
+    del t26, t32
     outer_25 = s1 * t50 - c1 * t39
+    del t39, t50
     t92 = s1 * t60 / 2.0
+    del t60
     t93 = s1 * t59 / 2.0 - t92
+    del t59
     outer_24 = c1 * t63 - s1 * t66 + t67 * (c1 * t31 - s1 * t69) / t70
+    del t31, t63, t66, t69
     t94 = inner_52 * outer_25 - (t93 + t74 * outer_24) + t49
     t95 = t92 + inner_43 * outer_24 + inner_53 * outer_25
     t96 = -(t93 - inner_44 * outer_24 + t85 * outer_25)
+    del t93
     t97 = 0.0 + t49
     t98 = outer_33 / 2.0
+    del outer_33
     t99 = outer_32 / 2.0 + t98
+    del outer_32
     t100 = c23A * c_psi
+    del c_psi
     t101 = c23A * t65 + s23A * t64 - t67 * (t100 - s23A * t38) / t70
+    del c23A, t38, t64, t65, t67, t70
     outer_35 = s23A * t37
     t102 = t98 - inner_43 * t101 + inner_53 * outer_35 + t49
     return (
@@ -626,36 +769,52 @@ def _determinant(
     t5 = s3L_half * s3R_half
     t6 = t4 + t5
     t7 = s3L_half * c3R_half
+    del c3R_half, s3L_half
     t8 = c3L_half * s3R_half
+    del c3L_half, s3R_half
     t9 = t7 - t8
     t10 = c2R_half * t6 + s2R_half * t9
     t11 = s2R_half * t6 - c2R_half * t9
+    del t6, t9
     t12 = c2L_half * t10 + s2L_half * t11
     side23A = _runtime.select(0.0 <= t12, 1.0, -1.0)
     t13 = t1 - t2
+    del t1, t2
     c2A = side2A * t13
     t14 = t4 - t5
+    del t4, t5
     t15 = t7 + t8
+    del t7, t8
     t16 = c2R_half * t14 - s2R_half * t15
     t17 = s2R_half * t14 + c2R_half * t15
+    del t14, t15
     t18 = c2L_half * t16 - s2L_half * t17
     c23A = side23A * t18
     t19 = s2L_half * c2R_half
+    del c2R_half
     t20 = c2L_half * s2R_half
+    del s2R_half
     t21 = t19 + t20
     s2A = side2A * t21
     t22 = s2L_half * t16 + c2L_half * t17
+    del t16, t17
     s23A = side23A * t22
     t23 = c2A * c23A + s2A * s23A
     t24 = s2A * c23A - c2A * s23A
+    del s2A
     t25 = t3 * side2A * t12 * side23A * (L1 * L1) * (L2 * t23 + a3 * t24)
+    del side23A, side2A, t12, t3
     t26 = d * d
     t27 = s2L_half * t10 - c2L_half * t11
+    del c2L_half, s2L_half, t10, t11
     t28 = L1 * (t19 - t20)
+    del t19, t20
     t29 = t27 * (L2 * t22 + a3 * t18) + t13 * t28
+    del t13
     rise = np.sqrt(t26 + t29 * t29)
     c_phi = d / rise
     t30 = t27 * (L2 * t18 - a3 * t22) - t21 * t28
+    del t18, t21, t22, t27, t28
     base = np.sqrt(t26 + t30 * t30)
     c_psi = d / base
     t31 = base - (gs - al)
@@ -663,16 +822,24 @@ def _determinant(
     t33 = t32 - base
     wrist = np.sqrt(np.maximum(t31, 0.0)) * np.sqrt(np.maximum(t33, 0.0))
     t34 = loff + lp * c + wrist
+    del c, wrist
     t35 = L2 + c_psi * t34
     t36 = a3 + lp * s * c_phi + t30 / base * (t29 / rise) * t34
+    del base, rise, s, t29, t30, t34
     t37 = t25 * (c_phi * c_phi) * (c_psi * c_psi) * (t23 * t35 + t24 * t36)
+    del c_phi, c_psi, t23, t24, t25
     t38 = t37 * (L1 * c2A + c23A * t36 + s23A * t35) / (t26 * 4.0)
+    del c23A, c2A, s23A, t26, t35, t36, t37
     t39 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t40 = t39 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t39
     t41 = t40 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t40
     t42 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     t43 = -(_runtime.FEASIBILITY * t32)
+    del t32
     failed = np.logical_not(t41 & (0.0 <= lp) & t42) | np.logical_not((t43 <= t33) & (t43 <= t31))
+    del t31, t33, t41, t42, t43
     return (
         -t38 + _runtime.poison(failed),
     )
@@ -712,52 +879,78 @@ def _singularities(
     t3 = t1 + t2
     side2A = _runtime.select(0.0 <= t3, 1.0, -1.0)
     t4 = t1 - t2
+    del t1, t2
     c2A = side2A * t4
     t5 = c3L_half * c3R_half
     t6 = s3L_half * s3R_half
     t7 = t5 + t6
     t8 = s3L_half * c3R_half
+    del c3R_half, s3L_half
     t9 = c3L_half * s3R_half
+    del c3L_half, s3R_half
     t10 = t8 - t9
     t11 = c2R_half * t7 + s2R_half * t10
     t12 = s2R_half * t7 - c2R_half * t10
+    del t10, t7
     t13 = c2L_half * t11 + s2L_half * t12
     side23A = _runtime.select(0.0 <= t13, 1.0, -1.0)
     t14 = t5 - t6
+    del t5, t6
     t15 = t8 + t9
+    del t8, t9
     t16 = c2R_half * t14 - s2R_half * t15
     t17 = s2R_half * t14 + c2R_half * t15
+    del t14, t15
     t18 = c2L_half * t16 - s2L_half * t17
     c23A = side23A * t18
     t19 = d * d
     t20 = s2L_half * t11 - c2L_half * t12
+    del t11, t12
     t21 = s2L_half * t16 + c2L_half * t17
+    del t16, t17
     t22 = s2L_half * c2R_half
+    del c2R_half, s2L_half
     t23 = c2L_half * s2R_half
+    del c2L_half, s2R_half
     t24 = L1 * (t22 - t23)
     t25 = t20 * (L2 * t21 + a3 * t18) + t4 * t24
+    del t4
     rise = np.sqrt(t19 + t25 * t25)
     t26 = t22 + t23
+    del t22, t23
     t27 = t20 * (L2 * t18 - a3 * t21) - t26 * t24
+    del t18, t20, t24
     base = np.sqrt(t19 + t27 * t27)
+    del t19
     t28 = base - (gs - al)
     t29 = gs + al
     t30 = t29 - base
     wrist = np.sqrt(np.maximum(t28, 0.0)) * np.sqrt(np.maximum(t30, 0.0))
     t31 = loff + lp * c + wrist
+    del c
     t32 = a3 + lp * s * (d / rise) + t27 / base * (t25 / rise) * t31
+    del rise, s, t25, t27
     s23A = side23A * t21
+    del t21
     t33 = L2 + d / base * t31
+    del base, t31
     t34 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t35 = t34 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t34
     t36 = t35 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t35
     t37 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     t38 = -(_runtime.FEASIBILITY * t29)
+    del t29
     failed = np.logical_not(t36 & (0.0 <= lp) & t37) | np.logical_not((t38 <= t30) & (t38 <= t28))
+    del t28, t30, t36, t37, t38
     t39 = _runtime.poison(failed)
+    del failed
     s2A = side2A * t26
+    del t26
     t40 = c2A * c23A + s2A * s23A
     t41 = s2A * c23A - c2A * s23A
+    del s2A
     return (
         L1 * c2A + c23A * t32 + s23A * t33 + t39,
         t40 * t33 + t41 * t32 + t39,
@@ -803,29 +996,40 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t6 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t5, 0.0))
     t7 = 1.0 / c_psi
     t8 = loff + lp * c_pitch + t6 * t7
+    del t6
     t9 = s_psi * t8
     t10 = s_phi * t3 - c_phi * t9
     t11 = h + t10
     below = np.maximum(t11, 0.0)
     t12 = np.sqrt(below)
     t13 = h - t10
+    del t10
     above = np.maximum(t13, 0.0)
     t14 = np.sqrt(above)
     t15 = 2.0 * np.arctan2(t12, t14)
     t16 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t15))
     t17 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t17
     t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t18
     t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
     t21 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
     t22 = t19 & (0.0 <= loff) & (0.0 <= lp) & t20 & (np.abs(t21) <= _runtime.ROTATION)
+    del t19, t20, t21
     invalid = np.logical_not(t22)
+    del t22
     t23 = -(_runtime.FEASIBILITY * (d / 2.0))
     t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t5)
+    del t5
     t25 = -(_runtime.FEASIBILITY * t1)
+    del t1
     t26 = t24 & (t23 <= t4) & (t25 <= t11) & (t25 <= t13)
+    del t11, t13, t23, t24, t25, t4
     L_2W = L2 + c_psi * t8
+    del c_psi, t8
     a_3W = a3 + c_phi * t3 + s_phi * t9
+    del t3, t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
     t27 = L1 + fore
     t28 = 2.0 * fore
@@ -834,29 +1038,39 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t31 = z - d1
     t32 = t31 * t31
     t33 = 1.0 / h
+    del h
     t34 = 1.0 / (below + above)
     t35 = (below - above) * t34
+    del above, below
     t36 = y * t35
     s_turn = t34 * (2.0 * t12 * t14)
+    del t12, t14, t34
     t37 = x * s_turn
     c1 = _runtime.select(nowhere, 1.0, -(t33 * (t36 - t37)))
     t38 = x * t35
+    del t35
     t39 = y * s_turn
+    del s_turn
     s1 = _runtime.select(nowhere, 0.0, t33 * (t38 + t39))
     outward = x * c1 + y * s1
+    del c1, s1
     square = t32 + outward * outward
     t40 = t30 - square
     t41 = L1 / 8796093022208.0 + fore / 8796093022208.0
     t42 = L1 - fore
     t43 = _runtime.FEASIBILITY * (t27 * (t41 + 2.0 * np.abs(t42)))
+    del t41
     t44 = t42 * t42
     t45 = square - t44
+    del square
     t46 = t26 & (-t29 <= t40) & (-t43 <= t45)
     size = L1 + np.sqrt(L2 * L2 + a3 * a3)
     t47 = d * size
     short = L1 * fore <= _runtime.VANISHING * t30
     M = np.maximum(t45, 0.0)
+    del t45
     N = np.maximum(t40, 0.0)
+    del t40
     t48 = 1.0 / (M + N)
     c_bend = _runtime.select(short, 1.0, t48 * (M - N))
     t49 = _runtime.VANISHING * t27
@@ -865,12 +1079,15 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     c_lag = _runtime.select(bare, 1.0, a_3W * t50)
     t51 = c_bend * c_lag
     rN = np.sqrt(N)
+    del N
     rM = np.sqrt(M)
     s_bend_front_elbow_down = _runtime.select(short, 0.0, t48 * (2.0 * rN * rM))
     s_lag = _runtime.select(bare, 0.0, L_2W * t50)
+    del bare, t50
     t52 = s_bend_front_elbow_down * s_lag
     c_relative = t51 + t52
     t53 = c_bend * s_lag
+    del c_bend
     t54 = s_bend_front_elbow_down * c_lag
     s_relative = t53 - t54
     v_1 = L2 * c_relative - a3 * s_relative
@@ -878,37 +1095,51 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t55 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
     v_2 = L2 * s_relative + a3 * c_relative
     ahead = d * s_psi * t7
+    del s_psi, t7
     t56 = np.abs(t31)
     folded = t56 + np.abs(outward) <= t49
     t57 = t31 * fore
     t58 = t57 * s_bend_front_elbow_down
     ahead_1 = _runtime.select(short, t27, t42 + t28 * M * t48)
+    del M, t48
     t59 = outward * ahead_1
     t60 = t58 - t59
     t61 = fore * outward * s_bend_front_elbow_down
+    del outward, s_bend_front_elbow_down
     t62 = t31 * ahead_1
+    del ahead_1
     up = t61 + t62
     t63 = 1.0 / np.sqrt(t60 * t60 + up * up)
     ctheta2A = _runtime.select(folded, 1.0, -(t60 * t63))
     higher = d * s_phi / c_phi
+    del c_phi, s_phi
     stheta2A = _runtime.select(folded, 0.0, up * t63)
+    del t63
     p_1 = ahead * ctheta2A + higher * stheta2A
     t64 = ahead * stheta2A - higher * ctheta2A
+    del ctheta2A, stheta2A
     t65 = v_2 * p_1 + v_1 * t64
     t66 = _runtime.select(0.0 <= -t65, 1.0, -1.0)
     room_alpha = whole_alpha * t55 + t65 * t66
+    del t65, whole_alpha
     t67 = _runtime.VANISHING * t47
     spent_alpha = room_alpha <= t67
     t68 = size / 100000.0
     t69 = np.abs(L_2W * c_relative - a_3W * s_relative)
     t70 = 1.0 / (t68 + t69)
+    del t69
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
+    del c_relative, s_relative
     t71 = v_2 * t55 * drawn - t66 * (v_1 * p_1 - v_2 * t64)
+    del t55, t66
     t72 = _runtime.select(spent_alpha, t70 * (size * np.abs(t71)), 0.0)
     t73 = -(_runtime.FEASIBILITY * (t47 + t72)) <= room_alpha
+    del t72
     t74 = size * size * size * size / 10000000000.0
     t75 = t71 * (room_alpha - np.abs(room_alpha)) / (2.0 * (t74 + t71 * t71))
+    del room_alpha, t71
     turn_alpha = _runtime.select(spent_alpha, t75, 0.0)
+    del t75
     t76 = 1.0 / L1
     lean_alpha = _runtime.select(spent_alpha, turn_alpha - t76 * (drawn * turn_alpha), 0.0)
     p_1_alpha = _runtime.select(spent_alpha, p_1 - t64 * lean_alpha, p_1)
@@ -919,31 +1150,46 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     whole_beta = L1 * v_1_alpha
     t79 = _runtime.select(0.0 <= whole_beta, 1.0, -1.0)
     t80 = part_beta * t77 - whole_beta * t79
+    del part_beta, whole_beta
     spent_beta = -t80 <= t67
     v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t78, v_2)
+    del t78, v_1, v_2
     t81 = _runtime.select(spent_alpha, t64 + p_1 * lean_alpha, t64)
+    del p_1, spent_alpha, t64
     t82 = drawn * t79 * v_2_alpha - (L1 - drawn) * t77 * t81
+    del t77, t79
     t83 = _runtime.select(spent_beta, t70 * (size * np.abs(t82)), 0.0)
+    del t70
     t84 = -(_runtime.FEASIBILITY * (t47 + t83)) <= -t80
+    del t83
     t85 = np.abs(higher)
     t86 = np.abs(ahead)
     t87 = d + t85 + t86
     t88 = -(_runtime.FEASIBILITY * t87)
     t89 = t82 * (t80 + np.abs(t80)) / (2.0 * (t74 + t82 * t82))
+    del t80, t82
     turn_beta = _runtime.select(spent_beta, -t89, 0.0)
+    del t89
     lean_beta = _runtime.select(spent_beta, turn_beta - t76 * (drawn * turn_beta), 0.0)
+    del drawn
     t90 = turn_beta - lean_beta
     v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t90, v_1_alpha)
     sigma_uv = _runtime.select(0.0 <= -(L1 * v_1_beta), 1.0, -1.0)
     t91 = v_1_beta * sigma_uv
+    del v_1_beta
     p_1_beta = _runtime.select(spent_beta, p_1_alpha - t81 * lean_beta, p_1_alpha)
     t92 = sigma_uv * p_1_beta
+    del p_1_beta, sigma_uv
     t93 = t46 & t73 & t84 & (t88 <= -(t91 + np.abs(t92)))
+    del t73, t84
     t94 = _runtime.select(spent_beta, t81 + p_1_alpha * lean_beta, t81)
+    del p_1_alpha, t81
     v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t90, v_2_alpha)
+    del spent_beta, t90, v_1_alpha, v_2_alpha
     t95 = np.abs(v_2_beta)
     parallel = -t91 <= _runtime.VANISHING * (64.0 * t95)
     part_y = _runtime.select(parallel, _runtime.select(0.0 <= v_2_beta, -t94, t94), -t92)
+    del t92
     whole_y = _runtime.select(parallel, L1 + t95, -t91)
     t96 = t94 + v_2_beta * part_y / whole_y
     left_along = L1 - np.abs(t96)
@@ -951,220 +1197,352 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     spent_along = left_along <= t97
     t98 = L1 / 1000000000.0
     t99 = _runtime.select(spent_along, t95 / (t98 - t91), 0.0)
+    del t95
     t100 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t99)))
+    del t99
     t101 = v_2_beta * (left_along / 2.0 - np.abs(left_along) / 2.0)
     t102 = t101 / (t91 * t91 + v_2_beta * v_2_beta)
+    del t101, t91
     t103 = whole_y * _runtime.select(0.0 <= -t96, -t102, t102)
+    del t102, t96
     eased = _runtime.select(spent_along, part_y + t103, part_y)
+    del part_y, spent_along, t103
     t104 = whole_y - eased
     t105 = whole_y + eased
+    del eased, whole_y
     t106 = t93 & (t100 <= left_along) & (t88 <= t104) & (t88 <= t105)
+    del left_along, t100, t93
     t107 = _runtime.VANISHING * (d * 16.0 + t85 * 16.0 + 16.0 * t86)
+    del t85, t86
     t108 = _runtime.VANISHING * t107
+    del t107
     below_beta = np.maximum(t104, t108)
+    del t104
     above_beta = np.maximum(t105, t108)
+    del t105
     t109 = 1.0 / (below_beta + above_beta)
     t110 = (below_beta - above_beta) * t109
     t111 = t94 - v_2_beta * t110
+    del t94, v_2_beta
     t112 = L1 + t111
     t113 = L1 - t111
+    del t111
     unreachable = np.logical_not(t106 & (t88 <= t112) & (t88 <= t113))
+    del t106
     t114 = _runtime.poison(invalid | unreachable)
     t115 = _runtime.select(folded, 0.0, np.arctan2(up, -t60))
+    del t60, up
     t116 = np.arctan2(lean_alpha + lean_beta, 1.0)
+    del lean_alpha, lean_beta
     t117 = t115 + t116
+    del t115
     below_alpha = np.maximum(t112, t108)
+    del t112
     above_alpha = np.maximum(t113, t108)
+    del t113
     t118 = 1.0 / (below_alpha + above_alpha)
     t119 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     t120 = np.arctan2((below_alpha - above_alpha) * t118, t118 * t119)
+    del above_alpha, below_alpha, t118, t119
     t121 = _runtime.wrap_cut(_runtime.wrap(t117 - t120))
     t122 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    del above_beta, below_beta
     t123 = t120 - np.arctan2(t110, t109 * t122)
+    del t109, t110, t122
     t124 = _runtime.select(short, 0.0, 2.0 * np.arctan2(rN, rM))
+    del rM, rN
     t125 = np.arctan2(s_lag, c_lag)
     t126 = t125 + np.arctan2(turn_alpha + turn_beta, 1.0)
+    del turn_alpha, turn_beta
     t127 = t124 + t116 - t126
+    del t116, t126
     t128 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t123 - t127)))
     t129 = _runtime.wrap_cut(_runtime.wrap(t117 + t120))
+    del t117, t120
     t130 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(-(t127 + t123))))
+    del t123, t127
     t131 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    del c_pitch, s_pitch
     c_relative_front_elbow_down = t51 - t52
+    del t51, t52
     s_relative_front_elbow_down = t53 + t54
+    del t53, t54
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
     t132 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     out_front_elbow_down = t58 + t59
+    del t58, t59
     t133 = t61 - t62
+    del t61, t62
     t134 = out_front_elbow_down * out_front_elbow_down + t133 * t133
     t135 = 1.0 / np.sqrt(t134)
+    del t134
     ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down * t135)
     t136 = _runtime.select(folded, 0.0, t133 * t135)
+    del t135
     p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t136
     t137 = ahead * t136 + higher * ctheta2A_front_elbow_down
+    del ctheta2A_front_elbow_down, t136
     t138 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t137
     t139 = _runtime.select(0.0 <= -t138, 1.0, -1.0)
     room_alpha_front_elbow_down = whole_alpha_front_elbow_down * t132 + t138 * t139
+    del t138, whole_alpha_front_elbow_down
     spent_alpha_front_elbow_down = room_alpha_front_elbow_down <= t67
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
     t140 = 1.0 / (t68 + np.abs(tilt_front_elbow_down))
+    del tilt_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
+    del c_relative_front_elbow_down, s_relative_front_elbow_down
     t141 = v_2_front_elbow_down * t132 * drawn_front_elbow_down
+    del t132
     t142 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t137
     t143 = t141 - t139 * t142
+    del t139, t141, t142
     t144 = _runtime.select(spent_alpha_front_elbow_down, t140 * (size * np.abs(t143)), 0.0)
     t145 = -(_runtime.FEASIBILITY * (t47 + t144)) <= room_alpha_front_elbow_down
+    del t144
     t146 = room_alpha_front_elbow_down - np.abs(room_alpha_front_elbow_down)
+    del room_alpha_front_elbow_down
     turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t143 * t146 / (2.0 * (t74 + t143 * t143)), 0.0)
+    del t143, t146
     t147 = drawn_front_elbow_down * turn_alpha_front_elbow_down
     lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t76 * t147, 0.0)
+    del t147
     t148 = p_1_front_elbow_down + t137 * lean_alpha_front_elbow_down
     p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t148, p_1_front_elbow_down)
+    del t148
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
     t149 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
     t150 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
     t151 = v_1_front_elbow_down - v_2_front_elbow_down * t150
     v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t151, v_1_front_elbow_down)
+    del t151
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
     t152 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
     t153 = part_beta_front_elbow_down * t149 - whole_beta_front_elbow_down * t152
+    del part_beta_front_elbow_down, whole_beta_front_elbow_down
     spent_beta_front_elbow_down = -t153 <= t67
     t154 = v_2_front_elbow_down + v_1_front_elbow_down * t150
+    del t150, v_1_front_elbow_down
     v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t154, v_2_front_elbow_down)
+    del t154, v_2_front_elbow_down
     t155 = drawn_front_elbow_down * t152 * v_2_alpha_front_elbow_down
+    del t152
     t156 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    del p_1_front_elbow_down
     t157 = _runtime.select(spent_alpha_front_elbow_down, t137 - t156, t137)
+    del spent_alpha_front_elbow_down, t137, t156
     t158 = t155 + (L1 - drawn_front_elbow_down) * t149 * t157
+    del t149, t155
     t159 = _runtime.select(spent_beta_front_elbow_down, t140 * (size * np.abs(t158)), 0.0)
+    del t140
     t160 = -(_runtime.FEASIBILITY * (t47 + t159)) <= -t153
+    del t159
     t161 = t158 * (t153 + np.abs(t153)) / (2.0 * (t74 + t158 * t158))
+    del t153, t158
     turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t161, 0.0)
+    del t161
     t162 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    del drawn_front_elbow_down
     lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t76 * t162, 0.0)
+    del t162
     t163 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
     t164 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t163
     v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t164, v_1_alpha_front_elbow_down)
+    del t164
     sigma_uv_front_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_front_elbow_down), 1.0, -1.0)
     t165 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    del v_1_beta_front_elbow_down
     t166 = p_1_alpha_front_elbow_down + t157 * lean_beta_front_elbow_down
     p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t166, p_1_alpha_front_elbow_down)
+    del t166
     t167 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    del p_1_beta_front_elbow_down, sigma_uv_front_elbow_down
     t168 = t46 & t145 & t160 & (t88 <= -(t165 + np.abs(t167)))
+    del t145, t160, t46
     t169 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    del p_1_alpha_front_elbow_down
     p_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t157 - t169, t157)
+    del t157, t169
     t170 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t163
+    del t163, v_1_alpha_front_elbow_down
     v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t170, v_2_alpha_front_elbow_down)
+    del spent_beta_front_elbow_down, t170, v_2_alpha_front_elbow_down
     t171 = np.abs(v_2_beta_front_elbow_down)
     parallel_front_elbow_down = -t165 <= _runtime.VANISHING * (64.0 * t171)
     t172 = _runtime.select(0.0 <= v_2_beta_front_elbow_down, p_2_beta_front_elbow_down, -p_2_beta_front_elbow_down)
     part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, t172, -t167)
+    del t167, t172
     t173 = v_2_beta_front_elbow_down * part_y_front_elbow_down
     whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t171, -t165)
     rest_front_elbow_down = p_2_beta_front_elbow_down - t173 / whole_y_front_elbow_down
+    del t173
     left_along_front_elbow_down = L1 - np.abs(-rest_front_elbow_down)
     spent_along_front_elbow_down = left_along_front_elbow_down <= t97
     t174 = _runtime.select(spent_along_front_elbow_down, t171 / (t98 - t165), 0.0)
+    del t171
     t175 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t174)))
+    del t174
     t176 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
     t177 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
     t178 = v_2_beta_front_elbow_down * t176 / (t165 * t165 + t177)
+    del t165, t176, t177
     t179 = _runtime.select(0.0 <= rest_front_elbow_down, -t178, t178)
+    del rest_front_elbow_down, t178
     t180 = part_y_front_elbow_down + whole_y_front_elbow_down * t179
+    del t179
     eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, t180, part_y_front_elbow_down)
+    del part_y_front_elbow_down, spent_along_front_elbow_down, t180
     t181 = whole_y_front_elbow_down - eased_front_elbow_down
     t182 = t168 & (t175 <= left_along_front_elbow_down) & (t88 <= t181)
+    del left_along_front_elbow_down, t168, t175
     t183 = whole_y_front_elbow_down + eased_front_elbow_down
+    del eased_front_elbow_down, whole_y_front_elbow_down
     below_beta_front_elbow_down = np.maximum(t181, t108)
+    del t181
     above_beta_front_elbow_down = np.maximum(t183, t108)
     t184 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
     t185 = 1.0 / total_beta_front_elbow_down
+    del total_beta_front_elbow_down
     t186 = t184 * t185
+    del t184
     along_u_front_elbow_down = p_2_beta_front_elbow_down + v_2_beta_front_elbow_down * t186
+    del p_2_beta_front_elbow_down, v_2_beta_front_elbow_down
     t187 = L1 - along_u_front_elbow_down
     t188 = L1 + along_u_front_elbow_down
+    del along_u_front_elbow_down
     t189 = t182 & (t88 <= t183) & (t88 <= t187) & (t88 <= t188)
+    del t182, t183
     unreachable_2 = np.logical_not(t189)
+    del t189
     t190 = _runtime.poison(invalid | unreachable_2)
     t191 = _runtime.select(folded, 0.0, np.arctan2(-t133, out_front_elbow_down))
+    del out_front_elbow_down, t133
     t192 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
     t193 = np.arctan2(t192, 1.0)
+    del t192
     t194 = t191 + t193
+    del t191
     below_alpha_front_elbow_down = np.maximum(t187, t108)
+    del t187
     above_alpha_front_elbow_down = np.maximum(t188, t108)
+    del t188
     t195 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
     t196 = 1.0 / total_alpha_front_elbow_down
+    del total_alpha_front_elbow_down
     t197 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    del above_alpha_front_elbow_down, below_alpha_front_elbow_down
     t198 = np.arctan2(t195 * t196, t196 * t197)
+    del t195, t196, t197
     t199 = _runtime.wrap_cut(_runtime.wrap(t194 - t198))
     t200 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
     t201 = t124 + t125 - (t193 - np.arctan2(t200, 1.0))
+    del t124, t193, t200
     t202 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    del above_beta_front_elbow_down, below_beta_front_elbow_down
     t203 = t198 - np.arctan2(t186, t185 * t202)
+    del t185, t186, t202
     t204 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t201 + t203)))
     t205 = _runtime.wrap_cut(_runtime.wrap(t194 + t198))
+    del t194, t198
     t206 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t201 - t203)))
+    del t201, t203
     t207 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    del t15, t2
     c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -(t33 * (t36 + t37)))
+    del t36, t37
     s1_rear_elbow_up = _runtime.select(nowhere, 0.0, t33 * (t38 - t39))
+    del t33, t38, t39
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
+    del c1_rear_elbow_up, s1_rear_elbow_up
     t208 = outward_rear_elbow_up * outward_rear_elbow_up
     square_rear_elbow_up = t32 + t208
+    del t208, t32
     t209 = t30 - square_rear_elbow_up
+    del t30
     t210 = square_rear_elbow_up - t44
+    del square_rear_elbow_up, t44
     t211 = t26 & (-t29 <= t209) & (-t43 <= t210)
+    del t26, t29, t43
     M_rear_elbow_up = np.maximum(t210, 0.0)
+    del t210
     N_rear_elbow_up = np.maximum(t209, 0.0)
+    del t209
     t212 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
     c_bend_rear_elbow_up = _runtime.select(short, 1.0, t212 * (M_rear_elbow_up - N_rear_elbow_up))
     t213 = c_lag * c_bend_rear_elbow_up
     rN_rear_elbow_up = np.sqrt(N_rear_elbow_up)
+    del N_rear_elbow_up
     rM_rear_elbow_up = np.sqrt(M_rear_elbow_up)
     t214 = t212 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
     s_bend_rear_elbow_up = _runtime.select(short, 0.0, t214)
+    del t214
     t215 = s_lag * s_bend_rear_elbow_up
     c_relative_rear_elbow_up = t213 - t215
     t216 = s_lag * c_bend_rear_elbow_up
+    del c_bend_rear_elbow_up, s_lag
     t217 = c_lag * s_bend_rear_elbow_up
+    del c_lag
     s_relative_rear_elbow_up = t216 + t217
     v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
     whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
     t218 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
     v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
     folded_rear_elbow_up = t56 + np.abs(outward_rear_elbow_up) <= t49
+    del t49, t56
     t219 = t57 * s_bend_rear_elbow_up
+    del t57
     ahead_1_rear_elbow_up = _runtime.select(short, t27, t42 + t28 * M_rear_elbow_up * t212)
+    del M_rear_elbow_up, t212, t27, t28, t42
     t220 = outward_rear_elbow_up * ahead_1_rear_elbow_up
     out_rear_elbow_up = t219 + t220
     t221 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
+    del fore, outward_rear_elbow_up, s_bend_rear_elbow_up
     t222 = t31 * ahead_1_rear_elbow_up
+    del ahead_1_rear_elbow_up, t31
     t223 = t221 - t222
     t224 = out_rear_elbow_up * out_rear_elbow_up + t223 * t223
     t225 = 1.0 / np.sqrt(t224)
+    del t224
     ctheta2A_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, out_rear_elbow_up * t225)
     t226 = _runtime.select(folded_rear_elbow_up, 0.0, t223 * t225)
+    del t225
     p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up - higher * t226
     t227 = ahead * t226 + higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t226
     t228 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t227
     t229 = _runtime.select(0.0 <= -t228, 1.0, -1.0)
     room_alpha_rear_elbow_up = whole_alpha_rear_elbow_up * t218 + t228 * t229
+    del t228, whole_alpha_rear_elbow_up
     spent_alpha_rear_elbow_up = room_alpha_rear_elbow_up <= t67
     tilt_rear_elbow_up = L_2W * c_relative_rear_elbow_up - a_3W * s_relative_rear_elbow_up
     t230 = 1.0 / (t68 + np.abs(tilt_rear_elbow_up))
+    del tilt_rear_elbow_up
     drawn_rear_elbow_up = L1 + L_2W * s_relative_rear_elbow_up + a_3W * c_relative_rear_elbow_up
+    del c_relative_rear_elbow_up, s_relative_rear_elbow_up
     t231 = v_2_rear_elbow_up * t218 * drawn_rear_elbow_up
+    del t218
     t232 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t227
     t233 = t231 - t229 * t232
+    del t229, t231, t232
     t234 = _runtime.select(spent_alpha_rear_elbow_up, t230 * (size * np.abs(t233)), 0.0)
     t235 = -(_runtime.FEASIBILITY * (t47 + t234)) <= room_alpha_rear_elbow_up
+    del t234
     t236 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
+    del room_alpha_rear_elbow_up
     turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t233 * t236 / (2.0 * (t74 + t233 * t233)), 0.0)
+    del t233, t236
     t237 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
     lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t76 * t237, 0.0)
+    del t237
     t238 = p_1_rear_elbow_up + t227 * lean_alpha_rear_elbow_up
     p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t238, p_1_rear_elbow_up)
+    del t238
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
     t239 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
     t240 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
@@ -1172,206 +1550,340 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
     t241 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
     t242 = part_beta_rear_elbow_up * t239 - whole_beta_rear_elbow_up * t241
+    del part_beta_rear_elbow_up, whole_beta_rear_elbow_up
     spent_beta_rear_elbow_up = -t242 <= t67
     v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t240, v_2_rear_elbow_up)
+    del t240, v_1_rear_elbow_up, v_2_rear_elbow_up
     t243 = drawn_rear_elbow_up * t241 * v_2_alpha_rear_elbow_up
+    del t241
     t244 = t227 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    del p_1_rear_elbow_up
     t245 = _runtime.select(spent_alpha_rear_elbow_up, t244, t227)
+    del spent_alpha_rear_elbow_up, t227, t244
     t246 = t243 + (L1 - drawn_rear_elbow_up) * t239 * t245
+    del t239, t243
     t247 = _runtime.select(spent_beta_rear_elbow_up, t230 * (size * np.abs(t246)), 0.0)
+    del t230
     t248 = -(_runtime.FEASIBILITY * (t47 + t247)) <= -t242
+    del t247
     t249 = t246 * (t242 + np.abs(t242)) / (2.0 * (t74 + t246 * t246))
+    del t242, t246
     turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t249, 0.0)
+    del t249
     t250 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
+    del drawn_rear_elbow_up
     lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t76 * t250, 0.0)
+    del t250
     t251 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
     t252 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t251
     v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t252, v_1_alpha_rear_elbow_up)
+    del t252
     sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_up), 1.0, -1.0)
     t253 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    del v_1_beta_rear_elbow_up
     t254 = p_1_alpha_rear_elbow_up + t245 * lean_beta_rear_elbow_up
     p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t254, p_1_alpha_rear_elbow_up)
+    del t254
     t255 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    del p_1_beta_rear_elbow_up, sigma_uv_rear_elbow_up
     t256 = t211 & t235 & t248 & (t88 <= -(t253 + np.abs(t255)))
+    del t235, t248
     t257 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    del p_1_alpha_rear_elbow_up
     p_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t245 - t257, t245)
+    del t245, t257
     t258 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t251
+    del t251, v_1_alpha_rear_elbow_up
     v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t258, v_2_alpha_rear_elbow_up)
+    del spent_beta_rear_elbow_up, t258, v_2_alpha_rear_elbow_up
     t259 = np.abs(v_2_beta_rear_elbow_up)
     parallel_rear_elbow_up = -t253 <= _runtime.VANISHING * (64.0 * t259)
     t260 = _runtime.select(0.0 <= v_2_beta_rear_elbow_up, p_2_beta_rear_elbow_up, -p_2_beta_rear_elbow_up)
     part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, t260, -t255)
+    del t255, t260
     t261 = v_2_beta_rear_elbow_up * part_y_rear_elbow_up
     whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t259, -t253)
     rest_rear_elbow_up = p_2_beta_rear_elbow_up - t261 / whole_y_rear_elbow_up
+    del t261
     left_along_rear_elbow_up = L1 - np.abs(-rest_rear_elbow_up)
     spent_along_rear_elbow_up = left_along_rear_elbow_up <= t97
     t262 = _runtime.select(spent_along_rear_elbow_up, t259 / (t98 - t253), 0.0)
+    del t259
     t263 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t262)))
+    del t262
     t264 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
     t265 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
     t266 = v_2_beta_rear_elbow_up * t264 / (t253 * t253 + t265)
+    del t253, t264, t265
     t267 = _runtime.select(0.0 <= rest_rear_elbow_up, -t266, t266)
+    del rest_rear_elbow_up, t266
     t268 = part_y_rear_elbow_up + whole_y_rear_elbow_up * t267
+    del t267
     eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, t268, part_y_rear_elbow_up)
+    del part_y_rear_elbow_up, spent_along_rear_elbow_up, t268
     t269 = whole_y_rear_elbow_up - eased_rear_elbow_up
     t270 = t256 & (t263 <= left_along_rear_elbow_up) & (t88 <= t269)
+    del left_along_rear_elbow_up, t256, t263
     t271 = whole_y_rear_elbow_up + eased_rear_elbow_up
+    del eased_rear_elbow_up, whole_y_rear_elbow_up
     below_beta_rear_elbow_up = np.maximum(t269, t108)
+    del t269
     above_beta_rear_elbow_up = np.maximum(t271, t108)
     t272 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
     t273 = 1.0 / total_beta_rear_elbow_up
+    del total_beta_rear_elbow_up
     t274 = t272 * t273
+    del t272
     along_u_rear_elbow_up = p_2_beta_rear_elbow_up + v_2_beta_rear_elbow_up * t274
+    del p_2_beta_rear_elbow_up, v_2_beta_rear_elbow_up
     t275 = L1 - along_u_rear_elbow_up
     t276 = L1 + along_u_rear_elbow_up
+    del along_u_rear_elbow_up
     t277 = t270 & (t88 <= t271) & (t88 <= t275) & (t88 <= t276)
+    del t270, t271
     unreachable_3 = np.logical_not(t277)
+    del t277
     t278 = _runtime.poison(invalid | unreachable_3)
     t279 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t223, out_rear_elbow_up))
+    del out_rear_elbow_up, t223
     t280 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
     t281 = np.arctan2(t280, 1.0)
+    del t280
     t282 = t279 + t281
+    del t279
     below_alpha_rear_elbow_up = np.maximum(t275, t108)
+    del t275
     above_alpha_rear_elbow_up = np.maximum(t276, t108)
+    del t276
     t283 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
     t284 = 1.0 / total_alpha_rear_elbow_up
+    del total_alpha_rear_elbow_up
     t285 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
     t286 = np.arctan2(t283 * t284, t284 * t285)
+    del t283, t284, t285
     t287 = _runtime.wrap_cut(_runtime.wrap(t282 - t286))
     t288 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
+    del rM_rear_elbow_up, rN_rear_elbow_up
     t289 = _runtime.select(short, 0.0, 2.0 * t288)
+    del t288
     t290 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
     t291 = t125 - t281 + (t289 + np.arctan2(t290, 1.0))
+    del t281, t290
     t292 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
     t293 = t286 - np.arctan2(t274, t273 * t292)
+    del t273, t274, t292
     t294 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t291 + t293)))
     t295 = _runtime.wrap_cut(_runtime.wrap(t282 + t286))
+    del t282, t286
     t296 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t291 - t293)))
+    del t291, t293
     c_relative_rear_elbow_down = t213 + t215
+    del t213, t215
     s_relative_rear_elbow_down = t216 - t217
+    del t216, t217
     v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
     whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
     t297 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
     v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
     t298 = t219 - t220
+    del t219, t220
     up_rear_elbow_down = t221 + t222
+    del t221, t222
     t299 = t298 * t298 + up_rear_elbow_down * up_rear_elbow_down
     t300 = 1.0 / np.sqrt(t299)
+    del t299
     ctheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 1.0, -(t298 * t300))
     stheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 0.0, up_rear_elbow_down * t300)
+    del t300
     p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
     t301 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
+    del ahead, ctheta2A_rear_elbow_down, higher, stheta2A_rear_elbow_down
     t302 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t301
     t303 = _runtime.select(0.0 <= -t302, 1.0, -1.0)
     room_alpha_rear_elbow_down = whole_alpha_rear_elbow_down * t297 + t302 * t303
+    del t302, whole_alpha_rear_elbow_down
     spent_alpha_rear_elbow_down = room_alpha_rear_elbow_down <= t67
     tilt_rear_elbow_down = L_2W * c_relative_rear_elbow_down - a_3W * s_relative_rear_elbow_down
     t304 = 1.0 / (t68 + np.abs(tilt_rear_elbow_down))
+    del t68, tilt_rear_elbow_down
     drawn_rear_elbow_down = L1 + L_2W * s_relative_rear_elbow_down + a_3W * c_relative_rear_elbow_down
+    del L_2W, a_3W, c_relative_rear_elbow_down, s_relative_rear_elbow_down
     t305 = v_2_rear_elbow_down * t297 * drawn_rear_elbow_down
+    del t297
     t306 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t301
     t307 = t305 - t303 * t306
+    del t303, t305, t306
     t308 = _runtime.select(spent_alpha_rear_elbow_down, t304 * (size * np.abs(t307)), 0.0)
     t309 = -(_runtime.FEASIBILITY * (t47 + t308)) <= room_alpha_rear_elbow_down
+    del t308
     t310 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
+    del room_alpha_rear_elbow_down
     turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t307 * t310 / (2.0 * (t74 + t307 * t307)), 0.0)
+    del t307, t310
     t311 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
     lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t76 * t311, 0.0)
+    del t311
     t312 = p_1_rear_elbow_down - t301 * lean_alpha_rear_elbow_down
     p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t312, p_1_rear_elbow_down)
+    del t312
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
     t313 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
     t314 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
     t315 = v_1_rear_elbow_down - v_2_rear_elbow_down * t314
     v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t315, v_1_rear_elbow_down)
+    del t315
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
     t316 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
     t317 = part_beta_rear_elbow_down * t313 - whole_beta_rear_elbow_down * t316
+    del part_beta_rear_elbow_down, whole_beta_rear_elbow_down
     spent_beta_rear_elbow_down = -t317 <= t67
+    del t67
     t318 = v_2_rear_elbow_down + v_1_rear_elbow_down * t314
+    del t314, v_1_rear_elbow_down
     v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t318, v_2_rear_elbow_down)
+    del t318, v_2_rear_elbow_down
     t319 = drawn_rear_elbow_down * t316 * v_2_alpha_rear_elbow_down
+    del t316
     t320 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    del p_1_rear_elbow_down
     t321 = _runtime.select(spent_alpha_rear_elbow_down, t301 + t320, t301)
+    del spent_alpha_rear_elbow_down, t301, t320
     t322 = t319 - (L1 - drawn_rear_elbow_down) * t313 * t321
+    del t313, t319
     t323 = _runtime.select(spent_beta_rear_elbow_down, t304 * (size * np.abs(t322)), 0.0)
+    del size, t304
     t324 = -(_runtime.FEASIBILITY * (t47 + t323)) <= -t317
+    del t323, t47
     t325 = t322 * (t317 + np.abs(t317)) / (2.0 * (t74 + t322 * t322))
+    del t317, t322, t74
     turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t325, 0.0)
+    del t325
     t326 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
+    del drawn_rear_elbow_down
     lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t76 * t326, 0.0)
+    del t326, t76
     t327 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
     t328 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t327
     v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t328, v_1_alpha_rear_elbow_down)
+    del t328
     sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_down), 1.0, -1.0)
     t329 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    del v_1_beta_rear_elbow_down
     t330 = p_1_alpha_rear_elbow_down - t321 * lean_beta_rear_elbow_down
     p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t330, p_1_alpha_rear_elbow_down)
+    del t330
     t331 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    del p_1_beta_rear_elbow_down, sigma_uv_rear_elbow_down
     t332 = t211 & t309 & t324 & (t88 <= -(t329 + np.abs(t331)))
+    del t211, t309, t324
     t333 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    del p_1_alpha_rear_elbow_down
     t334 = _runtime.select(spent_beta_rear_elbow_down, t321 + t333, t321)
+    del t321, t333
     t335 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t327
+    del t327, v_1_alpha_rear_elbow_down
     v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t335, v_2_alpha_rear_elbow_down)
+    del spent_beta_rear_elbow_down, t335, v_2_alpha_rear_elbow_down
     t336 = np.abs(v_2_beta_rear_elbow_down)
     parallel_rear_elbow_down = -t329 <= _runtime.VANISHING * (64.0 * t336)
     t337 = _runtime.select(0.0 <= v_2_beta_rear_elbow_down, -t334, t334)
     part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t337, -t331)
+    del t331, t337
     t338 = v_2_beta_rear_elbow_down * part_y_rear_elbow_down
     whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t336, -t329)
     t339 = t334 + t338 / whole_y_rear_elbow_down
+    del t338
     left_along_rear_elbow_down = L1 - np.abs(t339)
     spent_along_rear_elbow_down = left_along_rear_elbow_down <= t97
+    del t97
     t340 = _runtime.select(spent_along_rear_elbow_down, t336 / (t98 - t329), 0.0)
+    del t336, t98
     t341 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t340)))
+    del t340, t87
     t342 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
     t343 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
     t344 = v_2_beta_rear_elbow_down * t342 / (t329 * t329 + t343)
+    del t329, t342, t343
     t345 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t339, -t344, t344)
+    del t339, t344
     eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t345, part_y_rear_elbow_down)
+    del part_y_rear_elbow_down, spent_along_rear_elbow_down, t345
     t346 = whole_y_rear_elbow_down - eased_rear_elbow_down
     t347 = t332 & (t341 <= left_along_rear_elbow_down) & (t88 <= t346)
+    del left_along_rear_elbow_down, t332, t341
     t348 = whole_y_rear_elbow_down + eased_rear_elbow_down
+    del eased_rear_elbow_down, whole_y_rear_elbow_down
     below_beta_rear_elbow_down = np.maximum(t346, t108)
+    del t346
     above_beta_rear_elbow_down = np.maximum(t348, t108)
     t349 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
     t350 = 1.0 / total_beta_rear_elbow_down
+    del total_beta_rear_elbow_down
     t351 = t349 * t350
+    del t349
     t352 = t334 - v_2_beta_rear_elbow_down * t351
+    del t334, v_2_beta_rear_elbow_down
     t353 = L1 + t352
     t354 = L1 - t352
+    del t352
     t355 = t347 & (t88 <= t348) & (t88 <= t353) & (t88 <= t354)
+    del t347, t348, t88
     unreachable_4 = np.logical_not(t355)
+    del t355
     t356 = _runtime.poison(invalid | unreachable_4)
     t357 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t298))
+    del t298, up_rear_elbow_down
     t358 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
     t359 = np.arctan2(t358, 1.0)
+    del t358
     t360 = t357 + t359
+    del t357
     below_alpha_rear_elbow_down = np.maximum(t353, t108)
+    del t353
     above_alpha_rear_elbow_down = np.maximum(t354, t108)
+    del t108, t354
     t361 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
     t362 = 1.0 / total_alpha_rear_elbow_down
+    del total_alpha_rear_elbow_down
     t363 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
     t364 = np.arctan2(t361 * t362, t362 * t363)
+    del t361, t362, t363
     t365 = _runtime.wrap_cut(_runtime.wrap(t360 - t364))
     t366 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
     t367 = t125 - t289 - (t359 - np.arctan2(t366, 1.0))
+    del t125, t289, t359, t366
     t368 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    del above_beta_rear_elbow_down, below_beta_rear_elbow_down
     t369 = t364 - np.arctan2(t351, t350 * t368)
+    del t350, t351, t368
     t370 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t367 + t369)))
     t371 = _runtime.wrap_cut(_runtime.wrap(t360 + t364))
+    del t360, t364
     t372 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t367 - t369)))
+    del t367, t369
     t373 = nowhere | folded | short
+    del folded
     t374 = _runtime.status(invalid, unreachable, t373 | parallel)
+    del parallel, unreachable
     t375 = _runtime.status(invalid, unreachable_2, t373 | parallel_front_elbow_down)
+    del parallel_front_elbow_down, t373, unreachable_2
     t376 = nowhere | folded_rear_elbow_up | short
+    del folded_rear_elbow_up, nowhere, short
     t377 = _runtime.status(invalid, unreachable_3, t376 | parallel_rear_elbow_up)
+    del parallel_rear_elbow_up, unreachable_3
     t378 = _runtime.status(invalid, unreachable_4, t376 | parallel_rear_elbow_down)
+    del invalid, parallel_rear_elbow_down, t376, unreachable_4
     return (
         t16 + t114,
         t121 + t114,
@@ -1443,9 +1955,12 @@ def _wrist_length(psi, phi, d, gs, al):
     t3 = np.sqrt(np.maximum(t1, 0.0)) * np.sqrt(np.maximum(t2, 0.0))
     t4 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t5 = t4 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
+    del t4
     t6 = -(_runtime.FEASIBILITY * (d / 2.0))
     t7 = (-_runtime.FEASIBILITY <= c_phi) & (t6 <= t2)
+    del c_phi, t2
     failed = np.logical_not(t5) | np.logical_not(t7 & (t6 <= t1))
+    del t1, t5, t6, t7
     return (
         t3 / c_psi + _runtime.poison(failed),
     )
@@ -1507,12 +2022,17 @@ def minimum_link_length(psi_max: ArrayLike, phi_max: ArrayLike, beta_min: ArrayL
 def _largest_yaw(phi, beta_min, d, gs, al):
     c_beta_min = np.cos(beta_min)
     span = gs + al * c_beta_min
+    del c_beta_min
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
+    del span
     t3 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t4 = t3 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(phi) & np.isfinite(beta_min))
+    del t3
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
+    del t1
     t5 = _runtime.poison(np.logical_not(t4) | unreachable)
+    del t4, unreachable
     return (
         _runtime.wrap_down(2.0 * t2) + t5,
     )
@@ -1542,12 +2062,17 @@ def largest_yaw(phi: ArrayLike, beta_min: ArrayLike, params: Parameters = _DEFAU
 def _largest_angle(beta_min, d, gs, al):
     c_beta_min = np.cos(beta_min)
     span = gs + al * c_beta_min
+    del c_beta_min
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
+    del span
     t3 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t4 = t3 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & np.isfinite(beta_min)
+    del t3
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
+    del t1
     t5 = _runtime.poison(np.logical_not(t4) | unreachable)
+    del t4, unreachable
     return (
         _runtime.wrap_down(2.0 * t2) + t5,
     )

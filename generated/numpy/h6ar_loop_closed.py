@@ -111,18 +111,24 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t7 = t5 - t6
     t8 = c2R_half * t4 + s2R_half * t7
     t9 = s2R_half * t4 - c2R_half * t7
+    del t4, t7
     t10 = s2L_half * t8 - c2L_half * t9
     t11 = t2 - t3
+    del t2, t3
     t12 = t5 + t6
+    del t5, t6
     t13 = c2R_half * t11 - s2R_half * t12
     t14 = s2R_half * t11 + c2R_half * t12
+    del t11, t12
     t15 = c2L_half * t13 - s2L_half * t14
     t16 = s2L_half * t13 + c2L_half * t14
+    del t13, t14
     t17 = L2 * t15 - a3 * t16
     t18 = s2L_half * c2R_half
     t19 = c2L_half * s2R_half
     t20 = t18 + t19
     t21 = L1 * (t18 - t19)
+    del t18, t19
     t22 = t10 * t17 - t20 * t21
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t23 = L1 + fore
@@ -131,92 +137,145 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     short_virtual = L1 * fore <= _runtime.VANISHING * (t23 * t23)
     t24 = s3R_half * c3R_half
     t25 = t24 + t24
+    del t24
     t26 = c3R_half * c3R_half - s3R_half * s3R_half
+    del c3R_half, s3R_half
     straight_right = L2 * t25 + a3 * t26
     t27 = 0.0 <= straight_right
     t28 = _runtime.select(t27, straight_right, -straight_right)
+    del straight_right
     large_right = fore + t28
+    del t28
     t29 = L2 * t26 - a3 * t25
+    del t25, t26
     small_right = t29 * t29 / large_right
     t30 = _runtime.select(t27, large_right, small_right)
     t31 = L1 * 2.0
     t32 = L2 * t16 + a3 * t15
+    del t15, t16
     t33 = c2L_half * c2R_half
     t34 = s2L_half * s2R_half
     t35 = t33 - t34
     t36 = t32 * t10 + t35 * t21
+    del t10, t21
     gap = t22 * t22 + t36 * t36
     t37 = s3L_half * c3L_half
     t38 = t37 + t37
+    del t37
     t39 = c3L_half * c3L_half - s3L_half * s3L_half
+    del c3L_half, s3L_half
     straight_left = L2 * t38 + a3 * t39
     t40 = 0.0 <= straight_left
     t41 = _runtime.select(t40, straight_left, -straight_left)
+    del straight_left
     large_left = fore + t41
+    del t41
     t42 = L2 * t39 - a3 * t38
+    del t38, t39
     small_left = t42 * t42 / large_left
+    del t42
     M_left = _runtime.select(t40, large_left, small_left) * t31
     t43 = t30 * t31 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t30
     M_virtual = np.maximum(t43, 0.0)
     N_left = _runtime.select(t40, small_left, large_left) * t31
+    del large_left, small_left, t40
     t44 = _runtime.select(t27, small_right, large_right)
+    del large_right, small_right, t27
     t45 = gap + N_left / 2.0 + t44 * t31 / 2.0
+    del N_left, t31, t44
     N_virtual = np.maximum(t45, 0.0)
     whole_virtual = M_virtual + N_virtual
     c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
+    del bare_virtual
     t46 = 2.0 * _runtime.select(0.0 <= -t29, 1.0, -1.0)
+    del t29
     t47 = t46 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    del N_virtual, t46
     s_bend_virtual = _runtime.select(short_virtual, 0.0, t47 / whole_virtual)
+    del t47
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     t48 = c2L_half * t8 + s2L_half * t9
+    del c2L_half, s2L_half, t8, t9
     t49 = L1 * (t33 + t34)
+    del t33, t34
     t50 = t48 * t17 - t20 * t49
+    del t17, t20
     r_I = t32 * t48 + t35 * t49
+    del t32, t35, t48, t49
     t51 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
     folded_virtual = np.abs(-t50) + np.abs(r_I) <= t51
+    del t51
     t52 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    del M_virtual, whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t23, t52)
+    del short_virtual, t52
     t53 = fore * s_bend_virtual
+    del fore
     out_virtual = r_I * ahead_1_virtual - t50 * t53
     t54 = t50 * ahead_1_virtual + r_I * t53
+    del ahead_1_virtual, r_I, t50, t53
     norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
     ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
+    del out_virtual
     t55 = s2R_half * c2R_half
+    del c2R_half, s2R_half
     stheta2A = _runtime.select(folded_virtual, t55 + t55, -(t54 / norm_virtual))
+    del folded_virtual, norm_virtual, t54, t55
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
+    del c_relative_virtual, s_relative_virtual
     t56 = t22 * ctheta23A + t36 * stheta23A
     t57 = d * d
     tilted = np.sqrt(t57 + t56 * t56)
     t58 = t56 / tilted
+    del t56
     c_phi = d / tilted
     base = np.sqrt(t57 + gap)
+    del gap, t57
     t59 = (t22 * stheta23A - t36 * ctheta23A) / base
+    del t22, t36
     t60 = base - (gs - al)
     t61 = gs + al
     t62 = t61 - base
     wrist = np.sqrt(np.maximum(t60, 0.0)) * np.sqrt(np.maximum(t62, 0.0))
     t63 = loff + lp * c + wrist
+    del wrist
     t64 = t59 * t63
     t65 = t1 * t58 + c_phi * t64
     t66 = a3 + t1 * c_phi - t58 * t64
+    del t1, t64
     c_psi = tilted / base
+    del base, tilted
     t67 = L2 + t63 * c_psi
+    del t63
     t68 = L1 * ctheta2A + ctheta23A * t66 + stheta23A * t67
+    del ctheta2A
     t69 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t70 = t69 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t69
     t71 = t70 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t70
     t72 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     invalid = np.logical_not(t71 & (0.0 <= loff) & (0.0 <= lp) & t72)
+    del t71, t72
     t73 = -(_runtime.FEASIBILITY * (d * t23))
+    del t23
     t74 = -(_runtime.FEASIBILITY * t61)
+    del t61
     t75 = (t73 <= t45) & (t73 <= t43) & (t74 <= t62) & (t74 <= t60)
+    del t43, t45, t60, t62, t73, t74
     t76 = _runtime.poison(invalid | np.logical_not(t75))
+    del invalid, t75
     t77 = d1 + L1 * stheta2A - ctheta23A * t67 + stheta23A * t66
+    del ctheta23A, stheta23A, stheta2A, t66, t67
     t78 = _runtime.wrap_cut(np.arctan2(-t59, c_psi)) + t76
+    del c_psi, t59
     t79 = _runtime.wrap_cut(-np.arctan2(-t58, c_phi)) + t76
+    del c_phi, t58
     return (
         s1 * t65 + c1 * t68 + t76,
         s1 * t68 - c1 * t65 + t76,
@@ -269,13 +328,18 @@ def _pose(
     t6 = t4 - t5
     t7 = c2R_half * t3 + s2R_half * t6
     t8 = s2R_half * t3 - c2R_half * t6
+    del t3, t6
     t9 = c2L_half * t7 + s2L_half * t8
     t10 = t1 - t2
+    del t1, t2
     t11 = t4 + t5
+    del t4, t5
     t12 = c2R_half * t10 - s2R_half * t11
     t13 = s2R_half * t10 + c2R_half * t11
+    del t10, t11
     t14 = c2L_half * t12 - s2L_half * t13
     t15 = s2L_half * t12 + c2L_half * t13
+    del t12, t13
     t16 = L2 * t14 - a3 * t15
     t17 = s2L_half * c2R_half
     t18 = c2L_half * s2R_half
@@ -285,93 +349,140 @@ def _pose(
     t22 = L1 * (t20 + t21)
     t23 = t9 * t16 - t19 * t22
     t24 = L2 * t15 + a3 * t14
+    del t14, t15
     t25 = t20 - t21
+    del t20, t21
     r_I = t24 * t9 + t25 * t22
+    del t22, t9
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t26 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
     folded_virtual = np.abs(-t23) + np.abs(r_I) <= t26
+    del t26
     t27 = L1 + fore
     short_virtual = L1 * fore <= _runtime.VANISHING * (t27 * t27)
     t28 = s3R_half * c3R_half
     t29 = t28 + t28
+    del t28
     t30 = c3R_half * c3R_half - s3R_half * s3R_half
+    del c3R_half, s3R_half
     straight_right = L2 * t29 + a3 * t30
     t31 = 0.0 <= straight_right
     t32 = _runtime.select(t31, straight_right, -straight_right)
+    del straight_right
     large_right = fore + t32
+    del t32
     t33 = L2 * t30 - a3 * t29
+    del t29, t30
     small_right = t33 * t33 / large_right
     t34 = _runtime.select(t31, large_right, small_right)
     t35 = L1 * 2.0
     t36 = s2L_half * t7 - c2L_half * t8
+    del c2L_half, s2L_half, t7, t8
     t37 = L1 * (t17 - t18)
+    del t17, t18
     t38 = t36 * t16 - t19 * t37
+    del t16, t19
     t39 = t24 * t36 + t25 * t37
+    del t24, t25, t36, t37
     gap = t38 * t38 + t39 * t39
     t40 = s3L_half * c3L_half
     t41 = t40 + t40
+    del t40
     t42 = c3L_half * c3L_half - s3L_half * s3L_half
+    del c3L_half, s3L_half
     straight_left = L2 * t41 + a3 * t42
     t43 = 0.0 <= straight_left
     t44 = _runtime.select(t43, straight_left, -straight_left)
+    del straight_left
     large_left = fore + t44
+    del t44
     t45 = L2 * t42 - a3 * t41
+    del t41, t42
     small_left = t45 * t45 / large_left
+    del t45
     M_left = _runtime.select(t43, large_left, small_left) * t35
     t46 = t34 * t35 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t34
     M_virtual = np.maximum(t46, 0.0)
     N_left = _runtime.select(t43, small_left, large_left) * t35
+    del large_left, small_left, t43
     t47 = _runtime.select(t31, small_right, large_right)
+    del large_right, small_right, t31
     t48 = gap + N_left / 2.0 + t47 * t35 / 2.0
+    del N_left, t35, t47
     N_virtual = np.maximum(t48, 0.0)
     whole_virtual = M_virtual + N_virtual
     t49 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t27, t49)
+    del t49
     t50 = 2.0 * _runtime.select(0.0 <= -t33, 1.0, -1.0)
+    del t33
     t51 = t50 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    del t50
     s_bend_virtual = _runtime.select(short_virtual, 0.0, t51 / whole_virtual)
+    del t51
     t52 = fore * s_bend_virtual
     out_virtual = r_I * ahead_1_virtual - t23 * t52
     t53 = t23 * ahead_1_virtual + r_I * t52
+    del ahead_1_virtual, r_I, t23, t52
     norm_virtual = np.sqrt(out_virtual * out_virtual + t53 * t53)
     ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
+    del out_virtual
     bare_virtual = fore <= t27 * _runtime.VANISHING
     c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
+    del M_virtual, N_virtual, short_virtual, whole_virtual
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
+    del bare_virtual, fore
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     t54 = s2R_half * c2R_half
+    del c2R_half, s2R_half
     stheta2A = _runtime.select(folded_virtual, t54 + t54, -(t53 / norm_virtual))
+    del folded_virtual, norm_virtual, t53, t54
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
     t55 = c1 * ctheta23A
     t56 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
+    del c_relative_virtual, s_relative_virtual
     t57 = t38 * ctheta23A + t39 * stheta23A
     tilted = np.sqrt(t56 + t57 * t57)
     c_phi = d / tilted
     t58 = t57 / tilted
+    del t57
     base = np.sqrt(t56 + gap)
+    del gap, t56
     t59 = (t38 * stheta23A - t39 * ctheta23A) / base
+    del t38, t39
     t60 = t58 * t59
     hand_11 = c * c_phi + s * t60
     t61 = c_phi * t59
     hand_21 = c * t58 - s * t61
     t62 = c1 * stheta23A
     c_psi = tilted / base
+    del tilted
     t63 = s * c_psi
     t64 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t65 = t64 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t64
     t66 = t65 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t65
     t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     invalid = np.logical_not(t66 & (0.0 <= loff) & (0.0 <= lp) & t67)
+    del t66, t67
     t68 = -(_runtime.FEASIBILITY * (d * t27))
+    del t27
     t69 = gs + al
     t70 = -(_runtime.FEASIBILITY * t69)
     t71 = t69 - base
+    del t69
     t72 = base - (gs - al)
+    del base
     t73 = (t68 <= t48) & (t68 <= t46) & (t70 <= t71) & (t70 <= t72)
+    del t46, t48, t68, t70
     t74 = _runtime.poison(invalid | np.logical_not(t73))
+    del invalid, t73
     t75 = t55 * hand_11 + s1 * hand_21 - t62 * t63 + t74
     t76 = t58 * c_psi
     hand_22 = c_phi * c_psi
@@ -380,20 +491,33 @@ def _pose(
     t78 = s * t58 + c * t61
     hand_33 = c * c_psi
     t79 = t55 * hand_13 + s1 * t78 + t62 * hand_33 + t74
+    del t55, t62
     t80 = lp * s
+    del s
     wrist = np.sqrt(np.maximum(t72, 0.0)) * np.sqrt(np.maximum(t71, 0.0))
+    del t71, t72
     t81 = loff + lp * c + wrist
+    del c, wrist
     t82 = t80 * t58 + t61 * t81
+    del t58, t61
     t83 = a3 + t80 * c_phi - t60 * t81
+    del c_phi, t60, t80
     t84 = L2 + c_psi * t81
+    del c_psi, t81
     t85 = L1 * ctheta2A + ctheta23A * t83 + stheta23A * t84
+    del ctheta2A
     t86 = s1 * ctheta23A
     t87 = s1 * stheta23A
     t88 = t86 * hand_11 - c1 * hand_21 - t87 * t63 + t74
+    del hand_21
     t89 = -(t86 * t76 + c1 * hand_22 + t87 * t59) + t74
+    del hand_22
     t90 = t86 * hand_13 - c1 * t78 + t87 * hand_33 + t74
+    del t78, t86, t87
     t91 = stheta23A * hand_13 - ctheta23A * hand_33 + t74
+    del hand_13, hand_33
     t92 = d1 + L1 * stheta2A - ctheta23A * t84 + stheta23A * t83
+    del stheta2A, t83, t84
     t93 = 0.0 + t74
     return (
         t75,
@@ -449,11 +573,15 @@ def _arm_tips(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2, a3, d1
     t1 = d * s1
     s2R3R = s2R * c3R + c2R * s3R
     c2R3R = c2R * c3R - s2R * s3R
+    del c3R, s3R
     t2 = L1 * c2R + L2 * s2R3R + a3 * c2R3R
+    del c2R
     t3 = d * c1
     s2L3L = s2L * c3L + c2L * s3L
     c2L3L = c2L * c3L - s2L * s3L
+    del c3L, s3L
     t4 = L1 * c2L + L2 * s2L3L + a3 * c2L3L
+    del c2L
     return (
         t1 + c1 * t2,
         s1 * t2 - t3,
@@ -495,20 +623,29 @@ def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2,
     t2 = s3L_half * s3R_half
     t3 = t1 - t2
     t4 = s3L_half * c3R_half
+    del c3R_half, s3L_half
     t5 = c3L_half * s3R_half
+    del c3L_half, s3R_half
     t6 = t4 + t5
     t7 = c2R_half * t3 - s2R_half * t6
     t8 = s2R_half * t3 + c2R_half * t6
+    del t3, t6
     t9 = s2L_half * t7 + c2L_half * t8
     t10 = c2L_half * t7 - s2L_half * t8
+    del t7, t8
     t11 = t1 + t2
+    del t1, t2
     t12 = t4 - t5
+    del t4, t5
     t13 = c2L_half * (c2R_half * t11 + s2R_half * t12) + s2L_half * (s2R_half * t11 - c2R_half * t12)
+    del t11, t12
     t14 = c2L_half * c2R_half
     t15 = s2L_half * s2R_half
     t16 = L1 * (t14 + t15)
     t17 = (L2 * t9 + a3 * t10) * t13 + (t14 - t15) * t16
+    del t14, t15
     t18 = (s2L_half * c2R_half + c2L_half * s2R_half) * t16
+    del c2L_half, c2R_half, s2L_half, s2R_half, t16
     return (
         c1 * t17,
         s1 * t17,
@@ -547,6 +684,7 @@ def _jacobian(
     s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     t1 = lp * s
+    del s
     t2 = c3R_half * c3L_half
     t3 = s3R_half * s3L_half
     t4 = t2 + t3
@@ -555,18 +693,24 @@ def _jacobian(
     t7 = t5 - t6
     t8 = c2R_half * t4 + s2R_half * t7
     t9 = s2R_half * t4 - c2R_half * t7
+    del t4, t7
     t10 = s2L_half * t8 - c2L_half * t9
     t11 = t2 - t3
+    del t2, t3
     t12 = t5 + t6
+    del t5, t6
     t13 = c2R_half * t11 - s2R_half * t12
     t14 = s2R_half * t11 + c2R_half * t12
+    del t11, t12
     t15 = c2L_half * t13 - s2L_half * t14
     t16 = s2L_half * t13 + c2L_half * t14
+    del t13, t14
     t17 = L2 * t15 - a3 * t16
     t18 = s2L_half * c2R_half
     t19 = c2L_half * s2R_half
     t20 = t18 + t19
     t21 = L1 * (t18 - t19)
+    del t18, t19
     t22 = t10 * t17 - t20 * t21
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t23 = L1 + fore
@@ -575,64 +719,98 @@ def _jacobian(
     short_virtual = L1 * fore <= _runtime.VANISHING * (t23 * t23)
     t24 = s3R_half * c3R_half
     t25 = t24 + t24
+    del t24
     t26 = c3R_half * c3R_half - s3R_half * s3R_half
+    del c3R_half, s3R_half
     straight_right = L2 * t25 + a3 * t26
     t27 = 0.0 <= straight_right
     t28 = _runtime.select(t27, straight_right, -straight_right)
+    del straight_right
     large_right = fore + t28
+    del t28
     t29 = L2 * t26 - a3 * t25
     small_right = t29 * t29 / large_right
     t30 = _runtime.select(t27, large_right, small_right)
     t31 = L1 * 2.0
     t32 = L2 * t16 + a3 * t15
+    del t15, t16
     t33 = c2L_half * c2R_half
     t34 = s2L_half * s2R_half
     t35 = t33 - t34
     t36 = t32 * t10 + t35 * t21
+    del t10, t21
     gap = t22 * t22 + t36 * t36
     t37 = s3L_half * c3L_half
     t38 = t37 + t37
+    del t37
     t39 = c3L_half * c3L_half - s3L_half * s3L_half
+    del c3L_half, s3L_half
     straight_left = L2 * t38 + a3 * t39
     t40 = 0.0 <= straight_left
     t41 = _runtime.select(t40, straight_left, -straight_left)
+    del straight_left
     large_left = fore + t41
+    del t41
     t42 = L2 * t39 - a3 * t38
     small_left = t42 * t42 / large_left
+    del t42
     M_left = _runtime.select(t40, large_left, small_left) * t31
     t43 = t30 * t31 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t30
     M_virtual = np.maximum(t43, 0.0)
     N_left = _runtime.select(t40, small_left, large_left) * t31
+    del large_left, small_left, t40
     t44 = _runtime.select(t27, small_right, large_right)
+    del large_right, small_right, t27
     t45 = gap + N_left / 2.0 + t44 * t31 / 2.0
+    del N_left, t31, t44
     N_virtual = np.maximum(t45, 0.0)
     whole_virtual = M_virtual + N_virtual
     c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
+    del bare_virtual
     t46 = 2.0 * _runtime.select(0.0 <= -t29, 1.0, -1.0)
+    del t29
     t47 = t46 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    del N_virtual, t46
     s_bend_virtual = _runtime.select(short_virtual, 0.0, t47 / whole_virtual)
+    del t47
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     t48 = c2L_half * t8 + s2L_half * t9
+    del t8, t9
     t49 = L1 * (t33 + t34)
+    del t33, t34
     t50 = t48 * t17 - t20 * t49
+    del t17, t20
     r_I = t32 * t48 + t35 * t49
+    del t32, t35, t48, t49
     t51 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
     folded_virtual = np.abs(-t50) + np.abs(r_I) <= t51
+    del t51
     t52 = c2R_half * c2R_half - s2R_half * s2R_half
     t53 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    del M_virtual, whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t23, t53)
+    del short_virtual, t53
     t54 = fore * s_bend_virtual
+    del fore
     out_virtual = r_I * ahead_1_virtual - t50 * t54
     t55 = t50 * ahead_1_virtual + r_I * t54
+    del ahead_1_virtual, r_I, t50, t54
     norm_virtual = np.sqrt(out_virtual * out_virtual + t55 * t55)
     ctheta2A = _runtime.select(folded_virtual, t52, out_virtual / norm_virtual)
+    del out_virtual
     t56 = s2R_half * c2R_half
+    del c2R_half, s2R_half
     t57 = t56 + t56
+    del t56
     stheta2A = _runtime.select(folded_virtual, t57, -(t55 / norm_virtual))
+    del folded_virtual, norm_virtual, t55
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
+    del c_relative_virtual, s_relative_virtual
     t58 = t22 * ctheta23A + t36 * stheta23A
     t59 = d * d
     t60 = t58 * t58
@@ -640,10 +818,13 @@ def _jacobian(
     t61 = t58 / tilted
     c_phi = d / tilted
     t62 = t22 * stheta23A - t36 * ctheta23A
+    del t22, t36
     base = np.sqrt(t59 + gap)
+    del gap
     t63 = t62 / base
     t64 = c_phi * t63
     t65 = lp * c
+    del c
     t66 = base - (gs - al)
     t67 = gs + al
     t68 = t67 - base
@@ -655,25 +836,36 @@ def _jacobian(
     t72 = t1 * c_phi - t69 * t71
     t73 = a3 + t72
     c_psi = tilted / base
+    del base
     t74 = t69 * c_psi
     t75 = L2 + t74
     outer_33 = ctheta23A * t73 + stheta23A * t75
     t76 = outer_32 + outer_33
     t77 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t78 = t77 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t77
     t79 = t78 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t78
     t80 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     t81 = -(_runtime.FEASIBILITY * (d * t23))
+    del t23
     t82 = -(_runtime.FEASIBILITY * t67)
+    del t67
     t83 = (t81 <= t45) & (t81 <= t43) & (t82 <= t68) & (t82 <= t66)
+    del t43, t45, t66, t68, t81, t82
     failed = np.logical_not(t79 & (0.0 <= lp) & t80) | np.logical_not(t83)
+    del t79, t80, t83
     t84 = _runtime.poison(failed)
+    del failed
     t85 = c_phi * t74
     t86 = t61 * t74
+    del t74
     t87 = t63 * t69
+    del t69
     t88 = ctheta23A * t86 + stheta23A * t87
     t89 = d * (gs - d / (c_phi * c_psi))
     t90 = t63 * t89
+    del t63
     t91 = stheta23A * c_psi
     t92 = t91 - ctheta23A * t71
     t93 = s1 * t64 + c1 * t92
@@ -682,85 +874,137 @@ def _jacobian(
     t96 = tilted * tilted
     t97 = 1.0 + t62 * t62 / t96
     t98 = t62 * t58 / (tilted * t96 * t97)
+    del t96
     c2R3R = t26 * t52 - t25 * t57
     s2R3R = t26 * t57 + t25 * t52
+    del t25, t26
     mid_13 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
     t99 = L1 * t57 / 2.0 - mid_13
+    del t57
     mid_23 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
+    del c2R3R, s2R3R
     mid_22 = L1 * t52 / 2.0 + mid_23
+    del t52
     t100 = L1 * stheta2A
     t101 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
     t102 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    del ctheta2A, stheta2A
     t103 = L1 * (t101 + t102)
+    del t101, t102
     t104 = (outer_32 * t99 - t100 * mid_22) / t103
     t105 = ctheta23A * t99 - stheta23A * mid_22 + t62 * t104
     turn_12 = 1.0 / (tilted * t97)
+    del t97, tilted
     t106 = ctheta23A * mid_22 + stheta23A * t99 - t58 * t104
     inner_42 = t98 * t105 - turn_12 * t106
+    del t106
     t107 = ctheta23A * t70
     t108 = t61 * t89
+    del t89
     t109 = c_phi * c_phi * wrist * c_psi
+    del wrist
     t110 = c1 * t107 - s1 * t72 - t93 * t108 / t109
+    del t93
     t111 = 1.0 / (d * (1.0 + t60 / t59))
+    del t59, t60
     inner_52 = t111 * t105
+    del t105
     t112 = c1 * t100
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
     t113 = L2 * ctheta23A - a3 * stheta23A
     rate_12 = (virtual_11 * t99 + t113 * mid_22) / t103
+    del mid_22, t99
     t114 = t95 * inner_42 + t110 * inner_52 + t112 * rate_12
     t115 = ctheta23A * t75 - stheta23A * t73
+    del t73, t75
     outer_13 = c1 * t115
     t116 = (mid_13 * virtual_11 - mid_23 * t113) / t103
     rate_23 = (mid_13 * outer_32 + mid_23 * t100) / t103
     line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t62 * rate_23
     t117 = mid_23 * ctheta23A - mid_13 * stheta23A + t58 * rate_23
+    del mid_13, mid_23
     t118 = t98 * line_13 + turn_12 * t117
+    del t117
     t119 = t111 * line_13
+    del line_13
     t120 = t112 * t116 + t118 * t95 + t119 * t110 + rate_23 * outer_13
     t121 = s2L_half * c2L_half
     t122 = t121 + t121
+    del t121
     t123 = c2L_half * c2L_half - s2L_half * s2L_half
+    del c2L_half, s2L_half
     c2L3L = t39 * t123 - t38 * t122
     s2L3L = t39 * t122 + t38 * t123
+    del t38, t39
     mid_15 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
     gap_14 = L1 * t122 / 2.0 - mid_15
+    del t122
     mid_25 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
+    del c2L3L, s2L3L
     mid_24 = L1 * t123 / 2.0 + mid_25
+    del t123
     t124 = (outer_32 * gap_14 - t100 * mid_24) / t103
     line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t62 * t124
     line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t58 * t124
     t125 = t98 * line_14 - turn_12 * line_24
+    del line_24
     t126 = t111 * line_14
+    del line_14
     rate_14 = (virtual_11 * gap_14 + t113 * mid_24) / t103
+    del gap_14, mid_24
     t127 = t95 * t125 + t110 * t126 - t112 * rate_14 - outer_13 * t124
     t128 = (mid_15 * virtual_11 - mid_25 * t113) / t103
+    del t113, virtual_11
     rate_25 = (mid_15 * outer_32 + mid_25 * t100) / t103
+    del t103
     t129 = mid_15 * ctheta23A + mid_25 * stheta23A - t62 * rate_25
+    del t62
     line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t58 * rate_25
+    del mid_15, mid_25, t58
     inner_45 = t98 * t129 + turn_12 * line_25
+    del line_25, t98, turn_12
     inner_55 = t111 * t129
+    del t111, t129
     t130 = t112 * t128 - inner_45 * t95 - inner_55 * t110
+    del t110, t112, t95
     t131 = t65 * t61 - t1 * t64
+    del t61
     t132 = t65 * c_phi + t1 * t71
+    del c_phi, t65
     t133 = t1 * t91 - ctheta23A * t132
+    del t91
     t134 = c1 * t64 - s1 * t92
+    del t64, t92
     outer_24 = c1 * t85 + s1 * t88 + t90 * t134 / t94
+    del t85, t88
     t135 = s1 * t107 + c1 * t72 + t108 * t134 / t109
+    del t107, t134, t72
     t136 = s1 * t100
+    del t100
     t137 = inner_42 * outer_24 - inner_52 * t135 - t136 * rate_12
     outer_23 = s1 * t115
+    del t115
     t138 = t116 * t136 - t118 * outer_24 + t119 * t135 + rate_23 * outer_23
     t139 = t125 * outer_24 - t126 * t135 + t136 * rate_14
     t140 = t128 * t136 + inner_45 * outer_24 - inner_55 * t135
+    del outer_24, t135, t136
     t141 = 0.0 + t84
     t142 = ctheta23A * c_psi
+    del c_psi
     t143 = t142 + stheta23A * t71
+    del t71
     t144 = stheta23A * t86 - ctheta23A * t87 + t90 * t143 / t94
+    del ctheta23A, t86, t87, t90, t94
     t145 = stheta23A * t70 + t108 * t143 / t109
+    del t108, t109, t143
     t146 = inner_42 * t144 - inner_52 * t145 + outer_32 * rate_12
+    del rate_12
     t147 = rate_23 * outer_33 - (outer_32 * t116 + t118 * t144 - t119 * t145)
+    del rate_23, t116
     t148 = t125 * t144 - t126 * t145 - outer_32 * rate_14
+    del rate_14
     t149 = outer_32 * t128 - inner_45 * t144 + inner_55 * t145
+    del outer_32, t128, t144, t145
     return (
         c1 * t70 - s1 * t76 + t84,
         -(t114 + t104 * outer_13) + t84,
@@ -837,124 +1081,183 @@ def _determinant(
     s, c = _runtime.sincos(theta)
     t1 = s2L_half * c2L_half
     t2 = t1 + t1
+    del t1
     t3 = c3L_half * c3L_half - s3L_half * s3L_half
     t4 = s3L_half * c3L_half
     t5 = t4 + t4
+    del t4
     t6 = c2L_half * c2L_half - s2L_half * s2L_half
     s2L3L = t3 * t2 + t5 * t6
     c2L3L = t3 * t6 - t5 * t2
     t7 = L2 * (t2 * s2L3L + t6 * c2L3L) + a3 * (t2 * c2L3L - t6 * s2L3L)
+    del c2L3L, s2L3L, t2, t6
     t8 = s2R_half * c2R_half
     t9 = t8 + t8
+    del t8
     t10 = c3R_half * c3R_half - s3R_half * s3R_half
     t11 = s3R_half * c3R_half
     t12 = t11 + t11
+    del t11
     t13 = c2R_half * c2R_half - s2R_half * s2R_half
     s2R3R = t10 * t9 + t12 * t13
     c2R3R = t10 * t13 - t12 * t9
     t14 = L2 * (t9 * s2R3R + t13 * c2R3R) + a3 * (t9 * c2R3R - t13 * s2R3R)
+    del c2R3R, s2R3R
     t15 = c3R_half * c3L_half
     t16 = s3R_half * s3L_half
     t17 = t15 + t16
     t18 = c3R_half * s3L_half
+    del c3R_half, s3L_half
     t19 = s3R_half * c3L_half
+    del c3L_half, s3R_half
     t20 = t18 - t19
     t21 = c2R_half * t17 + s2R_half * t20
     t22 = s2R_half * t17 - c2R_half * t20
+    del t17, t20
     t23 = c2L_half * t21 + s2L_half * t22
     t24 = t15 - t16
+    del t15, t16
     t25 = t18 + t19
+    del t18, t19
     t26 = c2R_half * t24 - s2R_half * t25
     t27 = s2R_half * t24 + c2R_half * t25
+    del t24, t25
     t28 = c2L_half * t26 - s2L_half * t27
     t29 = s2L_half * t26 + c2L_half * t27
+    del t26, t27
     t30 = L2 * t28 - a3 * t29
     t31 = s2L_half * c2R_half
     t32 = c2L_half * s2R_half
     t33 = t31 + t32
     t34 = c2L_half * c2R_half
+    del c2R_half
     t35 = s2L_half * s2R_half
+    del s2R_half
     t36 = L1 * (t34 + t35)
     t37 = t23 * t30 - t33 * t36
     t38 = L2 * t29 + a3 * t28
+    del t28, t29
     t39 = t34 - t35
+    del t34, t35
     r_I = t38 * t23 + t39 * t36
+    del t23, t36
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t40 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
     folded_virtual = np.abs(-t37) + np.abs(r_I) <= t40
+    del t40
     t41 = L1 + fore
     short_virtual = L1 * fore <= _runtime.VANISHING * (t41 * t41)
     straight_right = L2 * t12 + a3 * t10
     t42 = 0.0 <= straight_right
     t43 = _runtime.select(t42, straight_right, -straight_right)
+    del straight_right
     large_right = fore + t43
+    del t43
     t44 = L2 * t10 - a3 * t12
+    del t10, t12
     small_right = t44 * t44 / large_right
     t45 = _runtime.select(t42, large_right, small_right)
     t46 = L1 * 2.0
     t47 = s2L_half * t21 - c2L_half * t22
+    del c2L_half, s2L_half, t21, t22
     t48 = L1 * (t31 - t32)
+    del t31, t32
     t49 = t47 * t30 - t33 * t48
+    del t30, t33
     t50 = t38 * t47 + t39 * t48
+    del t38, t39, t47, t48
     gap = t49 * t49 + t50 * t50
     straight_left = L2 * t5 + a3 * t3
     t51 = 0.0 <= straight_left
     t52 = _runtime.select(t51, straight_left, -straight_left)
+    del straight_left
     large_left = fore + t52
+    del t52
     t53 = L2 * t3 - a3 * t5
+    del t3, t5
     small_left = t53 * t53 / large_left
+    del t53
     M_left = _runtime.select(t51, large_left, small_left) * t46
     t54 = t45 * t46 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t45
     M_virtual = np.maximum(t54, 0.0)
     N_left = _runtime.select(t51, small_left, large_left) * t46
+    del large_left, small_left, t51
     t55 = _runtime.select(t42, small_right, large_right)
+    del large_right, small_right, t42
     t56 = gap + N_left / 2.0 + t55 * t46 / 2.0
+    del N_left, t46, t55
     N_virtual = np.maximum(t56, 0.0)
     whole_virtual = M_virtual + N_virtual
     t57 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t41, t57)
+    del t57
     t58 = 2.0 * _runtime.select(0.0 <= -t44, 1.0, -1.0)
+    del t44
     t59 = t58 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    del t58
     s_bend_virtual = _runtime.select(short_virtual, 0.0, t59 / whole_virtual)
+    del t59
     t60 = fore * s_bend_virtual
     out_virtual = r_I * ahead_1_virtual - t37 * t60
     t61 = t37 * ahead_1_virtual + r_I * t60
+    del ahead_1_virtual, r_I, t37, t60
     norm_virtual = np.sqrt(out_virtual * out_virtual + t61 * t61)
     ctheta2A = _runtime.select(folded_virtual, t13, out_virtual / norm_virtual)
+    del out_virtual, t13
     bare_virtual = fore <= t41 * _runtime.VANISHING
     c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
+    del M_virtual, N_virtual, short_virtual, whole_virtual
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
+    del bare_virtual, fore
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     stheta2A = _runtime.select(folded_virtual, t9, -(t61 / norm_virtual))
+    del folded_virtual, norm_virtual, t61, t9
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
+    del c_relative_virtual, s_relative_virtual
     t62 = ctheta2A * ctheta23A + stheta2A * stheta23A
     t63 = d * d
     t64 = t49 * ctheta23A + t50 * stheta23A
     tilted = np.sqrt(t63 + t64 * t64)
     base = np.sqrt(t63 + gap)
+    del gap, t63
     t65 = base - (gs - al)
     t66 = gs + al
     t67 = t66 - base
     wrist = np.sqrt(np.maximum(t65, 0.0)) * np.sqrt(np.maximum(t67, 0.0))
     t68 = loff + lp * c + wrist
+    del c, wrist
     t69 = L2 + tilted / base * t68
     t70 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    del stheta2A
     t71 = t64 / tilted * t68 * ((t49 * stheta23A - t50 * ctheta23A) / base)
+    del t49, t50, t64, t68
     t72 = a3 + lp * s * (d / tilted) - t71
+    del s, t71
     t73 = d * (L1 * L1) * t7 * t14 * (t62 * t69 + t70 * t72)
+    del t14, t7
     t74 = L1 * ctheta2A + ctheta23A * t72 + stheta23A * t69
+    del ctheta23A, ctheta2A, stheta23A, t69, t72
     t75 = 4.0 * tilted * (L2 * t62 + a3 * t70) * (base * base)
+    del base, t62, t70, tilted
     t76 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t77 = t76 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t76
     t78 = t77 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t77
     t79 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     t80 = -(_runtime.FEASIBILITY * (d * t41))
+    del t41
     t81 = -(_runtime.FEASIBILITY * t66)
+    del t66
     t82 = (t80 <= t56) & (t80 <= t54) & (t81 <= t67) & (t81 <= t65)
+    del t54, t56, t65, t67, t80, t81
     failed = np.logical_not(t78 & (0.0 <= lp) & t79) | np.logical_not(t82)
+    del t78, t79, t82
     return (
         t73 * t74 / t75 + _runtime.poison(failed),
     )
@@ -1000,13 +1303,18 @@ def _singularities(
     t6 = t4 - t5
     t7 = c2R_half * t3 + s2R_half * t6
     t8 = s2R_half * t3 - c2R_half * t6
+    del t3, t6
     t9 = c2L_half * t7 + s2L_half * t8
     t10 = t1 - t2
+    del t1, t2
     t11 = t4 + t5
+    del t4, t5
     t12 = c2R_half * t10 - s2R_half * t11
     t13 = s2R_half * t10 + c2R_half * t11
+    del t10, t11
     t14 = c2L_half * t12 - s2L_half * t13
     t15 = s2L_half * t12 + c2L_half * t13
+    del t12, t13
     t16 = L2 * t14 - a3 * t15
     t17 = s2L_half * c2R_half
     t18 = c2L_half * s2R_half
@@ -1016,101 +1324,154 @@ def _singularities(
     t22 = L1 * (t20 + t21)
     t23 = t9 * t16 - t19 * t22
     t24 = L2 * t15 + a3 * t14
+    del t14, t15
     t25 = t20 - t21
+    del t20, t21
     r_I = t24 * t9 + t25 * t22
+    del t22, t9
     fore = np.sqrt(L2 * L2 + a3 * a3)
     t26 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
     folded_virtual = np.abs(-t23) + np.abs(r_I) <= t26
+    del t26
     t27 = c2R_half * c2R_half - s2R_half * s2R_half
     t28 = L1 + fore
     short_virtual = L1 * fore <= _runtime.VANISHING * (t28 * t28)
     t29 = s3R_half * c3R_half
     t30 = t29 + t29
+    del t29
     t31 = c3R_half * c3R_half - s3R_half * s3R_half
+    del c3R_half, s3R_half
     straight_right = L2 * t30 + a3 * t31
     t32 = 0.0 <= straight_right
     t33 = _runtime.select(t32, straight_right, -straight_right)
+    del straight_right
     large_right = fore + t33
+    del t33
     t34 = L2 * t31 - a3 * t30
     small_right = t34 * t34 / large_right
     t35 = _runtime.select(t32, large_right, small_right)
     t36 = L1 * 2.0
     t37 = s2L_half * t7 - c2L_half * t8
+    del t7, t8
     t38 = L1 * (t17 - t18)
+    del t17, t18
     t39 = t37 * t16 - t19 * t38
+    del t16, t19
     t40 = t24 * t37 + t25 * t38
+    del t24, t25, t37, t38
     gap = t39 * t39 + t40 * t40
     t41 = s3L_half * c3L_half
     t42 = t41 + t41
+    del t41
     t43 = c3L_half * c3L_half - s3L_half * s3L_half
+    del c3L_half, s3L_half
     straight_left = L2 * t42 + a3 * t43
     t44 = 0.0 <= straight_left
     t45 = _runtime.select(t44, straight_left, -straight_left)
+    del straight_left
     large_left = fore + t45
+    del t45
     t46 = L2 * t43 - a3 * t42
     small_left = t46 * t46 / large_left
+    del t46
     M_left = _runtime.select(t44, large_left, small_left) * t36
     t47 = t35 * t36 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t35
     M_virtual = np.maximum(t47, 0.0)
     N_left = _runtime.select(t44, small_left, large_left) * t36
+    del large_left, small_left, t44
     t48 = _runtime.select(t32, small_right, large_right)
+    del large_right, small_right, t32
     t49 = gap + N_left / 2.0 + t48 * t36 / 2.0
+    del N_left, t36, t48
     N_virtual = np.maximum(t49, 0.0)
     whole_virtual = M_virtual + N_virtual
     t50 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t28, t50)
+    del t50
     t51 = 2.0 * _runtime.select(0.0 <= -t34, 1.0, -1.0)
+    del t34
     t52 = t51 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
+    del t51
     s_bend_virtual = _runtime.select(short_virtual, 0.0, t52 / whole_virtual)
+    del t52
     t53 = fore * s_bend_virtual
     out_virtual = r_I * ahead_1_virtual - t23 * t53
     t54 = t23 * ahead_1_virtual + r_I * t53
+    del ahead_1_virtual, r_I, t23, t53
     norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
     ctheta2A = _runtime.select(folded_virtual, t27, out_virtual / norm_virtual)
+    del out_virtual
     bare_virtual = fore <= t28 * _runtime.VANISHING
     c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
     c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
+    del M_virtual, N_virtual, short_virtual, whole_virtual
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
+    del bare_virtual, fore
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     t55 = s2R_half * c2R_half
+    del c2R_half, s2R_half
     t56 = t55 + t55
+    del t55
     stheta2A = _runtime.select(folded_virtual, t56, -(t54 / norm_virtual))
+    del folded_virtual, norm_virtual, t54
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
     t57 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
+    del c_relative_virtual, s_relative_virtual
     t58 = t39 * ctheta23A + t40 * stheta23A
     tilted = np.sqrt(t57 + t58 * t58)
     base = np.sqrt(t57 + gap)
+    del gap, t57
     t59 = t58 / tilted * ((t39 * stheta23A - t40 * ctheta23A) / base)
+    del t39, t40, t58
     t60 = base - (gs - al)
     t61 = gs + al
     t62 = t61 - base
     wrist = np.sqrt(np.maximum(t60, 0.0)) * np.sqrt(np.maximum(t62, 0.0))
     t63 = loff + lp * c + wrist
+    del c
     t64 = a3 + lp * s * (d / tilted) - t59 * t63
+    del s, t59
     t65 = L2 + t63 * (tilted / base)
+    del base, t63, tilted
     t66 = L1 * ctheta2A + ctheta23A * t64 + stheta23A * t65
     t67 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t68 = t67 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t67
     t69 = t68 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t68
     t70 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     t71 = -(_runtime.FEASIBILITY * (d * t28))
+    del t28
     t72 = -(_runtime.FEASIBILITY * t61)
+    del t61
     t73 = (t71 <= t49) & (t71 <= t47) & (t72 <= t62) & (t72 <= t60)
+    del t47, t49, t60, t62, t71, t72
     failed = np.logical_not(t69 & (0.0 <= lp) & t70) | np.logical_not(t73)
+    del t69, t70, t73
     t74 = _runtime.poison(failed)
+    del failed
     t75 = ctheta2A * ctheta23A + stheta2A * stheta23A
     t76 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    del ctheta23A, ctheta2A, stheta23A, stheta2A
     s2R3R = t31 * t56 + t30 * t27
     c2R3R = t31 * t27 - t30 * t56
+    del t30, t31
     t77 = L2 * (t56 * s2R3R + t27 * c2R3R) + a3 * (t56 * c2R3R - t27 * s2R3R)
+    del c2R3R, s2R3R, t27, t56
     t78 = s2L_half * c2L_half
     t79 = t78 + t78
+    del t78
     t80 = c2L_half * c2L_half - s2L_half * s2L_half
+    del c2L_half, s2L_half
     s2L3L = t43 * t79 + t42 * t80
     c2L3L = t43 * t80 - t42 * t79
+    del t42, t43
     t81 = L2 * (t79 * s2L3L + t80 * c2L3L) + a3 * (t79 * c2L3L - t80 * s2L3L)
+    del c2L3L, s2L3L, t79, t80
     return (
         t66 + t74,
         t75 * t65 + t76 * t64 + t74,
@@ -1158,31 +1519,43 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t5 = 1.0 / t4
     t6 = d - (gs - al) * t4
     t7 = (gs + al) * t4 - d
+    del t4
     t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
     t9 = loff + lp * c_pitch + t5 * t8
+    del t8
     t10 = s_psi * t9
     t11 = s_phi * t3 - c_phi * t10
     t12 = h + t11
     below = np.maximum(t12, 0.0)
     t13 = np.sqrt(below)
     t14 = h - t11
+    del t11
     above = np.maximum(t14, 0.0)
     t15 = np.sqrt(above)
     t16 = 2.0 * np.arctan2(t13, t15)
     t17 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t16))
     t18 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t19 = t18 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t18
     t20 = t19 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t19
     t21 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
     t22 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
     t23 = t20 & (0.0 <= loff) & (0.0 <= lp) & t21 & (np.abs(t22) <= _runtime.ROTATION)
+    del t20, t21, t22
     invalid = np.logical_not(t23)
+    del t23
     t24 = -(_runtime.FEASIBILITY * (d / 2.0))
     t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t7)
+    del t7
     t26 = -(_runtime.FEASIBILITY * t1)
+    del t1
     t27 = t25 & (t24 <= t6) & (t26 <= t12) & (t26 <= t14)
+    del t12, t14, t24, t25, t26, t6
     L_2W = L2 + c_psi * t9
+    del c_psi, t9
     a_3W = a3 + c_phi * t3 + s_phi * t10
+    del t10, t3
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
     t28 = L1 + fore
     t29 = L1 * 2.0
@@ -1192,30 +1565,40 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t33 = z - d1
     t34 = t33 * t33
     t35 = 1.0 / h
+    del h
     t36 = 1.0 / (below + above)
     t37 = (below - above) * t36
+    del above, below
     t38 = y * t37
     s_turn = t36 * (2.0 * t13 * t15)
+    del t13, t15, t36
     t39 = x * s_turn
     c1 = _runtime.select(nowhere, 1.0, -(t35 * (t38 - t39)))
     t40 = x * t37
+    del t37
     t41 = y * s_turn
+    del s_turn
     s1 = _runtime.select(nowhere, 0.0, t35 * (t40 + t41))
     outward = x * c1 + y * s1
+    del c1, s1
     square = t34 + outward * outward
     t42 = t32 - square
     t43 = L1 / 8796093022208.0 + fore / 8796093022208.0
     t44 = L1 - fore
     t45 = _runtime.FEASIBILITY * (t28 * (t43 + 2.0 * np.abs(t44)))
+    del t43
     t46 = t44 * t44
     t47 = square - t46
+    del square
     t48 = t27 & (t31 <= t42) & (-t45 <= t47)
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
     t49 = d * size
     short = L1 * fore <= _runtime.VANISHING * t32
     N = np.maximum(t42, 0.0)
+    del t42
     M = np.maximum(t47, 0.0)
+    del t47
     t50 = 1.0 / (N + M)
     c_bend = _runtime.select(short, 1.0, -((N - M) * t50))
     t51 = _runtime.VANISHING * t28
@@ -1224,43 +1607,58 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     s_lag = _runtime.select(bare, 0.0, L_2W * t52)
     t53 = c_bend * s_lag
     s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t50 * (2.0 * np.sqrt(N) * np.sqrt(M)))
+    del N
     c_lag = _runtime.select(bare, 1.0, a_3W * t52)
+    del bare, t52
     t54 = s_bend_front_elbow_down_alike * c_lag
     s_relative = t53 - t54
     t55 = c_bend * c_lag
+    del c_bend
     t56 = s_lag * s_bend_front_elbow_down_alike
     c_relative = t55 + t56
     straight_mid = L2 * s_relative + a3 * c_relative
     t57 = 0.0 <= straight_mid
     t58 = L2 * c_relative - a3 * s_relative
     t59 = _runtime.select(t57, straight_mid, -straight_mid)
+    del straight_mid
     large_mid = fore_arm + t59
+    del t59
     small_mid = t58 * t58 / large_mid
     N_mid = t29 * _runtime.select(t57, small_mid, large_mid)
     t60 = 1.0 / c_phi
+    del c_phi
     t61 = np.abs(t33)
     folded = t61 + np.abs(outward) <= t51
     t62 = t33 * fore
     t63 = s_bend_front_elbow_down_alike * t62
     ahead_1 = _runtime.select(short, t28, t44 + t50 * (t30 * M))
+    del M, t50
     t64 = outward * ahead_1
     t65 = t63 - t64
     t66 = fore * outward * s_bend_front_elbow_down_alike
+    del outward, s_bend_front_elbow_down_alike
     t67 = t33 * ahead_1
+    del ahead_1
     up = t66 + t67
     t68 = 1.0 / np.sqrt(t65 * t65 + up * up)
     ctheta2A = _runtime.select(folded, 1.0, -(t65 * t68))
+    del t65
     stheta2A = _runtime.select(folded, 0.0, up * t68)
+    del t68, up
     ctheta23A = c_relative * ctheta2A - s_relative * stheta2A
     stheta23A = c_relative * stheta2A + s_relative * ctheta2A
     t69 = t60 * (s_phi * ctheta23A) - t5 * (s_psi * stheta23A)
     t70 = d * t69
+    del t69
     t71 = t5 * (s_psi * ctheta23A) + t60 * (s_phi * stheta23A)
     t72 = d * t71
+    del t71
     gap = t70 * t70 + t72 * t72
     t73 = N_mid - gap
+    del N_mid
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
+    del ctheta23A, stheta23A
     t74 = 2.0 * t70 * point_11 + 2.0 * t72 * point_21
     room_right = t73 + t74
     t75 = _runtime.VANISHING * t49
@@ -1268,542 +1666,879 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t76 = size / 100000.0
     t77 = np.abs(L_2W * c_relative - a_3W * s_relative)
     t78 = 1.0 / (t76 + t77)
+    del t77
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
+    del c_relative, s_relative
     t79 = 2.0 * drawn
     t80 = t72 - point_21
     t81 = t70 - point_11
     t82 = t79 * (ctheta2A * t80 - stheta2A * t81)
     t83 = _runtime.select(spent_right, t78 * (size * np.abs(-t82)), 0.0)
     t84 = -(_runtime.FEASIBILITY * (t49 + t83)) <= room_right
+    del t83
     room_left = t73 - t74
+    del t73
     spent_left = room_left <= t75
     h_left_0 = t72 + point_21
+    del point_21, t72
     r_left_0 = t70 + point_11
+    del point_11, t70
     slope_left = t79 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    del t79
     t85 = _runtime.select(spent_left, t78 * (size * np.abs(slope_left)), 0.0)
+    del t78
     t86 = -(_runtime.FEASIBILITY * (t49 + t85)) <= room_left
+    del t85
     t87 = -(_runtime.FEASIBILITY * t49)
     t88 = size * size
     t89 = t88 * t88 / 10000000000.0
     t90 = t82 * (room_right - np.abs(room_right)) / (2.0 * (t89 + t82 * t82))
     t91 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t89 + slope_left * slope_left))
     turn = _runtime.select(spent_right, t90, 0.0) + _runtime.select(spent_left, -t91, 0.0)
+    del spent_left, spent_right, t90, t91
     t92 = t82 * turn
+    del t82
     t93 = room_right - t92
+    del room_right
     t94 = drawn * turn
+    del drawn
     t95 = ctheta2A * t94
     t96 = t80 + t95 + t81 * turn
     t97 = stheta2A * t94
+    del t94
     t98 = t81 - t80 * turn - t97
+    del t80, t81
     t99 = t96 * t96 + t98 * t98
     t100 = gap * gap
     t101 = L1 - fore_arm
     t102 = t101 * t101
     M_mid = t29 * _runtime.select(t57, large_mid, small_mid)
+    del large_mid, small_mid, t57
     t103 = M_mid + gap
     t104 = _runtime.select(t88 * t99 < t100, t102 - t99, t74 - t92 - t103)
+    del t92, t99
     t105 = t48 & t84 & t86 & (t87 <= t93) & (t87 <= -t104)
+    del t84, t86
     t106 = slope_left * turn
+    del slope_left
     t107 = room_left + t106
+    del room_left
     h_left = h_left_0 - t95 + r_left_0 * turn
+    del t95
     r_left = r_left_0 + t97 - h_left_0 * turn
+    del h_left_0, r_left_0, t97, turn
     t108 = h_left * h_left + r_left * r_left
     t109 = _runtime.select(t88 * t108 < t100, t108 - t102, t74 + t103 - t106)
+    del t100, t103, t106, t108, t74
     unreachable = np.logical_not(t105 & (t87 <= t107) & (t87 <= t109))
+    del t105
     t110 = _runtime.poison(invalid | unreachable)
     t111 = t17 + t110
     t112 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
     folded_right = np.abs(-t96) + np.abs(-t98) <= t112
     t113 = np.arctan2(stheta2A, ctheta2A)
+    del ctheta2A, stheta2A
     short_right = L1 * fore_arm <= _runtime.VANISHING * t88
     t114 = _runtime.VANISHING * (_runtime.VANISHING * (t49 * 16.0))
     M_right = np.maximum(-t104, t114)
+    del t104
     N_right = np.maximum(t93, t114)
+    del t93
     t115 = 1.0 / (M_right + N_right)
     t116 = 2.0 * _runtime.select(0.0 <= -t58, 1.0, -1.0)
+    del t58
     rN_right = np.sqrt(N_right)
+    del N_right
     rM_right = np.sqrt(M_right)
     s_bend_right = _runtime.select(short_right, 0.0, t115 * (t116 * rN_right * rM_right))
     t117 = fore_arm * s_bend_right
+    del s_bend_right
     t118 = 2.0 * fore_arm
     ahead_1_right = _runtime.select(short_right, size, t101 + t118 * M_right * t115)
+    del M_right, t115
     t119 = np.arctan2(t98 * t117 - t96 * ahead_1_right, -(t98 * ahead_1_right + t96 * t117))
+    del ahead_1_right, t117, t96, t98
     t120 = _runtime.wrap_cut(_runtime.select(folded_right, t113, t119))
+    del t119
     t121 = t120 + t110
+    del t120
     bare_right = fore_arm <= _runtime.VANISHING * size
     t122 = 1.0 / fore_arm
     t123 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t122), _runtime.select(bare_right, 1.0, a3 * t122))
+    del bare_right, t122
     t124 = _runtime.select(short_right, 0.0, t116 * np.arctan2(rN_right, rM_right))
+    del rM_right, rN_right
     t125 = _runtime.wrap_cut(_runtime.wrap(t123 + t124))
+    del t124
     t126 = t125 + t110
+    del t125
     folded_left = np.abs(h_left) + np.abs(r_left) <= t112
     M_left = np.maximum(t109, 0.0)
+    del t109
     N_left = np.maximum(t107, 0.0)
+    del t107
     t127 = 1.0 / (M_left + N_left)
     ahead_1_left = _runtime.select(short_right, size, t101 + t118 * M_left * t127)
     t128 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
+    del N_left
     rM_left = np.sqrt(M_left)
+    del M_left
     s_bend_left = _runtime.select(short_right, 0.0, t127 * (t116 * rN_left * rM_left))
+    del t127
     t129 = fore_arm * s_bend_left
+    del s_bend_left
     t130 = r_left * t129
     t131 = r_left * ahead_1_left
+    del ahead_1_left, r_left
     t132 = h_left * t129
+    del h_left, t129
     t133 = _runtime.select(folded_left, t113, np.arctan2(t128 - t130, t131 + t132))
     t134 = _runtime.select(short_right, 0.0, t116 * np.arctan2(rN_left, rM_left))
+    del rM_left, rN_left, t116
     t135 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    del c_pitch, s_pitch
     t136 = t135 + t110
     t137 = _runtime.select(folded_left, t113, np.arctan2(t128 + t130, t131 - t132))
+    del t113, t128, t130, t131, t132
     s_relative_front_elbow_down_alike = t53 + t54
+    del t53, t54
     c_relative_front_elbow_down_alike = t55 - t56
+    del t55, t56
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
     t138 = 0.0 <= straight_mid_front_elbow_down_alike
     t139 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
     t140 = _runtime.select(t138, straight_mid_front_elbow_down_alike, -straight_mid_front_elbow_down_alike)
+    del straight_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + t140
+    del t140
     small_mid_front_elbow_down_alike = t139 * t139 / large_mid_front_elbow_down_alike
     t141 = _runtime.select(t138, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
     out_front_elbow_down_alike = t63 + t64
+    del t63, t64
     t142 = out_front_elbow_down_alike * out_front_elbow_down_alike
     t143 = t66 - t67
+    del t66, t67
     t144 = 1.0 / np.sqrt(t142 + t143 * t143)
+    del t142
     ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, out_front_elbow_down_alike * t144)
+    del out_front_elbow_down_alike
     t145 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
     t146 = _runtime.select(folded, 0.0, t143 * t144)
+    del t143, t144
     ctheta23A_front_elbow_down_alike = t145 + s_relative_front_elbow_down_alike * t146
+    del t145
     t147 = t60 * (s_phi * ctheta23A_front_elbow_down_alike)
     t148 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
     t149 = c_relative_front_elbow_down_alike * t146 - t148
+    del t148
     t150 = d * (t147 + t5 * (s_psi * t149))
+    del t147
     t151 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
     t152 = d * (t151 - t60 * (s_phi * t149))
+    del t151
     gap_front_elbow_down_alike = t150 * t150 + t152 * t152
     t153 = t29 * t141 - gap_front_elbow_down_alike
+    del t141
     t154 = L1 * ctheta2A_front_elbow_down_alike - L2 * t149
     point_11_front_elbow_down_alike = t154 + a3 * ctheta23A_front_elbow_down_alike
+    del t154
     t155 = L1 * t146 + L2 * ctheta23A_front_elbow_down_alike
+    del ctheta23A_front_elbow_down_alike
     t156 = t155 + a3 * t149
+    del t149, t155
     t157 = 2.0 * t150 * point_11_front_elbow_down_alike - 2.0 * t152 * t156
     room_right_front_elbow_down_alike = t153 + t157
     spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t75
     tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
     t158 = 1.0 / (t76 + np.abs(tilt_front_elbow_down_alike))
+    del tilt_front_elbow_down_alike
     t159 = L1 + L_2W * s_relative_front_elbow_down_alike
+    del s_relative_front_elbow_down_alike
     drawn_front_elbow_down_alike = t159 + a_3W * c_relative_front_elbow_down_alike
+    del c_relative_front_elbow_down_alike, t159
     t160 = 2.0 * drawn_front_elbow_down_alike
     t161 = t152 + t156
     t162 = t150 - point_11_front_elbow_down_alike
     t163 = ctheta2A_front_elbow_down_alike * t161 + t146 * t162
     t164 = t160 * t163
+    del t163
     t165 = _runtime.select(spent_right_front_elbow_down_alike, t158 * (size * np.abs(-t164)), 0.0)
     t166 = -(_runtime.FEASIBILITY * (t49 + t165)) <= room_right_front_elbow_down_alike
+    del t165
     room_left_front_elbow_down_alike = t153 - t157
+    del t153
     spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t75
     h_left_0_front_elbow_down_alike = t152 - t156
+    del t152, t156
     t167 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
     r_left_0_front_elbow_down_alike = t150 + point_11_front_elbow_down_alike
+    del point_11_front_elbow_down_alike, t150
     t168 = t167 + t146 * r_left_0_front_elbow_down_alike
+    del t167
     slope_left_front_elbow_down_alike = t160 * t168
+    del t160, t168
     t169 = size * np.abs(slope_left_front_elbow_down_alike)
     t170 = _runtime.select(spent_left_front_elbow_down_alike, t158 * t169, 0.0)
+    del t158, t169
     t171 = -(_runtime.FEASIBILITY * (t49 + t170)) <= room_left_front_elbow_down_alike
+    del t170
     t172 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
     turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t164 * t172 / (2.0 * (t89 + t164 * t164)), 0.0)
+    del spent_right_front_elbow_down_alike, t172
     t173 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
     t174 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
     t175 = slope_left_front_elbow_down_alike * t173 / (2.0 * (t89 + t174))
+    del t173, t174
     turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t175, 0.0)
+    del spent_left_front_elbow_down_alike, t175
     turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
+    del turn_left_front_elbow_down_alike, turn_right_front_elbow_down_alike
     t176 = t164 * turn_front_elbow_down_alike
+    del t164
     t177 = room_right_front_elbow_down_alike - t176
+    del room_right_front_elbow_down_alike
     t178 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    del drawn_front_elbow_down_alike
     t179 = ctheta2A_front_elbow_down_alike * t178
     t180 = t161 + t179 + t162 * turn_front_elbow_down_alike
     t181 = t146 * t178
+    del t178
     t182 = t162 - t161 * turn_front_elbow_down_alike + t181
+    del t161, t162
     t183 = t180 * t180 + t182 * t182
     t184 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
     t185 = _runtime.select(t138, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t138
     M_mid_front_elbow_down_alike = t29 * t185
+    del t185
     t186 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
     t187 = _runtime.select(t88 * t183 < t184, t102 - t183, t157 - t176 - t186)
+    del t176, t183
     t188 = t48 & t166 & t171 & (t87 <= t177) & (t87 <= -t187)
+    del t166, t171, t48
     t189 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
+    del slope_left_front_elbow_down_alike
     t190 = room_left_front_elbow_down_alike + t189
+    del room_left_front_elbow_down_alike
     t191 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
     h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t179 + t191
+    del t179, t191
     t192 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
     t193 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    del h_left_0_front_elbow_down_alike, turn_front_elbow_down_alike
     r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t181 - t193
+    del r_left_0_front_elbow_down_alike, t181, t193
     t194 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
     t195 = t192 + t194
+    del t192, t194
     t196 = _runtime.select(t88 * t195 < t184, t195 - t102, t157 + t186 - t189)
+    del t157, t184, t186, t189, t195
     unreachable_2 = np.logical_not(t188 & (t87 <= t190) & (t87 <= t196))
+    del t188
     t197 = _runtime.poison(invalid | unreachable_2)
     t198 = t17 + t197
+    del t17
     folded_right_front_elbow_down_alike = np.abs(-t180) + np.abs(-t182) <= t112
     t199 = np.arctan2(-t146, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike, t146
     M_right_front_elbow_down_alike = np.maximum(-t187, t114)
+    del t187
     N_right_front_elbow_down_alike = np.maximum(t177, t114)
+    del t177
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
     t200 = 1.0 / whole_right_front_elbow_down_alike
+    del whole_right_front_elbow_down_alike
     t201 = 2.0 * _runtime.select(0.0 <= -t139, 1.0, -1.0)
+    del t139
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
+    del N_right_front_elbow_down_alike
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
     t202 = t201 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
     s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t200 * t202)
+    del t202
     t203 = fore_arm * s_bend_right_front_elbow_down_alike
+    del s_bend_right_front_elbow_down_alike
     t204 = t101 + t118 * M_right_front_elbow_down_alike * t200
+    del M_right_front_elbow_down_alike, t200
     ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t204)
+    del t204
     up_right_front_elbow_down_alike = t182 * t203 - t180 * ahead_1_right_front_elbow_down_alike
     t205 = t182 * ahead_1_right_front_elbow_down_alike + t180 * t203
+    del ahead_1_right_front_elbow_down_alike, t180, t182, t203
     t206 = np.arctan2(up_right_front_elbow_down_alike, -t205)
+    del t205, up_right_front_elbow_down_alike
     t207 = _runtime.select(folded_right_front_elbow_down_alike, t199, t206)
+    del t206
     t208 = _runtime.wrap_cut(t207) + t197
+    del t207
     t209 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    del rM_right_front_elbow_down_alike, rN_right_front_elbow_down_alike
     t210 = _runtime.select(short_right, 0.0, t201 * t209)
+    del t209
     t211 = _runtime.wrap_cut(_runtime.wrap(t123 + t210))
+    del t210
     t212 = t211 + t197
+    del t211
     t213 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
     folded_left_front_elbow_down_alike = t213 <= t112
+    del t213
     M_left_front_elbow_down_alike = np.maximum(t196, 0.0)
+    del t196
     N_left_front_elbow_down_alike = np.maximum(t190, 0.0)
+    del t190
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
     t214 = 1.0 / whole_left_front_elbow_down_alike
+    del whole_left_front_elbow_down_alike
     t215 = t101 + t118 * M_left_front_elbow_down_alike * t214
     ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t215)
+    del t215
     t216 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
+    del N_left_front_elbow_down_alike
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
+    del M_left_front_elbow_down_alike
     t217 = t201 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
     s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t214 * t217)
+    del t214, t217
     t218 = fore_arm * s_bend_left_front_elbow_down_alike
+    del s_bend_left_front_elbow_down_alike
     t219 = r_left_front_elbow_down_alike * t218
     t220 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
     t221 = h_left_front_elbow_down_alike * t218
+    del h_left_front_elbow_down_alike, t218
     t222 = _runtime.select(folded_left_front_elbow_down_alike, t199, np.arctan2(t216 - t219, t220 + t221))
     t223 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    del rM_left_front_elbow_down_alike, rN_left_front_elbow_down_alike
     t224 = _runtime.select(short_right, 0.0, t201 * t223)
+    del t201, t223
     t225 = t135 + t197
     t226 = _runtime.select(folded_left_front_elbow_down_alike, t199, np.arctan2(t216 + t219, t220 - t221))
+    del t199, t216, t219, t220, t221
     t227 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t16))
+    del t16, t2
     c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -(t35 * (t38 + t39)))
+    del t38, t39
     s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, t35 * (t40 - t41))
+    del t35, t40, t41
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
+    del c1_rear_elbow_up_alike, s1_rear_elbow_up_alike
     t228 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
     square_rear_elbow_up_alike = t34 + t228
+    del t228, t34
     t229 = t32 - square_rear_elbow_up_alike
+    del t32
     t230 = square_rear_elbow_up_alike - t46
+    del square_rear_elbow_up_alike, t46
     t231 = t27 & (t31 <= t229) & (-t45 <= t230)
+    del t27, t31, t45
     N_rear_elbow_up_alike = np.maximum(t229, 0.0)
+    del t229
     M_rear_elbow_up_alike = np.maximum(t230, 0.0)
+    del t230
     t232 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
     whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
     t233 = 1.0 / whole_rear_elbow_up_alike
+    del whole_rear_elbow_up_alike
     c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t232 * t233))
+    del t232
     t234 = s_lag * c_bend_rear_elbow_up_alike
     t235 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
+    del N_rear_elbow_up_alike
     s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t233 * t235)
+    del t235
     t236 = c_lag * s_bend_rear_elbow_up_alike
     s_relative_rear_elbow_up_alike = t234 + t236
     t237 = c_lag * c_bend_rear_elbow_up_alike
+    del c_bend_rear_elbow_up_alike, c_lag
     t238 = s_lag * s_bend_rear_elbow_up_alike
+    del s_lag
     c_relative_rear_elbow_up_alike = t237 - t238
     straight_mid_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
     t239 = 0.0 <= straight_mid_rear_elbow_up_alike
     t240 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
     t241 = _runtime.select(t239, straight_mid_rear_elbow_up_alike, -straight_mid_rear_elbow_up_alike)
+    del straight_mid_rear_elbow_up_alike
     large_mid_rear_elbow_up_alike = fore_arm + t241
+    del t241
     small_mid_rear_elbow_up_alike = t240 * t240 / large_mid_rear_elbow_up_alike
     t242 = _runtime.select(t239, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
     folded_rear_elbow_up_alike = t61 + np.abs(outward_rear_elbow_up_alike) <= t51
+    del t51, t61
     t243 = t62 * s_bend_rear_elbow_up_alike
+    del t62
     ahead_1_rear_elbow_up_alike = _runtime.select(short, t28, t44 + t233 * (t30 * M_rear_elbow_up_alike))
+    del M_rear_elbow_up_alike, t233, t28, t30, t44
     t244 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
     out_rear_elbow_up_alike = t243 + t244
     t245 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
     t246 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
+    del fore, outward_rear_elbow_up_alike, s_bend_rear_elbow_up_alike
     t247 = t33 * ahead_1_rear_elbow_up_alike
+    del ahead_1_rear_elbow_up_alike, t33
     t248 = t246 - t247
     t249 = 1.0 / np.sqrt(t245 + t248 * t248)
+    del t245
     ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, out_rear_elbow_up_alike * t249)
+    del out_rear_elbow_up_alike
     t250 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
     t251 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t248 * t249)
+    del t248, t249
     ctheta23A_rear_elbow_up_alike = t250 + s_relative_rear_elbow_up_alike * t251
+    del t250
     t252 = t60 * (s_phi * ctheta23A_rear_elbow_up_alike)
     t253 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
     t254 = c_relative_rear_elbow_up_alike * t251 - t253
+    del t253
     t255 = d * (t252 + t5 * (s_psi * t254))
+    del t252
     t256 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) - t60 * (s_phi * t254)
     t257 = d * t256
+    del t256
     gap_rear_elbow_up_alike = t255 * t255 + t257 * t257
     t258 = t29 * t242 - gap_rear_elbow_up_alike
+    del t242
     t259 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t254
     point_11_rear_elbow_up_alike = t259 + a3 * ctheta23A_rear_elbow_up_alike
+    del t259
     t260 = L1 * t251 + L2 * ctheta23A_rear_elbow_up_alike
+    del ctheta23A_rear_elbow_up_alike
     t261 = t260 + a3 * t254
+    del t254, t260
     t262 = 2.0 * t255 * point_11_rear_elbow_up_alike - 2.0 * t257 * t261
     room_right_rear_elbow_up_alike = t258 + t262
     spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t75
     tilt_rear_elbow_up_alike = L_2W * c_relative_rear_elbow_up_alike - a_3W * s_relative_rear_elbow_up_alike
     t263 = 1.0 / (t76 + np.abs(tilt_rear_elbow_up_alike))
+    del tilt_rear_elbow_up_alike
     drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
+    del c_relative_rear_elbow_up_alike, s_relative_rear_elbow_up_alike
     t264 = 2.0 * drawn_rear_elbow_up_alike
     t265 = t257 + t261
     t266 = t255 - point_11_rear_elbow_up_alike
     t267 = ctheta2A_rear_elbow_up_alike * t265 + t251 * t266
     t268 = t264 * t267
+    del t267
     t269 = _runtime.select(spent_right_rear_elbow_up_alike, t263 * (size * np.abs(-t268)), 0.0)
     t270 = -(_runtime.FEASIBILITY * (t49 + t269)) <= room_right_rear_elbow_up_alike
+    del t269
     room_left_rear_elbow_up_alike = t258 - t262
+    del t258
     spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t75
     h_left_0_rear_elbow_up_alike = t257 - t261
+    del t257, t261
     t271 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
     r_left_0_rear_elbow_up_alike = t255 + point_11_rear_elbow_up_alike
+    del point_11_rear_elbow_up_alike, t255
     slope_left_rear_elbow_up_alike = t264 * (t271 + t251 * r_left_0_rear_elbow_up_alike)
+    del t264, t271
     t272 = size * np.abs(slope_left_rear_elbow_up_alike)
     t273 = _runtime.select(spent_left_rear_elbow_up_alike, t263 * t272, 0.0)
+    del t263, t272
     t274 = -(_runtime.FEASIBILITY * (t49 + t273)) <= room_left_rear_elbow_up_alike
+    del t273
     t275 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
     turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t268 * t275 / (2.0 * (t89 + t268 * t268)), 0.0)
+    del spent_right_rear_elbow_up_alike, t275
     t276 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
     t277 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
     t278 = slope_left_rear_elbow_up_alike * t276 / (2.0 * (t89 + t277))
+    del t276, t277
     turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t278, 0.0)
+    del spent_left_rear_elbow_up_alike, t278
     turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
+    del turn_left_rear_elbow_up_alike, turn_right_rear_elbow_up_alike
     t279 = t268 * turn_rear_elbow_up_alike
+    del t268
     t280 = room_right_rear_elbow_up_alike - t279
+    del room_right_rear_elbow_up_alike
     t281 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    del drawn_rear_elbow_up_alike
     t282 = ctheta2A_rear_elbow_up_alike * t281
     t283 = t265 + t282 + t266 * turn_rear_elbow_up_alike
     t284 = t251 * t281
+    del t281
     t285 = t266 - t265 * turn_rear_elbow_up_alike + t284
+    del t265, t266
     t286 = t283 * t283 + t285 * t285
     t287 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
     t288 = _runtime.select(t239, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
+    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t239
     M_mid_rear_elbow_up_alike = t29 * t288
+    del t288
     t289 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
     t290 = _runtime.select(t88 * t286 < t287, t102 - t286, t262 - t279 - t289)
+    del t279, t286
     t291 = t231 & t270 & t274 & (t87 <= t280) & (t87 <= -t290)
+    del t270, t274
     t292 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    del slope_left_rear_elbow_up_alike
     t293 = room_left_rear_elbow_up_alike + t292
+    del room_left_rear_elbow_up_alike
     t294 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
     h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t282 + t294
+    del t282, t294
     t295 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
     t296 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    del h_left_0_rear_elbow_up_alike, turn_rear_elbow_up_alike
     r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t284 - t296
+    del r_left_0_rear_elbow_up_alike, t284, t296
     t297 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
     t298 = t295 + t297
+    del t295, t297
     t299 = _runtime.select(t88 * t298 < t287, t298 - t102, t262 + t289 - t292)
+    del t262, t287, t289, t292, t298
     unreachable_3 = np.logical_not(t291 & (t87 <= t293) & (t87 <= t299))
+    del t291
     t300 = _runtime.poison(invalid | unreachable_3)
     t301 = t227 + t300
     folded_right_rear_elbow_up_alike = np.abs(-t283) + np.abs(-t285) <= t112
     t302 = np.arctan2(-t251, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, t251
     M_right_rear_elbow_up_alike = np.maximum(-t290, t114)
+    del t290
     N_right_rear_elbow_up_alike = np.maximum(t280, t114)
+    del t280
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
     t303 = 1.0 / whole_right_rear_elbow_up_alike
+    del whole_right_rear_elbow_up_alike
     t304 = 2.0 * _runtime.select(0.0 <= -t240, 1.0, -1.0)
+    del t240
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
+    del N_right_rear_elbow_up_alike
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
     t305 = t304 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
     s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t303 * t305)
+    del t305
     t306 = fore_arm * s_bend_right_rear_elbow_up_alike
+    del s_bend_right_rear_elbow_up_alike
     t307 = t101 + t118 * M_right_rear_elbow_up_alike * t303
+    del M_right_rear_elbow_up_alike, t303
     ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t307)
+    del t307
     up_right_rear_elbow_up_alike = t285 * t306 - t283 * ahead_1_right_rear_elbow_up_alike
     t308 = t285 * ahead_1_right_rear_elbow_up_alike + t283 * t306
+    del ahead_1_right_rear_elbow_up_alike, t283, t285, t306
     t309 = np.arctan2(up_right_rear_elbow_up_alike, -t308)
+    del t308, up_right_rear_elbow_up_alike
     t310 = _runtime.select(folded_right_rear_elbow_up_alike, t302, t309)
+    del t309
     t311 = _runtime.wrap_cut(t310) + t300
+    del t310
     t312 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    del rM_right_rear_elbow_up_alike, rN_right_rear_elbow_up_alike
     t313 = _runtime.select(short_right, 0.0, t304 * t312)
+    del t312
     t314 = _runtime.wrap_cut(_runtime.wrap(t123 + t313))
+    del t313
     t315 = t314 + t300
+    del t314
     t316 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
     folded_left_rear_elbow_up_alike = t316 <= t112
+    del t316
     M_left_rear_elbow_up_alike = np.maximum(t299, 0.0)
+    del t299
     N_left_rear_elbow_up_alike = np.maximum(t293, 0.0)
+    del t293
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
     t317 = 1.0 / whole_left_rear_elbow_up_alike
+    del whole_left_rear_elbow_up_alike
     t318 = t101 + t118 * M_left_rear_elbow_up_alike * t317
     ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t318)
+    del t318
     t319 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
+    del N_left_rear_elbow_up_alike
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
+    del M_left_rear_elbow_up_alike
     t320 = t304 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
     s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t317 * t320)
+    del t317, t320
     t321 = fore_arm * s_bend_left_rear_elbow_up_alike
+    del s_bend_left_rear_elbow_up_alike
     t322 = r_left_rear_elbow_up_alike * t321
     t323 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
     t324 = h_left_rear_elbow_up_alike * t321
+    del h_left_rear_elbow_up_alike, t321
     t325 = _runtime.select(folded_left_rear_elbow_up_alike, t302, np.arctan2(t319 - t322, t323 + t324))
     t326 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    del rM_left_rear_elbow_up_alike, rN_left_rear_elbow_up_alike
     t327 = _runtime.select(short_right, 0.0, t304 * t326)
+    del t304, t326
     t328 = t135 + t300
     t329 = _runtime.select(folded_left_rear_elbow_up_alike, t302, np.arctan2(t319 + t322, t323 - t324))
+    del t302, t319, t322, t323, t324
     s_relative_rear_elbow_down_alike = t234 - t236
+    del t234, t236
     c_relative_rear_elbow_down_alike = t237 + t238
+    del t237, t238
     straight_mid_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
     t330 = 0.0 <= straight_mid_rear_elbow_down_alike
     t331 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
     t332 = _runtime.select(t330, straight_mid_rear_elbow_down_alike, -straight_mid_rear_elbow_down_alike)
+    del straight_mid_rear_elbow_down_alike
     large_mid_rear_elbow_down_alike = fore_arm + t332
+    del t332
     small_mid_rear_elbow_down_alike = t331 * t331 / large_mid_rear_elbow_down_alike
     t333 = _runtime.select(t330, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
     t334 = t243 - t244
+    del t243, t244
     up_rear_elbow_down_alike = t246 + t247
+    del t246, t247
     t335 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
     t336 = 1.0 / np.sqrt(t334 * t334 + t335)
+    del t335
     ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t334 * t336))
+    del t334
     t337 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
     stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, up_rear_elbow_down_alike * t336)
+    del t336, up_rear_elbow_down_alike
     t338 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
     ctheta23A_rear_elbow_down_alike = t337 - t338
+    del t337, t338
     t339 = t60 * (s_phi * ctheta23A_rear_elbow_down_alike)
     t340 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
     t341 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
     stheta23A_rear_elbow_down_alike = t340 + t341
+    del t340, t341
     t342 = t5 * (s_psi * stheta23A_rear_elbow_down_alike)
     t343 = d * (t339 - t342)
+    del t339, t342
     t344 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
+    del s_psi, t5
     t345 = t60 * (s_phi * stheta23A_rear_elbow_down_alike)
+    del s_phi, t60
     t346 = d * (t344 + t345)
+    del t344, t345
     gap_rear_elbow_down_alike = t343 * t343 + t346 * t346
     t347 = t29 * t333 - gap_rear_elbow_down_alike
+    del t333
     t348 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
     point_11_rear_elbow_down_alike = t348 + a3 * ctheta23A_rear_elbow_down_alike
+    del t348
     t349 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    del ctheta23A_rear_elbow_down_alike
     point_21_rear_elbow_down_alike = t349 + a3 * stheta23A_rear_elbow_down_alike
+    del stheta23A_rear_elbow_down_alike, t349
     t350 = 2.0 * t343 * point_11_rear_elbow_down_alike + 2.0 * t346 * point_21_rear_elbow_down_alike
     room_right_rear_elbow_down_alike = t347 + t350
     spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t75
     tilt_rear_elbow_down_alike = L_2W * c_relative_rear_elbow_down_alike - a_3W * s_relative_rear_elbow_down_alike
     t351 = 1.0 / (t76 + np.abs(tilt_rear_elbow_down_alike))
+    del t76, tilt_rear_elbow_down_alike
     drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
+    del L_2W, a_3W, c_relative_rear_elbow_down_alike, s_relative_rear_elbow_down_alike
     t352 = 2.0 * drawn_rear_elbow_down_alike
     t353 = t346 - point_21_rear_elbow_down_alike
     t354 = t343 - point_11_rear_elbow_down_alike
     t355 = ctheta2A_rear_elbow_down_alike * t353 - stheta2A_rear_elbow_down_alike * t354
     t356 = t352 * t355
+    del t355
     t357 = _runtime.select(spent_right_rear_elbow_down_alike, t351 * (size * np.abs(-t356)), 0.0)
     t358 = -(_runtime.FEASIBILITY * (t49 + t357)) <= room_right_rear_elbow_down_alike
+    del t357
     room_left_rear_elbow_down_alike = t347 - t350
+    del t347
     spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t75
+    del t75
     h_left_0_rear_elbow_down_alike = t346 + point_21_rear_elbow_down_alike
+    del point_21_rear_elbow_down_alike, t346
     t359 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
     r_left_0_rear_elbow_down_alike = t343 + point_11_rear_elbow_down_alike
+    del point_11_rear_elbow_down_alike, t343
     t360 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
     slope_left_rear_elbow_down_alike = t352 * (t359 - t360)
+    del t352, t359, t360
     t361 = size * np.abs(slope_left_rear_elbow_down_alike)
     t362 = _runtime.select(spent_left_rear_elbow_down_alike, t351 * t361, 0.0)
+    del t351, t361
     t363 = -(_runtime.FEASIBILITY * (t49 + t362)) <= room_left_rear_elbow_down_alike
+    del t362, t49
     t364 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
     turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t356 * t364 / (2.0 * (t89 + t356 * t356)), 0.0)
+    del spent_right_rear_elbow_down_alike, t364
     t365 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
     t366 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
     t367 = slope_left_rear_elbow_down_alike * t365 / (2.0 * (t89 + t366))
+    del t365, t366, t89
     turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t367, 0.0)
+    del spent_left_rear_elbow_down_alike, t367
     turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
+    del turn_left_rear_elbow_down_alike, turn_right_rear_elbow_down_alike
     t368 = t356 * turn_rear_elbow_down_alike
+    del t356
     t369 = room_right_rear_elbow_down_alike - t368
+    del room_right_rear_elbow_down_alike
     t370 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    del drawn_rear_elbow_down_alike
     t371 = ctheta2A_rear_elbow_down_alike * t370
     t372 = t353 + t371 + t354 * turn_rear_elbow_down_alike
     t373 = stheta2A_rear_elbow_down_alike * t370
+    del t370
     t374 = t354 - t353 * turn_rear_elbow_down_alike - t373
+    del t353, t354
     t375 = t372 * t372 + t374 * t374
     t376 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
     t377 = _runtime.select(t330, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
+    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t330
     M_mid_rear_elbow_down_alike = t29 * t377
+    del t29, t377
     t378 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
     t379 = _runtime.select(t88 * t375 < t376, t102 - t375, t350 - t368 - t378)
+    del t368, t375
     t380 = t231 & t358 & t363 & (t87 <= t369) & (t87 <= -t379)
+    del t231, t358, t363
     t381 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    del slope_left_rear_elbow_down_alike
     t382 = room_left_rear_elbow_down_alike + t381
+    del room_left_rear_elbow_down_alike
     t383 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
     h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t371 + t383
+    del t371, t383
     t384 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
     t385 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    del h_left_0_rear_elbow_down_alike, turn_rear_elbow_down_alike
     r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t373 - t385
+    del r_left_0_rear_elbow_down_alike, t373, t385
     t386 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
     t387 = t384 + t386
+    del t384, t386
     t388 = _runtime.select(t88 * t387 < t376, t387 - t102, t350 + t378 - t381)
+    del t350, t376, t378, t381, t387
     unreachable_4 = np.logical_not(t380 & (t87 <= t382) & (t87 <= t388))
+    del t380, t87
     t389 = _runtime.poison(invalid | unreachable_4)
     t390 = t227 + t389
+    del t227
     folded_right_rear_elbow_down_alike = np.abs(-t372) + np.abs(-t374) <= t112
     t391 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    del ctheta2A_rear_elbow_down_alike, stheta2A_rear_elbow_down_alike
     M_right_rear_elbow_down_alike = np.maximum(-t379, t114)
+    del t379
     N_right_rear_elbow_down_alike = np.maximum(t369, t114)
+    del t114, t369
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
     t392 = 1.0 / whole_right_rear_elbow_down_alike
+    del whole_right_rear_elbow_down_alike
     t393 = 2.0 * _runtime.select(0.0 <= -t331, 1.0, -1.0)
+    del t331
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
+    del N_right_rear_elbow_down_alike
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
     t394 = t393 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
     s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t392 * t394)
+    del t394
     t395 = fore_arm * s_bend_right_rear_elbow_down_alike
+    del s_bend_right_rear_elbow_down_alike
     t396 = t101 + t118 * M_right_rear_elbow_down_alike * t392
+    del M_right_rear_elbow_down_alike, t392
     ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t396)
+    del t396
     up_right_rear_elbow_down_alike = t374 * t395 - t372 * ahead_1_right_rear_elbow_down_alike
     t397 = t374 * ahead_1_right_rear_elbow_down_alike + t372 * t395
+    del ahead_1_right_rear_elbow_down_alike, t372, t374, t395
     t398 = np.arctan2(up_right_rear_elbow_down_alike, -t397)
+    del t397, up_right_rear_elbow_down_alike
     t399 = _runtime.select(folded_right_rear_elbow_down_alike, t391, t398)
+    del t398
     t400 = _runtime.wrap_cut(t399) + t389
+    del t399
     t401 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    del rM_right_rear_elbow_down_alike, rN_right_rear_elbow_down_alike
     t402 = _runtime.select(short_right, 0.0, t393 * t401)
+    del t401
     t403 = _runtime.wrap_cut(_runtime.wrap(t123 + t402))
+    del t402
     t404 = t403 + t389
+    del t403
     t405 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
     folded_left_rear_elbow_down_alike = t405 <= t112
+    del t112, t405
     M_left_rear_elbow_down_alike = np.maximum(t388, 0.0)
+    del t388
     N_left_rear_elbow_down_alike = np.maximum(t382, 0.0)
+    del t382
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
     t406 = 1.0 / whole_left_rear_elbow_down_alike
+    del whole_left_rear_elbow_down_alike
     t407 = t101 + t118 * M_left_rear_elbow_down_alike * t406
+    del t101, t118
     ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t407)
+    del size, t407
     t408 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
+    del N_left_rear_elbow_down_alike
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
+    del M_left_rear_elbow_down_alike
     t409 = t393 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
     s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t406 * t409)
+    del t406, t409
     t410 = fore_arm * s_bend_left_rear_elbow_down_alike
+    del fore_arm, s_bend_left_rear_elbow_down_alike
     t411 = r_left_rear_elbow_down_alike * t410
     t412 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
     t413 = h_left_rear_elbow_down_alike * t410
+    del h_left_rear_elbow_down_alike, t410
     t414 = _runtime.select(folded_left_rear_elbow_down_alike, t391, np.arctan2(t408 - t411, t412 + t413))
     t415 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    del rM_left_rear_elbow_down_alike, rN_left_rear_elbow_down_alike
     t416 = _runtime.select(short_right, 0.0, t393 * t415)
+    del t393, t415
     t417 = t135 + t389
+    del t135
     t418 = _runtime.select(folded_left_rear_elbow_down_alike, t391, np.arctan2(t408 + t411, t412 - t413))
+    del t391, t408, t411, t412, t413
     t419 = nowhere | folded | short
+    del folded
     square_mid = t102 + M_mid
     t420 = 10000.0 * t88
+    del t88
     pole = M_mid * square_mid <= _runtime.VANISHING * (t420 * gap)
+    del M_mid, gap
     t421 = _runtime.VANISHING * t420
     t422 = t419 | pole | (square_mid <= t421) | folded_right
+    del folded_right, pole, square_mid
     t423 = _runtime.status(invalid, unreachable, t422 | short_right | folded_left)
+    del folded_left, t422, unreachable
     square_mid_front_elbow_down_alike = t102 + M_mid_front_elbow_down_alike
     t424 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    del M_mid_front_elbow_down_alike
     t425 = _runtime.VANISHING * (t420 * gap_front_elbow_down_alike)
+    del gap_front_elbow_down_alike
     t426 = t419 | (t424 <= t425) | (square_mid_front_elbow_down_alike <= t421)
+    del square_mid_front_elbow_down_alike, t419, t424, t425
     t427 = t426 | folded_right_front_elbow_down_alike | short_right
+    del folded_right_front_elbow_down_alike, t426
     t428 = _runtime.status(invalid, unreachable_2, t427 | folded_left_front_elbow_down_alike)
+    del folded_left_front_elbow_down_alike, t427, unreachable_2
     t429 = nowhere | folded_rear_elbow_up_alike | short
+    del folded_rear_elbow_up_alike, nowhere, short
     square_mid_rear_elbow_up_alike = t102 + M_mid_rear_elbow_up_alike
     t430 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
+    del M_mid_rear_elbow_up_alike
     t431 = _runtime.VANISHING * (t420 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike
     t432 = t429 | (t430 <= t431) | (square_mid_rear_elbow_up_alike <= t421)
+    del square_mid_rear_elbow_up_alike, t430, t431
     t433 = t432 | folded_right_rear_elbow_up_alike | short_right
+    del folded_right_rear_elbow_up_alike, t432
     t434 = _runtime.status(invalid, unreachable_3, t433 | folded_left_rear_elbow_up_alike)
+    del folded_left_rear_elbow_up_alike, t433, unreachable_3
     square_mid_rear_elbow_down_alike = t102 + M_mid_rear_elbow_down_alike
+    del t102
     t435 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
+    del M_mid_rear_elbow_down_alike
     t436 = _runtime.VANISHING * (t420 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t420
     t437 = t429 | (t435 <= t436) | (square_mid_rear_elbow_down_alike <= t421)
+    del square_mid_rear_elbow_down_alike, t421, t429, t435, t436
     t438 = t437 | folded_right_rear_elbow_down_alike | short_right
+    del folded_right_rear_elbow_down_alike, short_right, t437
     t439 = _runtime.status(invalid, unreachable_4, t438 | folded_left_rear_elbow_down_alike)
+    del folded_left_rear_elbow_down_alike, invalid, t438, unreachable_4
     return (
         t111,
         t121,
@@ -1901,14 +2636,18 @@ def _wrist_length(psi, phi, d, gs, al):
     c_phi = np.cos(phi)
     c_psi = np.cos(psi)
     t1 = c_phi * c_psi
+    del c_psi
     t2 = d - (gs - al) * t1
     t3 = (gs + al) * t1 - d
     t4 = np.sqrt(np.maximum(t2, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
     t5 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t6 = t5 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
+    del t5
     t7 = -(_runtime.FEASIBILITY * (d / 2.0))
     t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t3)
+    del c_phi, t3
     failed = np.logical_not(t6) | np.logical_not(t8 & (t7 <= t2))
+    del t2, t6, t7, t8
     return (
         t4 / t1 + _runtime.poison(failed),
     )
@@ -1941,6 +2680,7 @@ def _minimum_link_length(psi_max, phi_max, beta_min, d, gs):
     c_psi_max = np.cos(psi_max)
     c_beta_min = np.cos(beta_min)
     t1 = (gs - d / (c_phi_max * c_psi_max)) / c_beta_min
+    del c_beta_min, c_phi_max, c_psi_max
     return (
         -t1,
     )
@@ -1973,12 +2713,17 @@ def _largest_yaw(phi, beta_min, d, gs, al):
     c_beta_min = np.cos(beta_min)
     c_phi = np.cos(phi)
     span = (gs + al * c_beta_min) * c_phi
+    del c_beta_min, c_phi
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d + span))
+    del span
     t3 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t4 = t3 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(phi) & np.isfinite(beta_min))
+    del t3
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
+    del t1
     t5 = _runtime.poison(np.logical_not(t4) | unreachable)
+    del t4, unreachable
     return (
         _runtime.wrap_down(2.0 * t2) + t5,
     )
@@ -2008,12 +2753,17 @@ def largest_yaw(phi: ArrayLike, beta_min: ArrayLike, params: Parameters = _DEFAU
 def _largest_angle(beta_min, d, gs, al):
     c_beta_min = np.cos(beta_min)
     span = gs + al * c_beta_min
+    del c_beta_min
     t1 = span - d
     t2 = np.arctan2(np.sqrt(np.maximum(t1, 0.0)), np.sqrt(d) + np.sqrt(span))
+    del span
     t3 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t4 = t3 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & np.isfinite(beta_min)
+    del t3
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * (gs + al)) <= t1)
+    del t1
     t5 = _runtime.poison(np.logical_not(t4) | unreachable)
+    del t4, unreachable
     return (
         _runtime.wrap_down(2.0 * t2) + t5,
     )

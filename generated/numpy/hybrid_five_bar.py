@@ -86,9 +86,13 @@ def _fk(theta1, theta2, theta3, L0, L1, L2):
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     C_r = L1 * s2
+    del s2
     t1 = C_r - L1 * s3
+    del s3
     C_y = L1 * c2
+    del c2
     t2 = C_y - (L0 + L1 * c3)
+    del c3
     apart = np.sqrt(t1 * t1 + t2 * t2)
     t3 = L0 + L1 + L2
     t4 = t3 * _runtime.VANISHING
@@ -96,24 +100,34 @@ def _fk(theta1, theta2, theta3, L0, L1, L2):
     distance = _runtime.select(coincide, 0.0, apart)
     t5 = 1.0 / apart
     t6 = _runtime.select(coincide, 0.0, t1 * t5)
+    del t1
     t7 = distance * t6 / 2.0
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
     height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    del apart, slack, t4, t8
     n_1 = _runtime.select(coincide, 1.0, -(t2 * t5))
+    del t2, t5
     t10 = height * n_1
     P_r = C_r - (t7 - t10)
     t11 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t11
     t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     invalid = np.logical_not(t12 & t13)
+    del t12, t13
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t9)
+    del t3, t9
     t14 = _runtime.poison(invalid | unreachable)
     t15 = distance * n_1 / 2.0
+    del distance, n_1
     t16 = height * t6
+    del height, t6
     P_r_right_of_CD = C_r - (t7 + t10)
+    del C_r, t10, t7
     t17 = _runtime.status(invalid, unreachable, coincide)
+    del coincide, invalid, unreachable
     return (
         -(c1 * P_r) + t14,
         C_y + (t15 + t16) + t14,
@@ -156,35 +170,49 @@ def _passive_angles(theta1, theta2, theta3, L0, L1, L2):
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     t1 = L1 * s2 - L1 * s3
+    del s2, s3
     t2 = L1 * c2 - (L0 + L1 * c3)
+    del c2, c3
     apart = np.sqrt(t1 * t1 + t2 * t2)
     t3 = L0 + L1 + L2
     t4 = t3 * _runtime.VANISHING
     coincide = apart <= t4
     distance = _runtime.select(coincide, 0.0, apart)
     t5 = _runtime.select(coincide, 0.0, t1 / apart)
+    del t1
     t6 = distance * t5 / 2.0
     n_1 = _runtime.select(coincide, 1.0, -(t2 / apart))
+    del coincide, t2
     t7 = L2 * 2.0
     t8 = t7 - apart
     slack = np.maximum(t8, 0.0)
     height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
+    del apart, slack, t4, t7
     t9 = n_1 * height
     DP_r_right_of_CD = t6 - t9
     t10 = distance * n_1 / 2.0
+    del distance, n_1
     t11 = t5 * height
+    del height, t5
     CP_y = t10 + t11
     t12 = _runtime.wrap_cut(-np.arctan2(DP_r_right_of_CD, CP_y))
     t13 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t14 = t13 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t13
     t15 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t8)
+    del t3, t8
     t16 = _runtime.poison(np.logical_not(t14 & t15) | unreachable)
+    del t14, t15, unreachable
     DP_r = t6 + t9
+    del t6, t9
     CP_y_right_of_CD = t10 - t11
+    del t10, t11
     t17 = _runtime.wrap_cut(np.arctan2(DP_r, -CP_y_right_of_CD))
     t18 = _runtime.wrap_cut(-np.arctan2(DP_r, CP_y_right_of_CD))
+    del CP_y_right_of_CD, DP_r
     t19 = _runtime.wrap_cut(np.arctan2(DP_r_right_of_CD, -CP_y))
+    del CP_y, DP_r_right_of_CD
     return (
         t12 + t16,
         t17 + t16,
@@ -223,36 +251,52 @@ def _jacobian_parallel(theta1, theta2, theta3, L0, L1, L2):
     t1 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t2 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     t3 = t1 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t2
+    del t1, t2
     t4 = L0 + L1 + L2
     t5 = L2 * 2.0
     t6 = L1 * s2 - L1 * s3
+    del s2, s3
     t7 = L1 * c2 - (L0 + L1 * c3)
+    del c2, c3
     apart = np.sqrt(t6 * t6 + t7 * t7)
     t8 = t5 - apart
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t8)
     t9 = _runtime.poison(np.logical_not(t3) | unreachable)
+    del t3, unreachable
     t10 = L2 * s1 + t9
     t11 = 0.0 + t9
     t12 = L2 * c1 + t9
     t13 = t4 * _runtime.VANISHING
+    del t4
     coincide = apart <= t13
     distance = _runtime.select(coincide, 0.0, apart)
     t14 = _runtime.select(coincide, 0.0, t6 / apart)
+    del t6
     t15 = distance * t14 / 2.0
     n_1 = _runtime.select(coincide, 1.0, -(t7 / apart))
+    del coincide, t7
     slack = np.maximum(t8, 0.0)
+    del t8
     height = _runtime.select(slack <= t13, 0.0, np.sqrt(slack) * np.sqrt(apart + t5) / 2.0)
+    del apart, slack, t13, t5
     t16 = n_1 * height
     DP_r_right_of_CD = t15 - t16
     t17 = DP_r_right_of_CD * c1
     t18 = distance * n_1 / 2.0
+    del distance, n_1
     t19 = t14 * height
+    del height, t14
     CP_y = t18 + t19
     t20 = DP_r_right_of_CD * s1
+    del DP_r_right_of_CD
     DP_r = t15 + t16
+    del t15, t16
     t21 = DP_r * c1
+    del c1
     CP_y_right_of_CD = t18 - t19
+    del t18, t19
     t22 = DP_r * s1
+    del DP_r, s1
     return (
         t10,
         t11,
@@ -301,10 +345,14 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     C_r = L1 * s2
+    del s2
     D_r = L1 * s3
+    del s3
     t1 = C_r - D_r
     C_y = L1 * c2
+    del c2
     t2 = L1 * c3
+    del c3
     t3 = C_y - (L0 + t2)
     apart = np.sqrt(t1 * t1 + t3 * t3)
     t4 = L0 + L1 + L2
@@ -312,24 +360,34 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     coincide = apart <= t5
     distance = _runtime.select(coincide, 0.0, apart)
     t6 = _runtime.select(coincide, 0.0, t1 / apart)
+    del t1
     t7 = distance * t6 / 2.0
     n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
+    del coincide, t3
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
     height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    del apart, slack, t5, t8
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     t11 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t11
     t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
+    del t4, t9
     t14 = _runtime.poison(np.logical_not(t12 & t13) | unreachable)
+    del t12, t13, unreachable
     t15 = distance * n_1 / 2.0
+    del distance, n_1
     t16 = t6 * height
+    del height, t6
     CP_y = t15 + t16
     DP_r = t7 + t10
+    del t10, t7
     CP_y_right_of_CD = t15 - t16
+    del t15, t16
     return (
         L2 * (C_r - DP_r_right_of_CD) + t14,
         -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14,
@@ -368,10 +426,14 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     s3, c3 = _runtime.sincos(theta3)
     s1, c1 = _runtime.sincos(theta1)
     C_r = L1 * s2
+    del s2
     D_r = L1 * s3
+    del s3
     t1 = C_r - D_r
     C_y = L1 * c2
+    del c2
     t2 = L1 * c3
+    del c3
     t3 = C_y - (L0 + t2)
     apart = np.sqrt(t1 * t1 + t3 * t3)
     t4 = L0 + L1 + L2
@@ -379,36 +441,50 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     coincide = apart <= t5
     distance = _runtime.select(coincide, 0.0, apart)
     t6 = _runtime.select(coincide, 0.0, t1 / apart)
+    del t1
     t7 = distance * t6 / 2.0
     n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
+    del coincide, t3
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
     height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    del apart, slack, t5, t8
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     P_r = C_r - DP_r_right_of_CD
     t11 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t11
     t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
+    del t4, t9
     t14 = _runtime.poison(np.logical_not(t12 & t13) | unreachable)
+    del t12, t13, unreachable
     t15 = distance * n_1 / 2.0
+    del n_1
     t16 = t6 * height
+    del t6
     CP_y_right_of_CD = t15 - t16
     CP_y = t15 + t16
+    del t15, t16
     t17 = C_y * DP_r_right_of_CD + C_r * CP_y
     t18 = CP_y_right_of_CD * t17
     side = distance * height
+    del distance, height
     DP_r = t7 + t10
+    del t10, t7
     along_d = t2 * DP_r + D_r * CP_y_right_of_CD
     t19 = CP_y * along_d
     t20 = 0.0 + t14
     P_r_right_of_CD = C_r - DP_r
     t21 = C_y * DP_r + C_r * CP_y_right_of_CD
+    del C_r, C_y
     t22 = CP_y * t21
     along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y
+    del CP_y, D_r, t2
     t23 = CP_y_right_of_CD * along_d_right_of_CD
+    del CP_y_right_of_CD
     return (
         P_r * s1 + t14,
         c1 * t18 / side + t14,
@@ -458,10 +534,14 @@ def _determinant(theta1, theta2, theta3, L0, L1, L2):
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     C_r = L1 * s2
+    del s2
     D_r = L1 * s3
+    del s3
     t1 = C_r - D_r
     C_y = L1 * c2
+    del c2
     t2 = L1 * c3
+    del c3
     t3 = C_y - (L0 + t2)
     apart = np.sqrt(t1 * t1 + t3 * t3)
     t4 = L0 + L1 + L2
@@ -469,29 +549,43 @@ def _determinant(theta1, theta2, theta3, L0, L1, L2):
     coincide = apart <= t5
     distance = _runtime.select(coincide, 0.0, apart)
     t6 = _runtime.select(coincide, 0.0, t1 / apart)
+    del t1
     t7 = distance * t6 / 2.0
     n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
+    del coincide, t3
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
     height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    del apart, slack, t5, t8
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     t11 = distance * n_1 / 2.0
+    del n_1
     t12 = t6 * height
+    del t6
     CP_y = t11 + t12
     t13 = (C_r - DP_r_right_of_CD) * (C_y * DP_r_right_of_CD + C_r * CP_y)
     DP_r = t7 + t10
+    del t10, t7
     CP_y_right_of_CD = t11 - t12
+    del t11, t12
     side = distance * height
+    del distance, height
     t14 = t13 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side
+    del t13
     t15 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t16 = t15 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t15
     t17 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
+    del t4, t9
     t18 = _runtime.poison(np.logical_not(t16 & t17) | unreachable)
+    del t16, t17, unreachable
     t19 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD)
+    del CP_y_right_of_CD, C_r, C_y, DP_r
     t20 = t19 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side
+    del CP_y, DP_r_right_of_CD, D_r, side, t19, t2
     return (
         -t14 + t18,
         t20 + t18,
@@ -525,10 +619,14 @@ def _singularities(theta1, theta2, theta3, L0, L1, L2):
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     C_r = L1 * s2
+    del s2
     D_r = L1 * s3
+    del s3
     t1 = C_r - D_r
     C_y = L1 * c2
+    del c2
     t2 = L1 * c3
+    del c3
     t3 = C_y - (L0 + t2)
     apart = np.sqrt(t1 * t1 + t3 * t3)
     t4 = L0 + L1 + L2
@@ -536,25 +634,36 @@ def _singularities(theta1, theta2, theta3, L0, L1, L2):
     coincide = apart <= t5
     distance = _runtime.select(coincide, 0.0, apart)
     t6 = _runtime.select(coincide, 0.0, t1 / apart)
+    del t1
     t7 = distance * t6 / 2.0
     n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
+    del coincide, t3
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
     height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    del apart, slack, t5, t8
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
     t11 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t12 = t11 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t11
     t13 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t9)
+    del t4, t9
     t14 = _runtime.poison(np.logical_not(t12 & t13) | unreachable)
+    del t12, t13, unreachable
     t15 = distance * n_1 / 2.0
+    del n_1
     t16 = t6 * height
+    del t6
     CP_y = t15 + t16
     DP_r = t7 + t10
+    del t10, t7
     CP_y_right_of_CD = t15 - t16
+    del t15, t16
     side = distance * height
+    del distance, height
     return (
         C_r - DP_r_right_of_CD + t14,
         -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14,
@@ -593,8 +702,11 @@ def _condition_number(theta1, theta2, theta3, L0, L1, L2):
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     t1 = L1 * s2 - L1 * s3
+    del s2, s3
     t2 = L1 * c2 - (L0 + L1 * c3)
+    del c2, c3
     apart = np.sqrt(t1 * t1 + t2 * t2)
+    del t1, t2
     t3 = L0 + L1 + L2
     t4 = t3 * _runtime.VANISHING
     coincide = apart <= t4
@@ -603,13 +715,19 @@ def _condition_number(theta1, theta2, theta3, L0, L1, L2):
     t7 = t6 - apart
     slack = np.maximum(t7, 0.0)
     height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
+    del apart, slack, t4, t6
     t8 = _runtime.select(coincide, 1.0, np.maximum(t5, height))
+    del coincide
     t9 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t10 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     t11 = t9 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t10
+    del t10, t9
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t7)
+    del t3, t7
     t12 = _runtime.poison(np.logical_not(t11) | unreachable)
+    del t11, unreachable
     t13 = t8 / np.minimum(t5, height) + t12
+    del height, t12, t5, t8
     return (
         t13,
         t13,
@@ -650,7 +768,9 @@ def _ik(x, y, z, L0, L1, L2):
     t4 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t5 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     t6 = t4 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t5
+    del t4, t5
     invalid = np.logical_not(t6)
+    del t6
     t7 = L2 * 2.0
     t8 = _runtime.FEASIBILITY * (t1 * (L1 * 2.0 + t7))
     t9 = t1 * t1
@@ -659,51 +779,80 @@ def _ik(x, y, z, L0, L1, L2):
     t11 = L1 - L2
     t12 = L1 / 8796093022208.0 + L2 / 8796093022208.0 + 2.0 * np.abs(t11)
     t13 = -(_runtime.FEASIBILITY * (t1 * t12))
+    del t12
     t14 = t11 * t11
     t15 = square_c - t14
+    del square_c
     t16 = y - L0
     square_d = r2 + t16 * t16
+    del r2
     t17 = t9 - square_d
     t18 = square_d - t14
+    del square_d, t14
     t19 = (-t8 <= t10) & (t13 <= t15) & (-t8 <= t17) & (t13 <= t18)
+    del t13, t8
     unreachable = np.logical_not(t19)
+    del t19
     t20 = _runtime.poison(invalid | unreachable)
     t21 = _runtime.wrap_cut(t3) + t20
+    del t3
     at_A = r + np.abs(y) <= t2
     no_link_c = L1 * L2 <= t9 * _runtime.VANISHING
+    del t9
     M_c = np.maximum(t15, 0.0)
+    del t15
     N_c = np.maximum(t10, 0.0)
+    del t10
     ahead_c = _runtime.select(no_link_c, 1.0, t1 * M_c + N_c * t11)
     t22 = ahead_c * r
     beyond_c = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(M_c) * np.sqrt(N_c))
+    del M_c, N_c
     t23 = y * beyond_c
     t24 = y * ahead_c
+    del ahead_c
     t25 = r * beyond_c
+    del beyond_c
     t26 = _runtime.select(at_A, 0.0, np.arctan2(t22 - t23, t24 + t25))
     t27 = _runtime.wrap_cut(t26) + t20
     at_B = r + np.abs(t16) <= t2
+    del t2
     M_d = np.maximum(t18, 0.0)
+    del t18
     N_d = np.maximum(t17, 0.0)
+    del t17
     ahead_d = _runtime.select(no_link_c, 1.0, t1 * M_d + t11 * N_d)
+    del t11
     t28 = ahead_d * r
     beyond_d = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(M_d) * np.sqrt(N_d))
+    del M_d, N_d, no_link_c, t7
     t29 = t16 * beyond_d
     t30 = t16 * ahead_d
+    del ahead_d, t16
     t31 = r * beyond_d
+    del beyond_d, r
     t32 = _runtime.select(at_B, 0.0, np.arctan2(t28 - t29, t30 + t31))
     t33 = _runtime.wrap_cut(t32) + t20
     t34 = _runtime.select(at_B, 0.0, np.arctan2(t28 + t29, t30 - t31))
+    del t28, t29, t30, t31
     t35 = _runtime.wrap_cut(t34) + t20
     t36 = _runtime.select(at_A, 0.0, np.arctan2(t22 + t23, t24 - t25))
+    del t22, t23, t24, t25
     t37 = _runtime.wrap_cut(t36) + t20
     t38 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
     t39 = _runtime.wrap_cut(-t38) + t20
+    del t38
     t40 = _runtime.wrap_cut(-t36) + t20
+    del t36
     t41 = _runtime.wrap_cut(-t34) + t20
+    del t34
     t42 = _runtime.wrap_cut(-t32) + t20
+    del t32
     t43 = _runtime.wrap_cut(-t26) + t20
+    del t20, t26
     t44 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
+    del at_A, at_B, on_axis, t1
     t45 = _runtime.status(invalid, unreachable, t44)
+    del invalid, t44, unreachable
     return (
         t21,
         t27,
@@ -775,6 +924,7 @@ def _workspace_contains(x, y, z, L0, L1, L2):
     t1 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t2 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     t3 = t1 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t2
+    del t1, t2
     t4 = L1 + L2
     t5 = _runtime.FEASIBILITY * (t4 * (L1 * 2.0 + L2 * 2.0))
     t6 = t4 * t4
@@ -783,12 +933,18 @@ def _workspace_contains(x, y, z, L0, L1, L2):
     t7 = L1 - L2
     t8 = L1 / 8796093022208.0 + L2 / 8796093022208.0 + 2.0 * np.abs(t7)
     t9 = -(_runtime.FEASIBILITY * (t4 * t8))
+    del t4, t8
     t10 = t7 * t7
+    del t7
     t11 = (-t5 <= t6 - square_c) & (t9 <= square_c - t10)
+    del square_c
     t12 = y - L0
     square_d = r2 + t12 * t12
+    del r2, t12
     t13 = t11 & (-t5 <= t6 - square_d) & (t9 <= square_d - t10)
+    del square_d, t10, t11, t5, t6, t9
     t14 = np.logical_not(np.logical_not(t3) | np.logical_not(t13))
+    del t13, t3
     return (
         t14,
     )
@@ -826,21 +982,33 @@ def _workspace_volume(L0, L1, L2):
     t6 = m * 4.0
     t7 = L0 + M * 4.0
     t8 = 3.141592653589793 * (t5 * t5) * (t6 + t7) / 12.0
+    del t5
     r = M - m
     t9 = M * M
+    del M
     t10 = m * m
     t11 = L0 * L0 * L0 - L0 * 12.0 * (t9 + t10) + m * 16.0 * (t10 + t9 * 3.0)
     t12 = t9 * t10 * 25.132741228718345 / L0
+    del t10, t9
     t13 = t3 + t4
+    del t4
     t14 = 3.141592653589793 * (t13 * t13) * (t6 - t7) / 12.0
+    del t13, t6, t7
     t15 = _runtime.select(L0 <= t3, t8 - r * r * r * 8.377580409572783, t12)
+    del t3
     t16 = _runtime.select(2.0 * np.maximum(m, r) <= L0, t12 + t14, t15)
+    del t12, t14, t15
     t17 = _runtime.select(L0 <= 2.0 * np.minimum(m, r), 3.141592653589793 * t11 / 6.0, t16)
+    del m, r, t11, t16
     t18 = _runtime.select(np.maximum(t1, 0.0) * 2.0 <= L0, 0.0, _runtime.select(t2 <= L0, t8, t17))
+    del t17, t2, t8
     t19 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
     t20 = t19 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t19
     unreachable = np.logical_not(-(t1 * _runtime.FEASIBILITY) <= t1)
+    del t1
     t21 = _runtime.poison(np.logical_not(t20) | unreachable)
+    del t20, unreachable
     return (
         t18 + t21,
     )

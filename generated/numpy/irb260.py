@@ -100,6 +100,7 @@ def _joint4(_theta1, theta2, theta3, _theta5):
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     t1 = np.arctan2(s2 * c3 + c2 * s3, c2 * c3 - s2 * s3)
+    del c2, c3, s2, s3
     return (
         _runtime.wrap_cut(-t1),
     )
@@ -193,6 +194,7 @@ def _fk(theta1, theta2, theta3, theta5, l1, l2, l3, l4, l5, l6):
     s5, c5 = _runtime.sincos(theta5)
     t1 = l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3)
     t2 = np.arctan2(s1 * c5 + c1 * s5, c1 * c5 - s1 * s5)
+    del c5, s5
     return (
         -(t1 * s1),
         t1 * c1,
@@ -230,6 +232,7 @@ def _pose(theta1, theta2, theta3, theta5, l1, l2, l3, l4, l5, l6):
     s3, c3 = _runtime.sincos(theta3)
     c15 = c1 * c5 - s1 * s5
     s15 = s1 * c5 + c1 * s5
+    del c5, s5
     t1 = l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3)
     return (
         c15,
@@ -280,7 +283,9 @@ def _jacobian(theta1, theta2, theta3, _theta5, l1, l3, l4, l6):
     t2 = l3 * s2 + t1
     t3 = l1 + l6 + t2
     t4 = l4 * (s2 * c3 + c2 * s3)
+    del c3, s2, s3
     t5 = l3 * c2 - t4
+    del c2
     return (
         -(c1 * t3),
         -(s1 * t5),
@@ -329,7 +334,9 @@ def _jacobian_space(theta1, theta2, theta3, _theta5, l1, l3, l4, l6):
     t1 = l4 * (s2 * c3 + c2 * s3)
     t2 = l3 * c2 - t1
     t3 = l4 * (c2 * c3 - s2 * s3)
+    del c2, c3, s3
     t4 = l3 * s2 + t3
+    del s2
     t5 = l1 + l6 + t4
     return (
         0.0,
@@ -388,7 +395,9 @@ def _jacobian_body(_theta1, theta2, theta3, theta5, l1, l3, l4, l6):
     t2 = l3 * s2 + t1
     t3 = l1 + l6 + t2
     t4 = l4 * (s2 * c3 + c2 * s3)
+    del c3, s2, s3
     t5 = l3 * c2 - t4
+    del c2
     return (
         -(c5 * t3),
         s5 * t5,
@@ -446,6 +455,7 @@ def _jacobian_motors(theta1, theta2, theta3, _theta5, l1, l3, l4, l6):
     t3 = l1 + l6 + t1 + t2
     t4 = l3 * c2
     t5 = l4 * (s2 * c3 + c2 * s3)
+    del c2, c3, s2, s3
     return (
         -(t3 * c1),
         -(s1 * t4),
@@ -490,6 +500,7 @@ def _determinant(_theta1, theta2, theta3, _theta5, l1, l3, l4, l6):
     s3, c3 = _runtime.sincos(theta3)
     s2, c2 = _runtime.sincos(theta2)
     t1 = l3 * l4 * c3 * (l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3))
+    del c2, c3, s2, s3
     return (
         t1,
     )
@@ -555,8 +566,11 @@ def _point_velocity(
     t1 = theta3_dot * l4
     t2 = s23 * t1
     t3 = theta2_dot * (l3 * c2 - l4 * s23)
+    del s23
     c23 = c2 * c3 - s2 * s3
+    del c2, c3, s3
     t4 = l3 * s2 + l4 * c23
+    del s2
     t5 = theta1_dot * (l1 + l6 + t4)
     return (
         s1 * t2 - s1 * t3 - c1 * t5,
@@ -600,9 +614,12 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     t5 = _runtime.wrap_cut(-np.arctan2(s_turret_back_elbow_up, c_turret))
     t6 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(l3) & np.isfinite(l4) & np.isfinite(l5) & np.isfinite(l6)
     t7 = t6 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= l3) & (0.0 <= l4)
+    del t6
     t8 = np.isfinite(px) & np.isfinite(py) & np.isfinite(pz) & np.isfinite(psi)
     invalid = np.logical_not(t7 & (0.0 <= l5) & (0.0 <= l6) & t8)
+    del t7, t8
     t9 = -(_runtime.FEASIBILITY * t3)
+    del t3
     h = pz - l2 + l5
     t10 = h * h
     t11 = r - t2
@@ -614,51 +631,83 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     unreachable = np.logical_not((t9 <= t12) & (t9 <= t14) & (t9 <= t15))
     t16 = _runtime.poison(invalid | unreachable)
     t17 = t5 + t16
+    del t5
     folded = reach <= t4
     no_link = l3 * l4 <= _runtime.VANISHING * (t1 * t1)
     rA = np.sqrt(np.maximum(t12, 0.0))
+    del t12
     rC = np.sqrt(np.maximum(t15, 0.0))
+    del t15
     rS = np.sqrt(t1 + reach)
+    del reach
     rB = np.sqrt(np.maximum(t14, 0.0))
+    del t14
     t18 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
     t19 = np.arctan2(-t11, h)
+    del t11
     t20 = _runtime.wrap_up(-_runtime.select(folded, 0.0, t18 + t19))
     t21 = 2.0 * np.arctan2(rA * rS, rC * rB)
+    del rA, rB, rC, rS
     t22 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t21)
     t23 = c_psi * s_turret_back_elbow_up
     t24 = s_psi * s_turret_back_elbow_up
     t25 = np.arctan2(s_psi * c_turret + t23, c_psi * c_turret - t24)
+    del c_turret
     t26 = _runtime.wrap_cut(t25) + t16
+    del t25
     t27 = _runtime.wrap(_runtime.select(folded, 0.0, t18 - t19))
+    del t18, t19
     t28 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t21)
+    del t21
     c_turret_back_elbow_up = _runtime.select(on_axis, 1.0, -py)
     t29 = np.arctan2(s_turret_back_elbow_up, c_turret_back_elbow_up)
+    del s_turret_back_elbow_up
     t30 = r + t2
+    del r, t2
     reach_back_elbow_up = np.sqrt(t10 + t30 * t30)
+    del t10
     t31 = t1 - reach_back_elbow_up
     t32 = t13 + reach_back_elbow_up
     t33 = reach_back_elbow_up - t13
+    del t13
     unreachable_2 = np.logical_not((t9 <= t31) & (t9 <= t32) & (t9 <= t33))
+    del t9
     t34 = _runtime.poison(invalid | unreachable_2)
     t35 = _runtime.wrap_cut(t29) + t34
+    del t29
     folded_back_elbow_up = reach_back_elbow_up <= t4
+    del t4
     rA_back_elbow_up = np.sqrt(np.maximum(t31, 0.0))
+    del t31
     rC_back_elbow_up = np.sqrt(np.maximum(t33, 0.0))
+    del t33
     rS_back_elbow_up = np.sqrt(t1 + reach_back_elbow_up)
+    del reach_back_elbow_up, t1
     rB_back_elbow_up = np.sqrt(np.maximum(t32, 0.0))
+    del t32
     t36 = np.arctan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up)
     t37 = _runtime.select(no_link, 0.0, 2.0 * t36)
+    del t36
     t38 = np.arctan2(t30, h)
+    del h, t30
     t39 = _runtime.select(folded_back_elbow_up, 0.0, t37 + t38)
     t40 = np.arctan2(rA_back_elbow_up * rS_back_elbow_up, rC_back_elbow_up * rB_back_elbow_up)
+    del rA_back_elbow_up, rB_back_elbow_up, rC_back_elbow_up, rS_back_elbow_up
     t41 = 2.0 * t40
+    del t40
     t42 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t41)
     t43 = np.arctan2(t23 - s_psi * c_turret_back_elbow_up, t24 + c_psi * c_turret_back_elbow_up)
+    del c_psi, c_turret_back_elbow_up, s_psi, t23, t24
     t44 = _runtime.wrap_cut(-t43) + t34
+    del t43
     t45 = _runtime.select(folded_back_elbow_up, 0.0, t37 - t38)
+    del t37, t38
     t46 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t41)
+    del t41
     t47 = _runtime.status(invalid, unreachable, on_axis | folded | no_link)
+    del folded, unreachable
     t48 = _runtime.status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link)
+    del folded_back_elbow_up, invalid, no_link, on_axis, unreachable_2
     return (
         t17,
         t20 + t16,
@@ -745,16 +794,22 @@ def workspace_section(params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
 def _workspace_margin(px, py, pz, l1, l2, l3, l4, l5, l6):
     h = pz - l2 + l5
     t1 = h * h
+    del h
     r = np.sqrt(px * px + py * py)
     t2 = l1 + l6
     t3 = r + t2
     reach_back = np.sqrt(t1 + t3 * t3)
+    del t3
     t4 = np.abs(l3 - l4)
     t5 = l3 + l4
     t6 = r - t2
+    del r, t2
     reach_front = np.sqrt(t1 + t6 * t6)
+    del t1, t6
     margin_front = np.minimum(reach_front - t4, t5 - reach_front)
+    del reach_front
     t7 = np.maximum(np.minimum(reach_back - t4, t5 - reach_back), margin_front)
+    del margin_front, reach_back, t4, t5
     return (
         t7,
     )
@@ -783,22 +838,31 @@ def workspace_margin(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = 
 def _workspace_contains(px, py, pz, l1, l2, l3, l4, l5, l6):
     t1 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(l3) & np.isfinite(l4) & np.isfinite(l5) & np.isfinite(l6)
     t2 = t1 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= l3) & (0.0 <= l4)
+    del t1
     t3 = np.isfinite(px) & np.isfinite(py) & np.isfinite(pz)
     invalid = np.logical_not(t2 & (0.0 <= l5) & (0.0 <= l6) & t3)
+    del t2, t3
     t4 = l1 + l6
     t5 = l3 + l4
     t6 = -(_runtime.FEASIBILITY * (l2 + l5 + t4 + t5))
     h = pz - l2 + l5
     t7 = h * h
+    del h
     r = np.sqrt(px * px + py * py)
     t8 = r + t4
     reach_back = np.sqrt(t7 + t8 * t8)
+    del t8
     t9 = np.abs(l3 - l4)
     t10 = r - t4
+    del r, t4
     reach_front = np.sqrt(t7 + t10 * t10)
+    del t10, t7
     margin_front = np.minimum(reach_front - t9, t5 - reach_front)
+    del reach_front
     t11 = np.maximum(np.minimum(reach_back - t9, t5 - reach_back), margin_front)
+    del margin_front, reach_back, t5, t9
     t12 = np.logical_not(invalid | np.logical_not(t6 <= t11))
+    del invalid, t11, t6
     return (
         t12,
     )

@@ -108,6 +108,7 @@ def _pose(theta1, theta2, l1, l2):
     s2, c2 = _runtime.sincos(theta2)
     c12 = c1 * c2 - s1 * s2
     s12 = s1 * c2 + c1 * s2
+    del c2, s2
     return (
         c12,
         -s12,
@@ -153,6 +154,7 @@ def _orientation(theta1, theta2):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     t1 = np.arctan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2)
+    del c1, c2, s1, s2
     return (
         _runtime.wrap_cut(t1),
     )
@@ -184,6 +186,7 @@ def _jacobian(theta1, theta2, l1, l2):
     s2, c2 = _runtime.sincos(theta2)
     t1 = l2 * (s1 * c2 + c1 * s2)
     t2 = l2 * (c1 * c2 - s1 * s2)
+    del c2, s2
     return (
         -(l1 * s1 + t1),
         -t1,
@@ -306,28 +309,42 @@ def _ik(px, py, l1, l2):
     t4 = r2 - t3 * t3
     M = np.maximum(t4, 0.0)
     t5 = t2 - r2
+    del r2, t2
     N = np.maximum(t5, 0.0)
     ahead = _runtime.select(no_link, 1.0, t1 * M + N * t3)
     t6 = py * ahead
     t7 = l2 * 2.0
     t8 = np.sqrt(M)
+    del M
     t9 = np.sqrt(N)
+    del N
     beyond = _runtime.select(no_link, 0.0, t7 * t8 * t9)
     t10 = px * beyond
     t11 = px * ahead
+    del ahead
     t12 = py * beyond
+    del beyond
     t13 = _runtime.select(at_base, 0.0, np.arctan2(t6 - t10, t11 + t12))
     t14 = (np.isfinite(l1) & np.isfinite(l2)) & (0.0 <= l1)
     t15 = t14 & (0.0 <= l2) & (np.isfinite(px) & np.isfinite(py))
+    del t14
     invalid = np.logical_not(t15)
+    del t15
     t16 = _runtime.FEASIBILITY * (t1 * (l1 * 2.0 + t7))
+    del t7
     t17 = l1 / 8796093022208.0 + l2 / 8796093022208.0 + 2.0 * np.abs(t3)
+    del t3
     t18 = (-t16 <= t5) & (-(_runtime.FEASIBILITY * (t1 * t17)) <= t4)
+    del t1, t16, t17, t4, t5
     unreachable = np.logical_not(t18)
+    del t18
     t19 = _runtime.poison(invalid | unreachable)
     t20 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(t9, t8))
+    del t8, t9
     t21 = _runtime.select(at_base, 0.0, np.arctan2(t6 + t10, t11 - t12))
+    del t10, t11, t12, t6
     t22 = _runtime.status(invalid, unreachable, no_link | at_base)
+    del at_base, invalid, no_link, unreachable
     return (
         _runtime.wrap_cut(t13) + t19,
         t20 + t19,
@@ -374,6 +391,7 @@ def _ik_pose(
     s1 = _runtime.select(no_first_link, 0.0, elbow_y * t2)
     elbow_x = T14 - T11 * l2
     c1 = _runtime.select(no_first_link, 1.0, elbow_x * t2)
+    del t2
     t3 = (np.isfinite(l1) & np.isfinite(l2)) & (0.0 <= l1)
     t4 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t5 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
@@ -381,21 +399,33 @@ def _ik_pose(
     t7 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
     t8 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
     t9 = t3 & (0.0 <= l2) & t4 & t5 & t6 & t7 & (t8 <= _runtime.ROTATION)
+    del t3, t4, t5, t6, t7, t8
     t10 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
     t11 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
     t12 = t9 & (t10 <= _runtime.ROTATION) & t11 & (np.abs(T41) <= _runtime.ROTATION)
+    del t10, t11, t9
     t13 = t12 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t12
     t14 = t13 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t13
     invalid = np.logical_not(t14)
+    del t14
     t15 = np.sqrt(elbow_x * elbow_x + elbow_y * elbow_y)
+    del elbow_x, elbow_y
     t16 = _runtime.FEASIBILITY * t1
+    del t1
     t17 = (np.abs(l1 - t15) <= t16) & (np.abs(T34) <= t16)
+    del t15, t16
     t18 = t17 & (np.abs(T13) <= _runtime.FEASIBILITY) & (np.abs(T23) <= _runtime.FEASIBILITY)
+    del t17
     t19 = t18 & (np.abs(T33 - 1.0) <= _runtime.FEASIBILITY)
+    del t18
     unreachable = np.logical_not(t19)
+    del t19
     t20 = _runtime.poison(invalid | unreachable)
     t21 = np.arctan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1)
     t22 = _runtime.status(invalid, unreachable, no_first_link)
+    del invalid, no_first_link, unreachable
     return (
         _runtime.wrap_cut(np.arctan2(s1, c1)) + t20,
         _runtime.wrap_cut(-t21) + t20,

@@ -87,17 +87,24 @@ def _fk(theta1, theta2, theta3, theta4, theta5, theta6, a2, a3, d3, d4):
     c23 = c2 * c3 - s2 * s3
     T3_21 = c6 * s5
     s23 = s2 * c3 + c2 * s3
+    del c3, s3
     T1_11 = T2_11 * c23 - T3_21 * s23
     T2_21 = T3_11 * s4 + s6 * c4
+    del T3_11
     t1 = s6 * c5
     t2 = t1 * s4 - c6 * c4
     t3 = t1 * c4 + c6 * s4
+    del c6, t1
     t4 = s6 * s5
+    del s6
     t5 = t3 * c23 - t4 * s23
     t6 = s5 * s4
+    del s4
     t7 = s5 * c4
+    del c4, s5
     t8 = t7 * c23 + c5 * s23
     T1_14 = a2 * c2 + a3 * c23 - d4 * s23
+    del c2
     return (
         T1_11 * c1 - T2_21 * s1,
         t2 * s1 - t5 * c1,
@@ -150,17 +157,24 @@ def _pose(theta1, theta2, theta3, theta4, theta5, theta6, a2, a3, d3, d4):
     c23 = c2 * c3 - s2 * s3
     T3_21 = c6 * s5
     s23 = s2 * c3 + c2 * s3
+    del c3, s3
     T1_11 = T2_11 * c23 - T3_21 * s23
     T2_21 = T3_11 * s4 + s6 * c4
+    del T3_11
     t1 = s6 * c5
     t2 = t1 * s4 - c6 * c4
     t3 = t1 * c4 + c6 * s4
+    del c6, t1
     t4 = s6 * s5
+    del s6
     t5 = t3 * c23 - t4 * s23
     t6 = s5 * s4
+    del s4
     t7 = s5 * c4
+    del c4, s5
     t8 = t7 * c23 + c5 * s23
     T1_14 = a2 * c2 + a3 * c23 - d4 * s23
+    del c2
     return (
         T1_11 * c1 - T2_21 * s1,
         t2 * s1 - t5 * c1,
@@ -209,13 +223,17 @@ def _jacobian(theta1, theta2, theta3, theta4, theta5, _theta6, a2, a3, d3, d4):
     s5, c5 = _runtime.sincos(theta5)
     c23 = c2 * c3 - s2 * s3
     s23 = s2 * c3 + c2 * s3
+    del c3, s3
     J5_theta3_21 = a3 * c23 - d4 * s23
     p4_11 = a2 * c2 + J5_theta3_21
+    del c2
     t1 = a3 * s23 + d4 * c23
     p4_21 = a2 * s2 + t1
+    del s2
     J5_theta5_41 = s4 * c23
     t2 = s5 * s4
     t3 = s5 * c4
+    del s5
     t4 = t3 * c23 + c5 * s23
     return (
         d3 * c1 - s1 * p4_11,
@@ -288,7 +306,9 @@ def _jacobian_space(theta1, theta2, theta3, theta4, theta5, _theta6, a2, a3, d3,
     s23 = s2 * c3 + c2 * s3
     t1 = J5_theta3_11 + a3 * s23
     c23 = c2 * c3 - s2 * s3
+    del c3, s2, s3
     t2 = a2 * c2
+    del c2
     t3 = t2 + a3 * c23
     J5_theta4_31 = s23 * t1 + c23 * t3
     t4 = d3 * c23
@@ -301,11 +321,16 @@ def _jacobian_space(theta1, theta2, theta3, theta4, theta5, _theta6, a2, a3, d3,
     t7 = s5 * c4
     t8 = t7 * s23 - c5 * c23
     t9 = d4 * s5
+    del s5
     J4_theta6_11 = s4 * t9
+    del s4
     J5_theta6_11 = t6 * t1 + d3 * t8 + c23 * J4_theta6_11
     t10 = t7 * c23 + c5 * s23
+    del c5, t7
     t11 = t8 * t3 - t1 * t10 - c4 * t9
+    del t1, t9
     J5_theta5_21 = J4_theta5_11 * s23 - c4 * t3 + d3 * J5_theta5_41
+    del J4_theta5_11
     return (
         0.0,
         0.0,
@@ -375,15 +400,21 @@ def _jacobian_body(_theta1, theta2, theta3, theta4, theta5, theta6, a2, a3, d3, 
     c23 = c2 * c3 - s2 * s3
     J3_theta1_11 = d3 * c23
     s23 = s2 * c3 + c2 * s3
+    del s2
     t1 = a2 * c2 + a3 * c23 - d4 * s23
+    del c2
     J4_theta1_31 = J3_theta1_11 * s4 - c4 * t1
     t2 = d3 * s23
     J4_theta1_11 = J3_theta1_11 * c4 + s4 * t1
+    del J3_theta1_11, t1
     t3 = t2 * s5 - J4_theta1_11 * c5
     t4 = d4 - a2 * s3
+    del s3
     t5 = s4 * t4
     J3_theta2_31 = a3 + a2 * c3
+    del c3
     t6 = c4 * t4
+    del t4
     J5_theta2_11 = J3_theta2_31 * s5 - t6 * c5
     t7 = d4 * s4
     t8 = d4 * c4
@@ -391,10 +422,13 @@ def _jacobian_body(_theta1, theta2, theta3, theta4, theta5, theta6, a2, a3, d3, 
     J4_theta1_41 = s23 * c4
     J5_theta1_41 = J4_theta1_41 * c5 + c23 * s5
     J4_theta1_61 = s23 * s4
+    del s23
     t10 = s4 * c5
     t11 = -(t10 * c6 + c4 * s6)
     t12 = t10 * s6 - c4 * c6
+    del c4, t10
     J5_theta2_61 = s4 * s5
+    del s4
     return (
         -(J4_theta1_31 * s6 + t3 * c6),
         t5 * s6 + J5_theta2_11 * c6,
@@ -462,12 +496,15 @@ def _determinant(_theta1, theta2, theta3, _theta4, theta5, _theta6, a2, a3, d4):
     t1 = a3 * a3
     t2 = s3 * c2
     t3 = s3 * s2
+    del s3
     t4 = a2 * d4
     c23 = c3 * c2 - t3
     t5 = c3 * (c3 * s2 + t2)
     t6 = s2 * t1 - a2 * a3 * t2 - t3 * t4 - c23 * t4 - t1 * t5
+    del s2, t1, t2, t3, t4
     t7 = a3 * d4
     t8 = t6 + c2 * t7 - c3 * c23 * 2.0 * t7 + d4 * d4 * t5
+    del c2, c23, c3, t5, t6, t7
     return (
         -(a2 * s5 * t8),
     )
@@ -498,6 +535,7 @@ def _singularities(_theta1, theta2, theta3, _theta4, theta5, _theta6, a2, a3, d4
     s3, c3 = _runtime.sincos(theta3)
     s5 = np.sin(theta5)
     t1 = a2 * c2 + a3 * (c2 * c3 - s2 * s3) - d4 * (s2 * c3 + c2 * s3)
+    del c2, s2
     return (
         t1,
         a3 * s3 + d4 * c3,
@@ -541,36 +579,50 @@ def _ik(
     above = np.maximum(t4, 0.0)
     t5 = below - above
     t6 = 1.0 / (amplitude * (below + above))
+    del amplitude
     t7 = T14 * t5 * t6
     root = np.sqrt(above) * np.sqrt(below)
+    del above, below
     t8 = root * 2.0
     t9 = t6 * (T24 * t8)
     t10 = _runtime.select(free_theta1, 0.0, t7 - t9)
     t11 = T24 * t5 * t6
+    del t5
     t12 = t6 * (T14 * t8)
+    del t6, t8
     c1 = _runtime.select(free_theta1, 1.0, t11 + t12)
     t13 = np.isfinite(a2) & np.isfinite(a3) & np.isfinite(d3) & np.isfinite(d4)
     t14 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t15 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t16 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
     t17 = t13 & (0.0 <= a2) & (0.0 <= d4) & t14 & t15 & t16
+    del t13, t14, t15, t16
     t18 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
     t19 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
     t20 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
     t21 = t17 & t18 & (t19 <= _runtime.ROTATION) & (t20 <= _runtime.ROTATION)
+    del t17, t18, t19, t20
     t22 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
     t23 = t21 & t22 & (np.abs(T41) <= _runtime.ROTATION)
+    del t21, t22
     t24 = t23 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t23
     t25 = t24 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t24
     invalid = np.logical_not(t25)
+    del t25
     t26 = -(_runtime.FEASIBILITY * size)
+    del size
     reach = np.sqrt(T34 * T34 + root * root)
     t27 = t1 - reach
     t28 = a2 - f
     t29 = reach + t28
     t30 = (t26 <= t3) & (t26 <= t4) & (t26 <= t27) & (t26 <= t29)
+    del t3, t4
     t31 = reach - t28
+    del t28
     unreachable = np.logical_not(t30 & (t26 <= t31))
+    del t26, t30
     t32 = _runtime.poison(invalid | unreachable)
     t33 = _runtime.wrap_cut(-np.arctan2(t10, c1)) + t32
     folded = reach <= t2
@@ -579,149 +631,225 @@ def _ik(
     no_link = a2 * f <= _runtime.VANISHING * (t1 * t1)
     t36 = folded | no_link
     S = reach + t1
+    del reach, t1
     B = np.maximum(t29, 0.0)
+    del t29
     SB = S * B
     A = np.maximum(t27, 0.0)
+    del t27
     C = np.maximum(t31, 0.0)
+    del t31
     AC = A * C
     t37 = 1.0 / (SB + AC)
     t38 = _runtime.select(t36, 1.0, (SB - AC) * t37)
+    del AC, SB
     t39 = t35 * t38
     SA = S * A
+    del A, S
     BC = B * C
+    del B, C
     area = 2.0 * np.sqrt(SA * BC)
     t40 = _runtime.select(t36, 0.0, t37 * area)
+    del t36, t37
     t41 = root * t34
+    del root, t34
     t42 = _runtime.select(folded, 1.0, t41)
     t43 = t40 * t42
     s2 = t39 + t43
     t44 = t35 * t40
+    del t35
     t45 = t38 * t42
+    del t42
     t46 = t44 - t45
     t47 = _runtime.wrap_cut(np.arctan2(s2, -t46)) + t32
     no_forearm = f <= t2
+    del t2
     t48 = 1.0 / f
+    del f
     t49 = _runtime.select(no_forearm, 0.0, d4 * t48)
     t50 = 1.0 / (SA + BC)
     t51 = _runtime.select(no_link, 1.0, -((SA - BC) * t50))
+    del BC, SA
     t52 = t49 * t51
     t53 = _runtime.select(no_link, 0.0, area * t50)
+    del area, t50
     t54 = _runtime.select(no_forearm, 1.0, a3 * t48)
+    del t48
     t55 = t53 * t54
     t56 = t52 + t55
     t57 = t49 * t53
+    del t49, t53
     t58 = t51 * t54
+    del t51, t54
     t59 = t57 - t58
     t60 = _runtime.wrap_cut(-np.arctan2(t56, -t59)) + t32
     t61 = T13 * t10 + T23 * c1
     t62 = t61 * t61
     s23 = t46 * t56 - s2 * t59
     c23 = t46 * t59 + s2 * t56
+    del s2, t46
     R1_13 = T13 * c1 - T23 * t10
     R2_13 = T33 * s23 + c23 * R1_13
     h = np.sqrt(t62 + R2_13 * R2_13)
     t63 = _runtime.VANISHING * 16.0
     aligned = h <= t63
     t64 = 1.0 / h
+    del h
     t65 = _runtime.select(aligned, 0.0, t61 * t64)
     c4 = _runtime.select(aligned, 1.0, -(R2_13 * t64))
+    del t64
     t66 = np.arctan2(t65, c4)
     t67 = np.arctan2(t61 * t65 - R2_13 * c4, T33 * c23 - s23 * R1_13)
+    del R2_13
     t68 = T11 * t10 + T21 * c1
     R1_11 = T11 * c1 - T21 * t10
     t69 = T12 * t10 + T22 * c1
     R1_12 = T12 * c1 - T22 * t10
+    del c1, t10
     t70 = np.arctan2(c4 * t68 + t65 * (T31 * s23 + c23 * R1_11), c4 * t69 + t65 * (T32 * s23 + c23 * R1_12))
+    del c23, c4, s23, t65
     flip = _runtime.select(aligned, 0.0, 3.141592653589793)
     s2_right_down_noflip = t39 - t43
+    del t43
     c2_right_down_noflip = t44 + t45
+    del t45
     t71 = np.arctan2(s2_right_down_noflip, c2_right_down_noflip)
     t72 = _runtime.wrap_cut(t71) + t32
+    del t71
     t73 = t52 - t55
+    del t52, t55
     c3_right_down_noflip = t57 + t58
+    del t57, t58
     t74 = _runtime.wrap_cut(-np.arctan2(t73, c3_right_down_noflip))
     t75 = t74 + t32
+    del t74
     t76 = c2_right_down_noflip * t73 - s2_right_down_noflip * c3_right_down_noflip
     c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t73
+    del c2_right_down_noflip, s2_right_down_noflip
     t77 = T33 * t76 - R1_13 * c23_right_down_noflip
     h_right_down_noflip = np.sqrt(t62 + t77 * t77)
+    del t62
     aligned_right_down_noflip = h_right_down_noflip <= t63
     t78 = 1.0 / h_right_down_noflip
+    del h_right_down_noflip
     t79 = _runtime.select(aligned_right_down_noflip, 0.0, t61 * t78)
     c4_right_down_noflip = _runtime.select(aligned_right_down_noflip, 1.0, t77 * t78)
+    del t78
     t80 = np.arctan2(t79, c4_right_down_noflip)
     t81 = np.arctan2(t61 * t79 + t77 * c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t76)
+    del R1_13, t61, t77
     t82 = t79 * (T31 * t76 - R1_11 * c23_right_down_noflip)
+    del R1_11
     t83 = t79 * (T32 * t76 - R1_12 * c23_right_down_noflip)
+    del R1_12, c23_right_down_noflip, t76, t79
     t84 = np.arctan2(t68 * c4_right_down_noflip - t82, t69 * c4_right_down_noflip - t83)
+    del c4_right_down_noflip, t68, t69, t82, t83
     flip_right_down_flip = _runtime.select(aligned_right_down_noflip, 0.0, 3.141592653589793)
     t85 = _runtime.wrap(flip_right_down_flip - t80) + t32
     t86 = _runtime.wrap(t84 + flip_right_down_flip) + t32
+    del flip_right_down_flip
     t87 = _runtime.select(free_theta1, 0.0, t7 + t9)
+    del t7, t9
     c1_left_up_noflip = _runtime.select(free_theta1, 1.0, t11 - t12)
+    del t11, t12
     t88 = _runtime.wrap_cut(-np.arctan2(t87, c1_left_up_noflip))
     t89 = t88 + t32
+    del t88
     t90 = _runtime.select(folded, 1.0, -t41)
+    del t41
     t91 = t40 * t90
+    del t40
     s2_left_up_noflip = t39 - t91
     t92 = t38 * t90
+    del t38, t90
     c2_left_up_noflip = t44 + t92
     t93 = np.arctan2(s2_left_up_noflip, c2_left_up_noflip)
     t94 = _runtime.wrap_cut(t93) + t32
+    del t93
     t95 = T13 * t87 + T23 * c1_left_up_noflip
     t96 = t95 * t95
     t97 = t73 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip
     c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t73 * s2_left_up_noflip
+    del c2_left_up_noflip, c3_right_down_noflip, s2_left_up_noflip, t73
     R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t87
     t98 = T33 * t97 - c23_left_up_noflip * R1_13_left_up_noflip
     h_left_up_noflip = np.sqrt(t96 + t98 * t98)
     aligned_left_up_noflip = h_left_up_noflip <= t63
     t99 = 1.0 / h_left_up_noflip
+    del h_left_up_noflip
     t100 = _runtime.select(aligned_left_up_noflip, 0.0, t95 * t99)
     c4_left_up_noflip = _runtime.select(aligned_left_up_noflip, 1.0, t98 * t99)
+    del t99
     t101 = np.arctan2(t100, c4_left_up_noflip)
     R2_33_left_up_noflip = T33 * c23_left_up_noflip + t97 * R1_13_left_up_noflip
     t102 = np.arctan2(t95 * t100 + t98 * c4_left_up_noflip, R2_33_left_up_noflip)
+    del R2_33_left_up_noflip, t98
     t103 = T11 * t87 + T21 * c1_left_up_noflip
     R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t87
     t104 = T31 * t97 - c23_left_up_noflip * R1_11_left_up_noflip
     t105 = T12 * t87 + T22 * c1_left_up_noflip
     R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t87
+    del c1_left_up_noflip, t87
     t106 = T32 * t97 - c23_left_up_noflip * R1_12_left_up_noflip
+    del c23_left_up_noflip, t97
     t107 = np.arctan2(c4_left_up_noflip * t103 - t100 * t104, c4_left_up_noflip * t105 - t100 * t106)
+    del c4_left_up_noflip, t100, t104, t106
     flip_left_up_flip = _runtime.select(aligned_left_up_noflip, 0.0, 3.141592653589793)
     t108 = _runtime.wrap(flip_left_up_flip - t101) + t32
     t109 = _runtime.wrap(t107 + flip_left_up_flip) + t32
+    del flip_left_up_flip
     s2_left_down_noflip = t39 + t91
+    del t39, t91
     t110 = t44 - t92
+    del t44, t92
     t111 = _runtime.wrap_cut(np.arctan2(s2_left_down_noflip, -t110))
     t112 = t111 + t32
+    del t111
     s23_left_down_noflip = t56 * t110 - t59 * s2_left_down_noflip
     c23_left_down_noflip = t59 * t110 + t56 * s2_left_down_noflip
+    del s2_left_down_noflip, t110, t56, t59
     R2_13_left_down_noflip = T33 * s23_left_down_noflip + R1_13_left_up_noflip * c23_left_down_noflip
     t113 = R2_13_left_down_noflip * R2_13_left_down_noflip
     h_left_down_noflip = np.sqrt(t96 + t113)
+    del t113, t96
     aligned_left_down_noflip = h_left_down_noflip <= t63
+    del t63
     t114 = 1.0 / h_left_down_noflip
+    del h_left_down_noflip
     t115 = _runtime.select(aligned_left_down_noflip, 0.0, t95 * t114)
     c4_left_down_noflip = _runtime.select(aligned_left_down_noflip, 1.0, -(R2_13_left_down_noflip * t114))
+    del t114
     t116 = np.arctan2(t115, c4_left_down_noflip)
     t117 = t95 * t115 - R2_13_left_down_noflip * c4_left_down_noflip
+    del R2_13_left_down_noflip, t95
     R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip * s23_left_down_noflip
+    del R1_13_left_up_noflip
     t118 = np.arctan2(t117, R2_33_left_down_noflip)
+    del R2_33_left_down_noflip, t117
     R2_11_left_down_noflip = T31 * s23_left_down_noflip + R1_11_left_up_noflip * c23_left_down_noflip
+    del R1_11_left_up_noflip
     t119 = t103 * c4_left_down_noflip + t115 * R2_11_left_down_noflip
+    del R2_11_left_down_noflip, t103
     R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip * c23_left_down_noflip
+    del R1_12_left_up_noflip, c23_left_down_noflip, s23_left_down_noflip
     t120 = t105 * c4_left_down_noflip + t115 * R2_12_left_down_noflip
+    del R2_12_left_down_noflip, c4_left_down_noflip, t105, t115
     t121 = np.arctan2(t119, t120)
+    del t119, t120
     flip_left_down_flip = _runtime.select(aligned_left_down_noflip, 0.0, 3.141592653589793)
     t122 = _runtime.wrap(flip_left_down_flip - t116) + t32
     t123 = _runtime.wrap(t121 + flip_left_down_flip) + t32
+    del flip_left_down_flip
     t124 = free_theta1 | no_link | folded | no_forearm
+    del folded, free_theta1, no_forearm, no_link
     t125 = _runtime.status(invalid, unreachable, t124 | aligned)
+    del aligned
     t126 = _runtime.status(invalid, unreachable, t124 | aligned_right_down_noflip)
+    del aligned_right_down_noflip
     t127 = _runtime.status(invalid, unreachable, t124 | aligned_left_up_noflip)
+    del aligned_left_up_noflip
     t128 = _runtime.status(invalid, unreachable, t124 | aligned_left_down_noflip)
+    del aligned_left_down_noflip, invalid, t124, unreachable
     return (
         t33,
         t47,

@@ -74,18 +74,28 @@ def _fk(rho1, rho2, b):
     t6 = _runtime.select(coincide, rho1, b / 2.0 + t4 * t1 * t5)
     t7 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     invalid = np.logical_not(t7)
+    del t7
     t8 = -(_runtime.FEASIBILITY * t2)
     t9 = t1 - b
+    del t1
     t10 = b + t4
     t11 = b - t4
+    del t4
     unreachable = np.logical_not((t8 <= t9) & (t8 <= t10) & (t8 <= t11))
+    del t8
     t12 = _runtime.poison(invalid | unreachable)
     t13 = n_1 * t6 + t12
+    del t6
     slack = np.maximum(t9, 0.0)
+    del t9
     t14 = np.sqrt(np.maximum(t11, 0.0)) * np.sqrt(np.maximum(t10, 0.0))
+    del t10, t11
     t15 = _runtime.select(coincide, 0.0, t5 * (t14 * np.sqrt(slack) * np.sqrt(t2)))
+    del t14, t2, t5
     P_y = n_1 * _runtime.select(slack <= t3, 0.0, t15)
+    del n_1, slack, t15, t3
     t16 = _runtime.status(invalid, unreachable, coincide)
+    del coincide, invalid, unreachable
     return (
         t13,
         P_y + t12,
@@ -134,15 +144,23 @@ def _passive_angles(rho1, rho2, b):
     t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
     t9 = b * 2.0
     t10 = _runtime.select(coincide, 0.0, t8 * np.sqrt(slack) * np.sqrt(t2) / t9)
+    del t8
     P_y = n_1 * _runtime.select(slack <= t3, 0.0, t10)
+    del slack, t10, t3
     t11 = _runtime.select(coincide, rho1, b / 2.0 + t5 * t1 / t9)
+    del coincide, t1, t5, t9
     P_x = n_1 * t11
+    del n_1, t11
     t12 = np.arctan2(P_y, P_x)
     t13 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t14 = -(_runtime.FEASIBILITY * t2)
+    del t2
     unreachable = np.logical_not((t14 <= t4) & (t14 <= t7) & (t14 <= t6))
+    del t14, t4, t6, t7
     t15 = _runtime.poison(np.logical_not(t13) | unreachable)
+    del t13, unreachable
     t16 = np.arctan2(P_y, P_x - b)
+    del P_x, P_y
     return (
         _runtime.wrap_cut(t12) + t15,
         _runtime.wrap_cut(t16) + t15,
@@ -182,7 +200,9 @@ def _jacobian(rho1, rho2, b):
     t7 = b + t6
     t8 = b - t6
     unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
+    del t4
     t9 = _runtime.poison(np.logical_not(t1) | unreachable)
+    del t1, unreachable
     t10 = rho1 / b + t9
     t11 = -(rho2 / b) + t9
     t12 = _runtime.VANISHING * t3
@@ -190,14 +210,22 @@ def _jacobian(rho1, rho2, b):
     n_1 = _runtime.select(coincide, 1.0, b / b)
     t13 = b * 2.0
     t14 = _runtime.select(coincide, rho1, b / 2.0 + t6 * t2 / t13)
+    del t2, t6
     P_x = n_1 * t14
+    del t14
     slack = np.maximum(t5, 0.0)
+    del t5
     t15 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    del t7, t8
     t16 = _runtime.select(coincide, 0.0, t15 * np.sqrt(slack) * np.sqrt(t3) / t13)
+    del coincide, t13, t15, t3
     P_y = n_1 * _runtime.select(slack <= t12, 0.0, t16)
+    del n_1, slack, t12, t16
     t17 = b * P_y
+    del P_y
     t18 = (rho1 * b - rho1 * P_x) / t17
     t19 = rho2 * P_x / t17
+    del P_x, t17
     return (
         t10,
         t11,
@@ -237,19 +265,28 @@ def _determinant(rho1, rho2, b):
     t3 = _runtime.VANISHING * t2
     coincide = b <= t3
     t4 = t1 - b
+    del t1
     slack = np.maximum(t4, 0.0)
     t5 = rho1 - rho2
     t6 = b - t5
     t7 = b + t5
+    del t5
     t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
     t9 = t8 * np.sqrt(slack) * np.sqrt(t2) / (b * 2.0)
+    del t8
     height = _runtime.select(slack <= t3, 0.0, _runtime.select(coincide, 0.0, t9))
+    del slack, t3, t9
     P_y = _runtime.select(coincide, 1.0, b / b) * height
+    del coincide, height
     t10 = rho1 * rho2 / (b * P_y)
+    del P_y
     t11 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t12 = -(_runtime.FEASIBILITY * t2)
+    del t2
     unreachable = np.logical_not((t12 <= t4) & (t12 <= t7) & (t12 <= t6))
+    del t12, t4, t6, t7
     t13 = _runtime.poison(np.logical_not(t11) | unreachable)
+    del t11, unreachable
     return (
         t10 + t13,
         -t10 + t13,
@@ -283,20 +320,29 @@ def _singularities(rho1, rho2, b):
     t3 = b + t2
     t4 = -(_runtime.FEASIBILITY * t3)
     t5 = t2 - b
+    del t2
     t6 = rho1 - rho2
     t7 = b + t6
     t8 = b - t6
+    del t6
     unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
+    del t4
     t9 = _runtime.poison(np.logical_not(t1) | unreachable)
+    del t1, unreachable
     t10 = rho1 + t9
     t11 = rho2 + t9
     t12 = _runtime.VANISHING * t3
     coincide = b <= t12
     slack = np.maximum(t5, 0.0)
+    del t5
     t13 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    del t7, t8
     t14 = t13 * np.sqrt(slack) * np.sqrt(t3) / (b * 2.0)
+    del t13, t3
     height = _runtime.select(slack <= t12, 0.0, _runtime.select(coincide, 0.0, t14))
+    del slack, t12, t14
     P_y = _runtime.select(coincide, 1.0, b / b) * height
+    del coincide, height
     return (
         t10,
         t11,
@@ -332,9 +378,11 @@ def _ik(x, y, b):
     t1 = y * y
     t2 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(x) & np.isfinite(y))
     invalid = np.logical_not(t2)
+    del t2
     t3 = _runtime.poison(invalid)
     t4 = x - b
     t5 = _runtime.status(invalid, np.False_, np.False_)
+    del invalid
     return (
         np.sqrt(x * x + t1) + t3,
         np.sqrt(t1 + t4 * t4) + t3,

@@ -76,8 +76,10 @@ def _pose(theta1, theta2, d3, theta4, l1, l2, h):
     s4, c4 = _runtime.sincos(theta4)
     t1 = c2 * c4 + s2 * s4
     t2 = s2 * c4 - c2 * s4
+    del c4, s4
     t3 = c1 * t1 - s1 * t2
     t4 = s1 * t1 + c1 * t2
+    del t1, t2
     return (
         t3,
         t4,
@@ -124,7 +126,9 @@ def _fk(theta1, theta2, d3, theta4, l1, l2, h):
     s4, c4 = _runtime.sincos(theta4)
     t1 = c2 * c4 + s2 * s4
     t2 = s2 * c4 - c2 * s4
+    del c4, s4
     t3 = np.arctan2(s1 * t1 + c1 * t2, c1 * t1 - s1 * t2)
+    del t1, t2
     return (
         l1 * c1 + l2 * (c1 * c2 - s1 * s2),
         l1 * s1 + l2 * (s1 * c2 + c1 * s2),
@@ -159,6 +163,7 @@ def _jacobian(theta1, theta2, _d3, _theta4, l1, l2):
     s2, c2 = _runtime.sincos(theta2)
     t1 = l2 * (s1 * c2 + c1 * s2)
     t2 = l2 * (c1 * c2 - s1 * s2)
+    del c2, s2
     return (
         -(l1 * s1 + t1),
         -t1,
@@ -373,44 +378,64 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     C_elbow = np.maximum(t5, 0.0)
     t6 = A_elbow * C_elbow
     S_elbow = r_elbow + t1
+    del t1
     t7 = r_elbow + t4
+    del r_elbow, t4
     B_elbow = np.maximum(t7, 0.0)
     t8 = S_elbow * B_elbow
     t9 = 1.0 / (t6 + t8)
     c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t6 - t8) * t9))
+    del t6, t8
     t10 = t2 * (x_y * c_base_elbow)
     t11 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
     area_elbow = t11 * np.sqrt(S_elbow)
+    del t11
     s_base_elbow = _runtime.select(no_link_elbow, 0.0, t9 * area_elbow)
+    del t9
     t12 = t2 * (x_x * s_base_elbow)
     s1 = _runtime.select(folded_elbow, 0.0, t10 - t12)
     t13 = t2 * (x_x * c_base_elbow)
+    del c_base_elbow
     t14 = t2 * (x_y * s_base_elbow)
+    del s_base_elbow, t2
     c1 = _runtime.select(folded_elbow, 1.0, t13 + t14)
     t15 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(h)
     t16 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z) & np.isfinite(x_yaw)
     t17 = t15 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= h) & t16
+    del t15, t16
     invalid = np.logical_not(t17)
+    del t17
     t18 = -(_runtime.FEASIBILITY * (l1 / 2.0 + l2 / 2.0))
     unreachable = np.logical_not((t18 <= t3) & (t18 <= t7) & (t18 <= t5))
+    del t18, t3, t5, t7
     t19 = _runtime.poison(invalid | unreachable)
     t20 = A_elbow * S_elbow
+    del A_elbow, S_elbow
     t21 = C_elbow * B_elbow
+    del B_elbow, C_elbow
     t22 = 1.0 / (t20 + t21)
     s2 = _runtime.select(no_link_elbow, 0.0, area_elbow * t22)
+    del area_elbow
     c2 = _runtime.select(no_link_elbow, 1.0, -(t22 * (t20 - t21)))
+    del t20, t21, t22
     t23 = np.arctan2(s2, c2)
     t24 = h - x_z + t19
     t25 = c1 * c2 - s1 * s2
     t26 = c1 * s2 + s1 * c2
     t27 = np.arctan2(s_x_yaw * t25 - c_x_yaw * t26, c_x_yaw * t25 + s_x_yaw * t26)
+    del t25, t26
     s1_right = _runtime.select(folded_elbow, 0.0, t10 + t12)
+    del t10, t12
     c1_right = _runtime.select(folded_elbow, 1.0, t13 - t14)
+    del t13, t14
     t28 = _runtime.wrap_cut(np.arctan2(s1_right, c1_right))
     t29 = c2 * c1_right + s2 * s1_right
     t30 = s2 * c1_right - c2 * s1_right
+    del c1_right, c2, s1_right, s2
     t31 = np.arctan2(s_x_yaw * t29 + c_x_yaw * t30, c_x_yaw * t29 - s_x_yaw * t30)
+    del c_x_yaw, s_x_yaw, t29, t30
     t32 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
+    del folded_elbow, invalid, no_link_elbow, unreachable
     return (
         _runtime.wrap_cut(np.arctan2(s1, c1)) + t19,
         _runtime.wrap_cut(t23) + t19,

@@ -287,22 +287,28 @@ def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33, d6):
     h = np.sqrt(R13 * R13 + R23 * R23)
     aligned = h <= _runtime.VANISHING
     t1 = 1.0 / h
+    del h
     s4 = _runtime.select(aligned, 0.0, R23 * t1)
     c4 = _runtime.select(aligned, 1.0, R13 * t1)
+    del t1
     t2 = np.arctan2(s4, c4)
     t3 = np.abs(R13 - R21 * R32 + R22 * R31) <= _runtime.ROTATION
     t4 = np.abs(R23 + R11 * R32 - R12 * R31) <= _runtime.ROTATION
     t5 = np.abs(R33 - R11 * R22 + R12 * R21) <= _runtime.ROTATION
     t6 = np.abs(1.0 - R11 * R11 - R21 * R21 - R31 * R31)
     t7 = np.isfinite(d6) & t3 & t4 & t5 & (t6 <= _runtime.ROTATION)
+    del t3, t4, t5, t6
     t8 = np.abs(1.0 - R12 * R12 - R22 * R22 - R32 * R32)
     t9 = np.abs(R11 * R12 + R21 * R22 + R31 * R32) <= _runtime.ROTATION
     invalid = np.logical_not(t7 & (t8 <= _runtime.ROTATION) & t9)
+    del t7, t8, t9
     t10 = _runtime.poison(invalid)
     t11 = np.arctan2(R13 * c4 + R23 * s4, R33)
     t12 = np.arctan2(R11 * s4 - R21 * c4, R22 * c4 - R12 * s4)
+    del c4, s4
     flip = _runtime.select(aligned, 0.0, 3.141592653589793)
     t13 = _runtime.status(invalid, np.False_, aligned)
+    del aligned, invalid
     return (
         _runtime.wrap_cut(t2) + t10,
         _runtime.wrap_cut(t11) + t10,

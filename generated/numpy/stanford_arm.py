@@ -79,14 +79,19 @@ def _fk(theta1, theta2, d3, theta4, theta5, theta6, d2):
     T4_21 = c6 * s5
     T1_11 = T3_11 * c2 - T4_21 * s2
     T3_21 = T4_11 * s4 + s6 * c4
+    del T4_11
     t1 = s6 * c5
     t2 = t1 * s4 - c6 * c4
     t3 = t1 * c4 + c6 * s4
+    del c6, t1
     t4 = s6 * s5
+    del s6
     t5 = t3 * c2 - t4 * s2
     T3_13 = s5 * c4
+    del c4
     T1_13 = T3_13 * c2 + c5 * s2
     T3_23 = s5 * s4
+    del s4, s5
     T1_14 = d3 * s2
     return (
         T1_11 * c1 - T3_21 * s1,
@@ -139,14 +144,19 @@ def _pose(theta1, theta2, d3, theta4, theta5, theta6, d2):
     T4_21 = c6 * s5
     T1_11 = T3_11 * c2 - T4_21 * s2
     T3_21 = T4_11 * s4 + s6 * c4
+    del T4_11
     t1 = s6 * c5
     t2 = t1 * s4 - c6 * c4
     t3 = t1 * c4 + c6 * s4
+    del c6, t1
     t4 = s6 * s5
+    del s6
     t5 = t3 * c2 - t4 * s2
     T3_13 = s5 * c4
+    del c4
     T1_13 = T3_13 * c2 + c5 * s2
     T3_23 = s5 * s4
+    del s4, s5
     T1_14 = d3 * s2
     return (
         T1_11 * c1 - T3_21 * s1,
@@ -201,6 +211,7 @@ def _jacobian(theta1, theta2, d3, theta4, theta5, _theta6, d2):
     J4_theta6_41 = s5 * c4
     J6_theta6_41 = c5 * s2 + J4_theta6_41 * c2
     J4_theta6_51 = s5 * s4
+    del s5
     return (
         -(d2 * c1 + p5_11 * s1),
         J6_theta2_11 * c1,
@@ -276,11 +287,13 @@ def _jacobian_space(theta1, theta2, d3, theta4, theta5, _theta6, d2):
     J4_theta6_41 = s5 * c4
     J5_theta6_21 = d3 * J4_theta6_41
     J4_theta6_51 = s5 * s4
+    del s5
     t6 = d3 * J4_theta6_51
     t7 = c5 * c2 - J4_theta6_41 * s2
     t8 = t6 * c2 - d2 * t7
     t9 = s2 * s1
     J6_theta6_41 = c5 * s2 + J4_theta6_41 * c2
+    del J4_theta6_41, c5
     t10 = s4 * c2
     return (
         0.0,
@@ -352,6 +365,7 @@ def _jacobian_body(_theta1, theta2, d3, theta4, theta5, theta6, d2):
     J5_theta1_31 = t1 * s4 + J4_theta1_21 * c4
     t2 = d2 * s2
     t3 = t1 * c4 - J4_theta1_21 * s4
+    del J4_theta1_21, t1
     J6_theta1_11 = t2 * s5 - t3 * c5
     J5_theta2_11 = d3 * c4
     J6_theta2_11 = J5_theta2_11 * c5
@@ -360,6 +374,7 @@ def _jacobian_body(_theta1, theta2, d3, theta4, theta5, theta6, d2):
     t6 = s5 * s6
     J5_theta1_61 = s2 * s4
     t7 = s2 * c4
+    del s2
     t8 = t7 * c5 + c2 * s5
     J6_theta2_41 = s4 * c5
     return (
@@ -485,6 +500,7 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     amplitude = np.sqrt(t1)
     t2 = T34 * T34
     size = np.abs(d2) + np.sqrt(t2 + t1)
+    del t1
     t3 = _runtime.VANISHING * size
     free_theta1 = amplitude <= t3
     t4 = amplitude - d2
@@ -493,13 +509,17 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     above = np.maximum(t5, 0.0)
     t6 = below - above
     t7 = 1.0 / (amplitude * (below + above))
+    del amplitude
     t8 = T14 * t6 * t7
     root = np.sqrt(above) * np.sqrt(below)
+    del above, below
     t9 = root * 2.0
     t10 = t7 * (T24 * t9)
     s1 = _runtime.select(free_theta1, 0.0, t8 + t10)
     t11 = t7 * (T14 * t9)
+    del t9
     t12 = T24 * t6 * t7
+    del t6, t7
     c1 = _runtime.select(free_theta1, 1.0, t11 - t12)
     t13 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t14 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
@@ -507,21 +527,32 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t16 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
     t17 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
     t18 = np.isfinite(d2) & t13 & t14 & t15 & t16 & (t17 <= _runtime.ROTATION)
+    del t13, t14, t15, t16, t17
     t19 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
     t20 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
     t21 = t18 & (t19 <= _runtime.ROTATION) & t20 & (np.abs(T41) <= _runtime.ROTATION)
+    del t18, t19, t20
     t22 = t21 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t21
     t23 = t22 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t22
     invalid = np.logical_not(t23)
+    del t23
     t24 = -(_runtime.FEASIBILITY * size)
+    del size
     unreachable = np.logical_not((t24 <= t4) & (t24 <= t5))
+    del t24, t4, t5
     t25 = _runtime.poison(invalid | unreachable)
     t26 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t25
     reach = np.sqrt(t2 + root * root)
+    del t2
     drawn_in = reach <= t3
+    del t3
     t27 = 1.0 / reach
     s2 = _runtime.select(drawn_in, 0.0, root * t27)
+    del root
     t28 = T34 * t27
+    del t27
     c2 = _runtime.select(drawn_in, 1.0, t28)
     t29 = np.arctan2(s2, c2)
     t30 = _runtime.wrap_cut(t29) + t25
@@ -535,90 +566,137 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t36 = _runtime.VANISHING * 16.0
     aligned = h <= t36
     t37 = 1.0 / h
+    del h
     t38 = _runtime.select(aligned, 0.0, t32 * t37)
     c4 = _runtime.select(aligned, 1.0, -(t35 * t37))
+    del t37
     t39 = np.arctan2(t38, c4)
     t40 = T33 * c2
     t41 = s2 * R1_13
     t42 = np.arctan2(t32 * t38 - t35 * c4, t40 + t41)
+    del t35
     t43 = T11 * s1 - T21 * c1
     t44 = T31 * s2
     R1_11 = T11 * c1 + T21 * s1
     t45 = T12 * s1 - T22 * c1
     t46 = T32 * s2
     R1_12 = T12 * c1 + T22 * s1
+    del c1, s1
     t47 = np.arctan2(c4 * t43 + t38 * (t44 - c2 * R1_11), -(c4 * t45 + t38 * (t46 - c2 * R1_12)))
+    del c4, t38
     flip = _runtime.select(aligned, 0.0, 3.141592653589793)
     c2_right_back_noflip = _runtime.select(drawn_in, 1.0, -t28)
+    del t28
     t48 = np.arctan2(s2, c2_right_back_noflip)
     t49 = _runtime.wrap_cut(-t48) + t25
     t50 = -reach + t25
+    del reach
     R2_13_right_back_noflip = t34 + R1_13 * c2_right_back_noflip
+    del R1_13
     t51 = R2_13_right_back_noflip * R2_13_right_back_noflip
     h_right_back_noflip = np.sqrt(t33 + t51)
+    del t33, t51
     aligned_right_back_noflip = h_right_back_noflip <= t36
     t52 = 1.0 / h_right_back_noflip
+    del h_right_back_noflip
     t53 = _runtime.select(aligned_right_back_noflip, 0.0, t32 * t52)
     c4_right_back_noflip = _runtime.select(aligned_right_back_noflip, 1.0, R2_13_right_back_noflip * t52)
+    del t52
     t54 = np.arctan2(t53, c4_right_back_noflip)
     t55 = R2_13_right_back_noflip * c4_right_back_noflip
+    del R2_13_right_back_noflip
     t56 = T33 * c2_right_back_noflip
     t57 = np.arctan2(t32 * t53 + t55, t56 - t41)
+    del t32, t41, t55
     t58 = t43 * c4_right_back_noflip - t53 * (t44 + R1_11 * c2_right_back_noflip)
+    del R1_11, t43
     t59 = t53 * (t46 + R1_12 * c2_right_back_noflip) - t45 * c4_right_back_noflip
+    del R1_12, c4_right_back_noflip, t45, t53
     t60 = np.arctan2(t58, t59)
+    del t58, t59
     flip_right_back_flip = _runtime.select(aligned_right_back_noflip, 0.0, 3.141592653589793)
     t61 = _runtime.wrap(flip_right_back_flip - t54) + t25
     t62 = _runtime.wrap(flip_right_back_flip - t60) + t25
+    del flip_right_back_flip
     s1_left_out_noflip = _runtime.select(free_theta1, 0.0, t8 - t10)
+    del t10, t8
     c1_left_out_noflip = _runtime.select(free_theta1, 1.0, -(t12 + t11))
+    del t11, t12
     t63 = np.arctan2(s1_left_out_noflip, c1_left_out_noflip)
     t64 = _runtime.wrap_cut(t63) + t25
+    del t63
     t65 = _runtime.wrap_cut(-t29) + t25
+    del t29
     t66 = T13 * s1_left_out_noflip - T23 * c1_left_out_noflip
     t67 = t66 * t66
     R1_13_left_out_noflip = T13 * c1_left_out_noflip + T23 * s1_left_out_noflip
     R2_13_left_out_noflip = t34 + c2 * R1_13_left_out_noflip
     t68 = R2_13_left_out_noflip * R2_13_left_out_noflip
     h_left_out_noflip = np.sqrt(t67 + t68)
+    del t68
     aligned_left_out_noflip = h_left_out_noflip <= t36
     t69 = 1.0 / h_left_out_noflip
+    del h_left_out_noflip
     t70 = _runtime.select(aligned_left_out_noflip, 0.0, t66 * t69)
     c4_left_out_noflip = _runtime.select(aligned_left_out_noflip, 1.0, R2_13_left_out_noflip * t69)
+    del t69
     t71 = np.arctan2(t70, c4_left_out_noflip)
     t72 = t66 * t70 + R2_13_left_out_noflip * c4_left_out_noflip
+    del R2_13_left_out_noflip
     t73 = s2 * R1_13_left_out_noflip
+    del s2
     t74 = np.arctan2(t72, t40 - t73)
+    del t40, t72
     t75 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip
     R1_11_left_out_noflip = T11 * c1_left_out_noflip + T21 * s1_left_out_noflip
     t76 = c4_left_out_noflip * t75 - t70 * (t44 + c2 * R1_11_left_out_noflip)
     R1_12_left_out_noflip = T12 * c1_left_out_noflip + T22 * s1_left_out_noflip
     t77 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip
+    del c1_left_out_noflip, s1_left_out_noflip
     t78 = t70 * (t46 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t77
+    del c2, c4_left_out_noflip, t70
     t79 = np.arctan2(t76, t78)
+    del t76, t78
     flip_left_out_flip = _runtime.select(aligned_left_out_noflip, 0.0, 3.141592653589793)
     t80 = _runtime.wrap(flip_left_out_flip - t71) + t25
     t81 = _runtime.wrap(flip_left_out_flip - t79) + t25
+    del flip_left_out_flip
     t82 = _runtime.wrap_cut(t48) + t25
+    del t48
     t83 = t34 - c2_right_back_noflip * R1_13_left_out_noflip
+    del R1_13_left_out_noflip, t34
     h_left_back_noflip = np.sqrt(t67 + t83 * t83)
+    del t67
     aligned_left_back_noflip = h_left_back_noflip <= t36
+    del t36
     t84 = 1.0 / h_left_back_noflip
+    del h_left_back_noflip
     t85 = _runtime.select(aligned_left_back_noflip, 0.0, t66 * t84)
     c4_left_back_noflip = _runtime.select(aligned_left_back_noflip, 1.0, -(t83 * t84))
+    del t84
     t86 = np.arctan2(t85, c4_left_back_noflip)
     t87 = np.arctan2(t66 * t85 - t83 * c4_left_back_noflip, t56 + t73)
+    del t56, t66, t73, t83
     t88 = t44 - c2_right_back_noflip * R1_11_left_out_noflip
+    del R1_11_left_out_noflip, t44
     t89 = t46 - c2_right_back_noflip * R1_12_left_out_noflip
+    del R1_12_left_out_noflip, c2_right_back_noflip, t46
     t90 = np.arctan2(t75 * c4_left_back_noflip + t85 * t88, -(t77 * c4_left_back_noflip + t85 * t89))
+    del c4_left_back_noflip, t75, t77, t85, t88, t89
     flip_left_back_flip = _runtime.select(aligned_left_back_noflip, 0.0, 3.141592653589793)
     t91 = _runtime.wrap(flip_left_back_flip - t86) + t25
     t92 = _runtime.wrap(flip_left_back_flip - t90) + t25
+    del flip_left_back_flip
     t93 = free_theta1 | drawn_in
+    del drawn_in, free_theta1
     t94 = _runtime.status(invalid, unreachable, t93 | aligned)
+    del aligned
     t95 = _runtime.status(invalid, unreachable, t93 | aligned_right_back_noflip)
+    del aligned_right_back_noflip
     t96 = _runtime.status(invalid, unreachable, t93 | aligned_left_out_noflip)
+    del aligned_left_out_noflip
     t97 = _runtime.status(invalid, unreachable, t93 | aligned_left_back_noflip)
+    del aligned_left_back_noflip, invalid, t93, unreachable
     return (
         t26,
         t30,

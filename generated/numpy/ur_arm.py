@@ -87,10 +87,12 @@ def _pose(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6
     t1 = s1 * s5
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
+    del c4, s4
     s234 = s2 * c34 + c2 * s34
     t2 = c1 * s234
     t3 = c1 * c5
     c234 = c2 * c34 - s2 * s34
+    del c34, s34
     t4 = c6 * c234
     t5 = s6 * c234
     t6 = s1 * c5
@@ -101,9 +103,13 @@ def _pose(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6
     t11 = d6 * c234
     t12 = s1 * s234
     t13 = d4 * c1 + s1 * t8 + s1 * t9 - d5 * t12 + t1 * t11
+    del c1, s1, t8, t9
     t14 = c5 * s234
+    del c5
     t15 = s5 * s234
+    del s234, s5
     t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234
+    del c2, c3, s2, s3
     return (
         c6 * t1 - s6 * t2 + t3 * t4,
         -(s6 * t1 + t3 * t5 + c6 * t2),
@@ -154,10 +160,12 @@ def _fk(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6):
     t1 = s1 * s5
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
+    del c4, s4
     s234 = s2 * c34 + c2 * s34
     t2 = c1 * s234
     t3 = c1 * c5
     c234 = c2 * c34 - s2 * s34
+    del c34, s34
     t4 = c6 * c234
     t5 = s6 * c234
     t6 = s1 * c5
@@ -168,9 +176,13 @@ def _fk(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6):
     t11 = d6 * c234
     t12 = s1 * s234
     t13 = d4 * c1 + s1 * t8 + s1 * t9 - d5 * t12 + t1 * t11
+    del c1, s1, t8, t9
     t14 = c5 * s234
+    del c5
     t15 = s5 * s234
+    del s234, s5
     t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234
+    del c2, c3, s2, s3
     return (
         c6 * t1 - s6 * t2 + t3 * t4,
         -(s6 * t1 + t3 * t5 + c6 * t2),
@@ -221,15 +233,18 @@ def _jacobian(theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d4, d5, d
     t2 = L3 * (c2 * c3 - s2 * s3)
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
+    del c4, s4
     s234 = s2 * c34 + c2 * s34
     t3 = d5 * s234
     t4 = d6 * s5
     c234 = c2 * c34 - s2 * s34
+    del c34, s34
     t5 = s1 * c234
     t6 = d4 * c1 + s1 * t1 + s1 * t2 - s1 * t3 + t4 * t5
     t7 = d6 * c5
     t8 = L2 * s2
     t9 = L3 * (s2 * c3 + c2 * s3)
+    del c2, c3, s2, s3
     t10 = c1 * c234
     t11 = c1 * s234
     t12 = d5 * t10 + t11 * t4
@@ -238,8 +253,11 @@ def _jacobian(theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d4, d5, d
     t15 = s1 * s234
     t16 = d5 * t5 + t15 * t4
     t17 = s1 * t9 + t16
+    del t9
     t18 = t3 - c234 * t4
+    del t3
     t19 = t2 - t18
+    del t2
     return (
         t6 + c1 * t7,
         c1 * t8 + t13,
@@ -307,7 +325,9 @@ def _determinant(_theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d5):
     s4, c4 = _runtime.sincos(theta4)
     s5 = np.sin(theta5)
     s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4)
+    del c4, s4
     t1 = L2 * c2 + L3 * (c2 * c3 - s2 * s3) - d5 * s234
+    del c2, c3, s2, s234
     return (
         -(L2 * L3 * s3 * t1 * s5),
     )
@@ -339,7 +359,9 @@ def _singularities(_theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d5)
     s4, c4 = _runtime.sincos(theta4)
     s5 = np.sin(theta5)
     s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4)
+    del c4, s4
     t1 = d5 * s234 - (L2 * c2 + L3 * (c2 * c3 - s2 * s3))
+    del c2, c3, s2, s234
     return (
         t1,
         s3,
@@ -379,12 +401,15 @@ def _jacobian_space(theta1, theta2, theta3, theta4, theta5, _theta6, d1, L2, L3,
     t4 = L3 * (s2 * c3 + c2 * s3)
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
+    del c4, s4
     s234 = s2 * c34 + c2 * s34
     t5 = s1 * s234
     t6 = L2 * c2
     c234 = c2 * c34 - s2 * s34
+    del c34, s34
     t7 = s1 * c234
     t8 = L3 * (c2 * c3 - s2 * s3)
+    del c2, c3, s2, s3
     t9 = t5 * t2 + t6 * t7 + t5 * t4 + t8 * t7 - d1 * t5
     t10 = c1 * c234
     t11 = c234 * s5
@@ -395,6 +420,7 @@ def _jacobian_space(theta1, theta2, theta3, theta4, theta5, _theta6, d1, L2, L3,
     t16 = c1 * s234
     t17 = s5 * t16
     t18 = t15 + t14 * t4 - d1 * t12 - d1 * t14 - d4 * t17
+    del t15
     t19 = d5 * s5
     t20 = d5 * c234
     t21 = d1 * s1
@@ -403,8 +429,11 @@ def _jacobian_space(theta1, theta2, theta3, theta4, theta5, _theta6, d1, L2, L3,
     t24 = s1 * c5
     t25 = c1 * t11
     t26 = t24 * t2 - t2 * t25 + t6 * t17 + t24 * t4 - t4 * t25
+    del t2
     t27 = t26 + t8 * t17 - d1 * t24 + d1 * t25 - d4 * t13
+    del t13, t17, t26
     t28 = d5 * s234 * c5 - c5 * t6 - c5 * t8 + d4 * t11
+    del c5, t11
     return (
         0.0,
         t1,
@@ -476,10 +505,12 @@ def _jacobian_body(_theta1, theta2, theta3, theta4, theta5, theta6, L2, L3, d4, 
     t3 = L3 * (c2 * c3 - s2 * s3)
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
+    del c3, s3
     s234 = s2 * c34 + c2 * s34
     t4 = d4 * s234
     t5 = c5 * c6
     c234 = c2 * c34 - s2 * s34
+    del c2, s2
     t6 = d4 * c234
     t7 = d5 * s234
     t8 = t1 * t2 + t1 * t3 - s6 * t4 + t5 * t6 - t1 * t7
@@ -489,16 +520,23 @@ def _jacobian_body(_theta1, theta2, theta3, theta4, theta5, theta6, L2, L3, d4, 
     t12 = s5 * s6
     t13 = d5 * t5 - d6 * t12
     t14 = L3 * s4
+    del s4
     t15 = L3 * c4
+    del c4
     t16 = t13 - (t5 * t14 + s6 * t15)
     t17 = L2 * c34
+    del c34
     t18 = L2 * s34
+    del s34
     t19 = t12 * t2 + t12 * t3 + t9 * t6 + c6 * t4 - t12 * t7
+    del t4
     t20 = d6 * s6
     t21 = d5 * t9 + d6 * t1
     t22 = t21 - (t9 * t14 - c6 * t15)
+    del t15
     t23 = d5 * s5
     t24 = t23 - s5 * t14
+    del t14
     return (
         t8 - t9 * t10 + c234 * t11,
         t16 - (s6 * t17 + t5 * t18),
@@ -576,32 +614,45 @@ def _ik(
     above1 = np.maximum(t5, 0.0)
     t6 = below1 - above1
     t7 = 1.0 / (h1 * (below1 + above1))
+    del h1
     t8 = w_x * t6 * t7
     t9 = 2.0 * (np.sqrt(above1) * np.sqrt(below1))
+    del above1, below1
     t10 = t7 * (w_y * t9)
     t11 = _runtime.select(free1, 0.0, t8 + t10)
     t12 = w_y * t6 * t7
+    del t6
     t13 = t7 * (w_x * t9)
+    del t7, t9
     c1 = _runtime.select(free1, 1.0, t12 - t13)
     t14 = _runtime.wrap_cut(-np.arctan2(t11, c1))
     t15 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
     t16 = t15 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    del t15
     t17 = t16 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    del t16
     t18 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t19 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t20 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
     t21 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
     t22 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
     t23 = t17 & t18 & t19 & t20 & t21 & (t22 <= _runtime.ROTATION)
+    del t17, t18, t19, t20, t21, t22
     t24 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
     t25 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
     t26 = t23 & (t24 <= _runtime.ROTATION) & t25 & (np.abs(T41) <= _runtime.ROTATION)
+    del t23, t24, t25
     t27 = t26 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t26
     t28 = t27 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t27
     invalid = np.logical_not(t28)
+    del t28
     t29 = L2 / 2.0 + L3 / 2.0 + d1 / 2.0 + d4 / 2.0 + d5 / 2.0
     t30 = -(_runtime.FEASIBILITY * (t29 + d6 / 2.0))
+    del t29
     t31 = (t30 <= t4) & (t30 <= t5)
+    del t4, t5
     across = w_x * c1 - w_y * t11
     t32 = T33 * T33
     M_13 = T13 * c1 - T23 * t11
@@ -619,49 +670,69 @@ def _ik(
     mid_reach = np.minimum(t1, t36) / 2.0 + np.maximum(t38, np.abs(t39)) / 2.0
     k_mid = np.maximum(0.0, (t36 - mid_reach) * (t36 + mid_reach))
     d_mid = np.maximum(0.0, -((t39 - mid_reach) * (t39 + mid_reach)))
+    del mid_reach
     n_mid = k_mid + d_mid
     t40 = _runtime.VANISHING * (t2 * t2)
+    del t2
     any_mid = n_mid <= t40
     t41 = 1.0 / n_mid
+    del n_mid
     uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t41)
     t42 = t41 * (2.0 * np.sqrt(d_mid) * np.sqrt(k_mid))
+    del d_mid, k_mid, t41
     us_mid = _runtime.select(any_mid, 0.0, t42)
+    del any_mid, t42
     t43 = 1.0 / r_hub
+    del r_hub
     c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t34 * us_mid) * t43)
     t44 = 1.0 / h_wrist
     s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t44)
     t45 = d5 * s_phi
     t46 = across - t45
     t47 = M_13 * t44
+    del t44
     c_phi = _runtime.select(aligned_wrist, 1.0, t47)
     t48 = t34 - d5 * c_phi
     here = np.sqrt(t46 * t46 + t48 * t48)
+    del t46, t48
     in_reach = np.minimum(t1, np.maximum(here, t38))
     k_near = np.maximum(0.0, (t36 - in_reach) * (t36 + in_reach))
     d_near = np.maximum(0.0, -((t39 - in_reach) * (t39 + in_reach)))
     n_near = k_near + d_near
     any_near = n_near <= t40
     t49 = 1.0 / n_near
+    del n_near
     uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t49)
     t50 = t34 * s_phi
     t51 = across * c_phi - t50
     t52 = np.abs(t51)
     side = _runtime.select(t52 <= t3, 1.0, -(t51 / t52))
+    del t51, t52
     t53 = 2.0 * side * np.sqrt(d_near) * np.sqrt(k_near)
+    del d_near, k_near, side
     us_near = _runtime.select(any_near, 0.0, t49 * t53)
+    del any_near, t49, t53
     c_near = _runtime.select(hub_mid, 1.0, t43 * (across * uc_near + t34 * us_near))
     t54 = s_phi - c_near
     s_near = _runtime.select(hub_mid, 0.0, t43 * (across * us_near - t34 * uc_near))
+    del uc_near, us_near
     t55 = c_phi + s_near
     t56 = _runtime.VANISHING * 4.0
     within_rounding = h_wrist * np.sqrt(t54 * t54 + t55 * t55) <= t56
+    del t54, t55
     inside = np.abs(here - in_reach) <= t3
+    del here, in_reach
     t57 = _runtime.select(within_rounding, _runtime.select(inside, s_phi, c_near), s_phi)
+    del c_near
     sphi = _runtime.select(aligned_wrist, c_mid, t57)
+    del t57
     t58 = across - d5 * sphi
     s_mid = _runtime.select(hub_mid, 0.0, t43 * (across * us_mid - t34 * uc_mid))
+    del uc_mid, us_mid
     t59 = _runtime.select(within_rounding, -_runtime.select(inside, -c_phi, s_near), c_phi)
+    del c_phi, inside, s_near, within_rounding
     cphi = _runtime.select(aligned_wrist, -s_mid, t59)
+    del t59
     ey = t34 - d5 * cphi
     r_elbow = np.sqrt(t58 * t58 + ey * ey)
     t60 = t1 - r_elbow
@@ -669,374 +740,597 @@ def _ik(
     t62 = r_elbow - t37
     t63 = t31 & (t30 <= t60) & (t30 <= t61) & (t30 <= t62)
     unreachable = np.logical_not(t63)
+    del t63
     t64 = _runtime.poison(invalid | unreachable)
     t65 = t14 + t64
     folded_elbow = r_elbow <= t3
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (t1 * t1)
     A_elbow = np.maximum(t60, 0.0)
+    del t60
     C_elbow = np.maximum(t62, 0.0)
+    del t62
     t66 = A_elbow * C_elbow
     S_elbow = t1 + r_elbow
     B_elbow = np.maximum(t61, 0.0)
+    del t61
     t67 = S_elbow * B_elbow
     t68 = 1.0 / (t66 + t67)
     c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t66 - t67) * t68))
+    del t66, t67
     t69 = 1.0 / r_elbow
+    del r_elbow
     t70 = ey * c_base_elbow * t69
     t71 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
     area_elbow = t71 * np.sqrt(S_elbow)
+    del t71
     s_base_elbow = _runtime.select(no_link_elbow, 0.0, t68 * area_elbow)
+    del t68
     t72 = t69 * (t58 * s_base_elbow)
     s2 = _runtime.select(folded_elbow, 0.0, t70 + t72)
     t73 = t69 * (ey * s_base_elbow)
+    del ey, s_base_elbow
     t74 = t69 * (t58 * c_base_elbow)
+    del c_base_elbow, t58, t69
     c2 = _runtime.select(folded_elbow, 1.0, t73 - t74)
     t75 = A_elbow * S_elbow
+    del A_elbow, S_elbow
     t76 = C_elbow * B_elbow
+    del B_elbow, C_elbow
     t77 = 1.0 / (t75 + t76)
     s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t77)
+    del area_elbow
     c3 = _runtime.select(no_link_elbow, 1.0, -(t77 * (t75 - t76)))
+    del t75, t76, t77
     t78 = np.arctan2(s3, c3)
     t79 = sphi * c2 - cphi * s2
     t80 = cphi * c2 + sphi * s2
     t81 = np.arctan2(c3 * t79 - s3 * t80, c3 * t80 + s3 * t79)
+    del t79, t80
     M_33 = -(T13 * t11 + T23 * c1)
     t82 = _runtime.wrap_cut(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
     t83 = t82 + t64
+    del t82
     M_11 = T11 * c1 - T21 * t11
     M_12 = T12 * c1 - T22 * t11
+    del c1, t11
     t84 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
     t85 = _runtime.wrap_cut(-t84) + t64
+    del t84
     s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t70 - t72)
+    del t70, t72
     c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t74 + t73))
+    del t73, t74
     t86 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
     t87 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
     t88 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    del c2_left_noflip_down, cphi, s2_left_noflip_down, sphi
     t89 = np.arctan2(c3 * t87 + s3 * t88, c3 * t88 - s3 * t87)
+    del c3, s3, t87, t88
     t90 = across + t45
+    del t45
     c_phi_left_flip_up = _runtime.select(aligned_wrist, 1.0, -t47)
+    del t47
     t91 = t34 - d5 * c_phi_left_flip_up
     here_left_flip_up = np.sqrt(t90 * t90 + t91 * t91)
+    del t90, t91
     in_reach_left_flip_up = np.minimum(t1, np.maximum(here_left_flip_up, t38))
     t92 = (t36 - in_reach_left_flip_up) * (t36 + in_reach_left_flip_up)
+    del t36
     k_near_left_flip_up = np.maximum(0.0, t92)
+    del t92
     t93 = (t39 - in_reach_left_flip_up) * (t39 + in_reach_left_flip_up)
+    del t39
     d_near_left_flip_up = np.maximum(0.0, -t93)
+    del t93
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
     any_near_left_flip_up = n_near_left_flip_up <= t40
     t94 = 1.0 / n_near_left_flip_up
+    del n_near_left_flip_up
     t95 = (k_near_left_flip_up - d_near_left_flip_up) * t94
     uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t95)
+    del t95
     t96 = t50 + across * c_phi_left_flip_up
+    del t50
     t97 = np.abs(t96)
     side_left_flip_up = _runtime.select(t97 <= t3, 1.0, -(t96 / t97))
+    del t96, t97
     t98 = 2.0 * side_left_flip_up * np.sqrt(d_near_left_flip_up)
+    del d_near_left_flip_up, side_left_flip_up
     us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t94 * (t98 * np.sqrt(k_near_left_flip_up)))
+    del any_near_left_flip_up, k_near_left_flip_up, t94, t98
     t99 = across * uc_near_left_flip_up + t34 * us_near_left_flip_up
     c_near_left_flip_up = _runtime.select(hub_mid, 1.0, t43 * t99)
+    del t99
     t100 = s_phi + c_near_left_flip_up
     t101 = across * us_near_left_flip_up - t34 * uc_near_left_flip_up
+    del uc_near_left_flip_up, us_near_left_flip_up
     s_near_left_flip_up = _runtime.select(hub_mid, 0.0, t43 * t101)
+    del hub_mid, t101, t43
     t102 = c_phi_left_flip_up + s_near_left_flip_up
     within_rounding_left_flip_up = h_wrist * np.sqrt(t100 * t100 + t102 * t102) <= t56
+    del h_wrist, t100, t102
     t103 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    del here_left_flip_up, in_reach_left_flip_up
     inside_left_flip_up = t103 <= t3
+    del t103
     c_moved_left_flip_up = _runtime.select(inside_left_flip_up, -s_phi, c_near_left_flip_up)
+    del c_near_left_flip_up
     t104 = _runtime.select(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
+    del c_moved_left_flip_up, s_phi
     sphi_left_flip_up = _runtime.select(aligned_wrist, c_mid, t104)
+    del c_mid, t104
     t105 = across - d5 * sphi_left_flip_up
+    del across
     s_moved_left_flip_up = _runtime.select(inside_left_flip_up, -c_phi_left_flip_up, s_near_left_flip_up)
+    del inside_left_flip_up, s_near_left_flip_up
     t106 = _runtime.select(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
+    del c_phi_left_flip_up, s_moved_left_flip_up, within_rounding_left_flip_up
     cphi_left_flip_up = _runtime.select(aligned_wrist, -s_mid, t106)
+    del s_mid, t106
     ey_left_flip_up = t34 - d5 * cphi_left_flip_up
     t107 = t105 * t105 + ey_left_flip_up * ey_left_flip_up
     r_elbow_left_flip_up = np.sqrt(t107)
+    del t107
     t108 = t1 - r_elbow_left_flip_up
     t109 = t37 + r_elbow_left_flip_up
     t110 = r_elbow_left_flip_up - t37
     t111 = t31 & (t30 <= t108) & (t30 <= t109) & (t30 <= t110)
     unreachable_2 = np.logical_not(t111)
+    del t111
     t112 = _runtime.poison(invalid | unreachable_2)
     t113 = t14 + t112
+    del t14
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t3
     A_elbow_left_flip_up = np.maximum(t108, 0.0)
+    del t108
     C_elbow_left_flip_up = np.maximum(t110, 0.0)
+    del t110
     t114 = A_elbow_left_flip_up * C_elbow_left_flip_up
     S_elbow_left_flip_up = t1 + r_elbow_left_flip_up
     B_elbow_left_flip_up = np.maximum(t109, 0.0)
+    del t109
     t115 = S_elbow_left_flip_up * B_elbow_left_flip_up
     t116 = 1.0 / (t114 + t115)
     c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t114 - t115) * t116))
+    del t114, t115
     t117 = 1.0 / r_elbow_left_flip_up
+    del r_elbow_left_flip_up
     t118 = ey_left_flip_up * c_base_elbow_left_flip_up * t117
     t119 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
     area_elbow_left_flip_up = t119 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
+    del t119
     s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t116 * area_elbow_left_flip_up)
+    del t116
     t120 = t117 * (t105 * s_base_elbow_left_flip_up)
     s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t118 + t120)
     t121 = t117 * (ey_left_flip_up * s_base_elbow_left_flip_up)
+    del ey_left_flip_up, s_base_elbow_left_flip_up
     t122 = t117 * (t105 * c_base_elbow_left_flip_up)
+    del c_base_elbow_left_flip_up, t105, t117
     c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t121 - t122)
     t123 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
     t124 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    del A_elbow_left_flip_up, S_elbow_left_flip_up
     t125 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    del B_elbow_left_flip_up, C_elbow_left_flip_up
     t126 = 1.0 / (t124 + t125)
     s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t126)
+    del area_elbow_left_flip_up
     c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t126 * (t124 - t125)))
+    del t124, t125, t126
     t127 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
     t128 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
     t129 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    del c2_left_flip_up, s2_left_flip_up
     t130 = c3_left_flip_up * t128 - s3_left_flip_up * t129
     t131 = c3_left_flip_up * t129 + s3_left_flip_up * t128
+    del t128, t129
     t132 = _runtime.wrap_cut(np.arctan2(t130, t131)) + t112
+    del t130, t131
     t133 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
+    del M_13
     t134 = _runtime.wrap_cut(-np.arctan2(t133, M_33)) + t112
+    del M_33, t133
     t135 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
+    del M_11
     t136 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
+    del M_12
     t137 = _runtime.wrap_cut(-np.arctan2(t135, t136)) + t112
+    del t135, t136
     s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t118 - t120)
+    del t118, t120
     c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t122 + t121))
+    del t121, t122
     t138 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
     t139 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
     t140 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    del c2_left_flip_down, cphi_left_flip_up, s2_left_flip_down, sphi_left_flip_up
     t141 = c3_left_flip_up * t139 + s3_left_flip_up * t140
     t142 = c3_left_flip_up * t140 - s3_left_flip_up * t139
+    del c3_left_flip_up, s3_left_flip_up, t139, t140
     t143 = _runtime.wrap_cut(np.arctan2(t141, t142)) + t112
+    del t141, t142
     t144 = _runtime.select(free1, 0.0, t8 - t10)
+    del t10, t8
     c1_right_noflip_up = _runtime.select(free1, 1.0, t12 + t13)
+    del t12, t13
     t145 = _runtime.wrap_cut(np.arctan2(-t144, c1_right_noflip_up))
     across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t144
+    del w_x, w_y
     M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t144
     t146 = t32 + M_13_right_noflip_up * M_13_right_noflip_up
+    del t32
     h_wrist_right_noflip_up = np.sqrt(t146)
+    del t146
     aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t33
+    del t33
     t147 = across_right_noflip_up * across_right_noflip_up
     r_hub_right_noflip_up = np.sqrt(t35 + t147)
+    del t147, t35
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t3
     t148 = d5 + r_hub_right_noflip_up
     t149 = d5 - r_hub_right_noflip_up
     mid_reach_right_noflip_up = np.minimum(t1, t148) / 2.0 + np.maximum(t38, np.abs(t149)) / 2.0
     t150 = (t148 - mid_reach_right_noflip_up) * (t148 + mid_reach_right_noflip_up)
     k_mid_right_noflip_up = np.maximum(0.0, t150)
+    del t150
     t151 = (t149 - mid_reach_right_noflip_up) * (t149 + mid_reach_right_noflip_up)
+    del mid_reach_right_noflip_up
     d_mid_right_noflip_up = np.maximum(0.0, -t151)
+    del t151
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
     any_mid_right_noflip_up = n_mid_right_noflip_up <= t40
     t152 = k_mid_right_noflip_up - d_mid_right_noflip_up
     t153 = 1.0 / n_mid_right_noflip_up
+    del n_mid_right_noflip_up
     uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t152 * t153)
+    del t152
     t154 = across_right_noflip_up * uc_mid_right_noflip_up
     t155 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
+    del d_mid_right_noflip_up, k_mid_right_noflip_up
     us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t153 * t155)
+    del any_mid_right_noflip_up, t153, t155
     t156 = 1.0 / r_hub_right_noflip_up
+    del r_hub_right_noflip_up
     c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t154 + t34 * us_mid_right_noflip_up) * t156)
+    del t154
     t157 = 1.0 / h_wrist_right_noflip_up
     s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t157)
     t158 = d5 * s_phi_right_noflip_up
     t159 = across_right_noflip_up - t158
     t160 = M_13_right_noflip_up * t157
+    del t157
     c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, t160)
     t161 = t34 - d5 * c_phi_right_noflip_up
     here_right_noflip_up = np.sqrt(t159 * t159 + t161 * t161)
+    del t159, t161
     in_reach_right_noflip_up = np.minimum(t1, np.maximum(here_right_noflip_up, t38))
     t162 = (t148 - in_reach_right_noflip_up) * (t148 + in_reach_right_noflip_up)
     k_near_right_noflip_up = np.maximum(0.0, t162)
+    del t162
     t163 = (t149 - in_reach_right_noflip_up) * (t149 + in_reach_right_noflip_up)
     d_near_right_noflip_up = np.maximum(0.0, -t163)
+    del t163
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
     any_near_right_noflip_up = n_near_right_noflip_up <= t40
     t164 = k_near_right_noflip_up - d_near_right_noflip_up
     t165 = 1.0 / n_near_right_noflip_up
+    del n_near_right_noflip_up
     uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t164 * t165)
+    del t164
     t166 = across_right_noflip_up * uc_near_right_noflip_up
     t167 = across_right_noflip_up * c_phi_right_noflip_up
     t168 = t34 * s_phi_right_noflip_up
     t169 = t167 - t168
+    del t167
     t170 = np.abs(t169)
     side_right_noflip_up = _runtime.select(t170 <= t3, 1.0, -(t169 / t170))
+    del t169, t170
     t171 = 2.0 * side_right_noflip_up * np.sqrt(d_near_right_noflip_up)
+    del d_near_right_noflip_up, side_right_noflip_up
     t172 = t165 * (t171 * np.sqrt(k_near_right_noflip_up))
+    del k_near_right_noflip_up, t165, t171
     us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t172)
+    del any_near_right_noflip_up, t172
     t173 = t156 * (t166 + t34 * us_near_right_noflip_up)
+    del t166
     c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t173)
+    del t173
     t174 = s_phi_right_noflip_up - c_near_right_noflip_up
     t175 = across_right_noflip_up * us_near_right_noflip_up
+    del us_near_right_noflip_up
     t176 = t156 * (t175 - t34 * uc_near_right_noflip_up)
+    del t175, uc_near_right_noflip_up
     s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t176)
+    del t176
     t177 = c_phi_right_noflip_up + s_near_right_noflip_up
     t178 = h_wrist_right_noflip_up * np.sqrt(t174 * t174 + t177 * t177)
+    del t174, t177
     within_rounding_right_noflip_up = t178 <= t56
+    del t178
     t179 = here_right_noflip_up - in_reach_right_noflip_up
+    del here_right_noflip_up, in_reach_right_noflip_up
     inside_right_noflip_up = np.abs(t179) <= t3
+    del t179
     c_moved_right_noflip_up = _runtime.select(inside_right_noflip_up, s_phi_right_noflip_up, c_near_right_noflip_up)
+    del c_near_right_noflip_up
     t180 = _runtime.select(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
+    del c_moved_right_noflip_up
     sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t180)
+    del t180
     t181 = across_right_noflip_up - d5 * sphi_right_noflip_up
     t182 = across_right_noflip_up * us_mid_right_noflip_up
+    del us_mid_right_noflip_up
     s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t156 * (t182 - t34 * uc_mid_right_noflip_up))
+    del t182, uc_mid_right_noflip_up
     s_moved_right_noflip_up = _runtime.select(inside_right_noflip_up, -c_phi_right_noflip_up, s_near_right_noflip_up)
+    del inside_right_noflip_up, s_near_right_noflip_up
     t183 = _runtime.select(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
+    del c_phi_right_noflip_up, s_moved_right_noflip_up, within_rounding_right_noflip_up
     cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t183)
+    del t183
     ey_right_noflip_up = t34 - d5 * cphi_right_noflip_up
     t184 = t181 * t181 + ey_right_noflip_up * ey_right_noflip_up
     r_elbow_right_noflip_up = np.sqrt(t184)
+    del t184
     t185 = t1 - r_elbow_right_noflip_up
     t186 = t37 + r_elbow_right_noflip_up
     t187 = r_elbow_right_noflip_up - t37
     t188 = t31 & (t30 <= t185) & (t30 <= t186) & (t30 <= t187)
     unreachable_3 = np.logical_not(t188)
+    del t188
     t189 = _runtime.poison(invalid | unreachable_3)
     t190 = t145 + t189
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
     A_elbow_right_noflip_up = np.maximum(t185, 0.0)
+    del t185
     C_elbow_right_noflip_up = np.maximum(t187, 0.0)
+    del t187
     t191 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
     B_elbow_right_noflip_up = np.maximum(t186, 0.0)
+    del t186
     t192 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
     t193 = 1.0 / (t191 + t192)
     c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t191 - t192) * t193))
+    del t191, t192
     t194 = ey_right_noflip_up * c_base_elbow_right_noflip_up
     t195 = 1.0 / r_elbow_right_noflip_up
+    del r_elbow_right_noflip_up
     t196 = t194 * t195
+    del t194
     t197 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
     area_elbow_right_noflip_up = t197 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
+    del t197
     s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t193 * area_elbow_right_noflip_up)
+    del t193
     t198 = t195 * (t181 * s_base_elbow_right_noflip_up)
     s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t196 + t198)
     t199 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    del ey_right_noflip_up, s_base_elbow_right_noflip_up
     t200 = t195 * t199
+    del t199
     t201 = t195 * (t181 * c_base_elbow_right_noflip_up)
+    del c_base_elbow_right_noflip_up, t181, t195
     c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t200 - t201)
     t202 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
     t203 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    del A_elbow_right_noflip_up, S_elbow_right_noflip_up
     t204 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    del B_elbow_right_noflip_up, C_elbow_right_noflip_up
     t205 = 1.0 / (t203 + t204)
     s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t205)
+    del area_elbow_right_noflip_up
     c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t205 * (t203 - t204)))
+    del t203, t204, t205
     t206 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
     t207 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
     t208 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    del c2_right_noflip_up, s2_right_noflip_up
     t209 = c3_right_noflip_up * t207 - s3_right_noflip_up * t208
     t210 = c3_right_noflip_up * t208 + s3_right_noflip_up * t207
+    del t207, t208
     t211 = _runtime.wrap_cut(np.arctan2(t209, t210)) + t189
+    del t209, t210
     t212 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
     M_33_right_noflip_up = -(T13 * t144 + T23 * c1_right_noflip_up)
     t213 = _runtime.wrap_cut(-np.arctan2(t212, M_33_right_noflip_up))
+    del t212
     t214 = t213 + t189
+    del t213
     M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t144
     t215 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
     M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t144
+    del c1_right_noflip_up, t144
     t216 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
     t217 = _runtime.wrap_cut(-np.arctan2(t215, t216)) + t189
+    del t215, t216
     s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t196 - t198)
+    del t196, t198
     c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t201 + t200))
+    del t200, t201
     t218 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
     t219 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
     t220 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    del c2_right_noflip_down, cphi_right_noflip_up, s2_right_noflip_down, sphi_right_noflip_up
     t221 = c3_right_noflip_up * t219 + s3_right_noflip_up * t220
     t222 = c3_right_noflip_up * t220 - s3_right_noflip_up * t219
+    del c3_right_noflip_up, s3_right_noflip_up, t219, t220
     t223 = _runtime.wrap_cut(np.arctan2(t221, t222)) + t189
+    del t221, t222
     t224 = across_right_noflip_up + t158
+    del t158
     c_phi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, -t160)
+    del t160
     t225 = t34 - d5 * c_phi_right_flip_up
     here_right_flip_up = np.sqrt(t224 * t224 + t225 * t225)
+    del t224, t225
     in_reach_right_flip_up = np.minimum(t1, np.maximum(here_right_flip_up, t38))
+    del t38
     t226 = (t148 - in_reach_right_flip_up) * (t148 + in_reach_right_flip_up)
+    del t148
     k_near_right_flip_up = np.maximum(0.0, t226)
+    del t226
     t227 = (t149 - in_reach_right_flip_up) * (t149 + in_reach_right_flip_up)
+    del t149
     d_near_right_flip_up = np.maximum(0.0, -t227)
+    del t227
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
     any_near_right_flip_up = n_near_right_flip_up <= t40
+    del t40
     t228 = 1.0 / n_near_right_flip_up
+    del n_near_right_flip_up
     t229 = (k_near_right_flip_up - d_near_right_flip_up) * t228
     uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t229)
+    del t229
     t230 = across_right_noflip_up * uc_near_right_flip_up
     t231 = t168 + across_right_noflip_up * c_phi_right_flip_up
+    del t168
     t232 = np.abs(t231)
     side_right_flip_up = _runtime.select(t232 <= t3, 1.0, -(t231 / t232))
+    del t231, t232
     t233 = 2.0 * side_right_flip_up * np.sqrt(d_near_right_flip_up)
+    del d_near_right_flip_up, side_right_flip_up
     t234 = t228 * (t233 * np.sqrt(k_near_right_flip_up))
+    del k_near_right_flip_up, t228, t233
     us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t234)
+    del any_near_right_flip_up, t234
     c_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t156 * (t230 + t34 * us_near_right_flip_up))
+    del t230
     t235 = s_phi_right_noflip_up + c_near_right_flip_up
     t236 = across_right_noflip_up * us_near_right_flip_up
+    del us_near_right_flip_up
     s_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t156 * (t236 - t34 * uc_near_right_flip_up))
+    del hub_mid_right_noflip_up, t156, t236, uc_near_right_flip_up
     t237 = c_phi_right_flip_up + s_near_right_flip_up
     t238 = h_wrist_right_noflip_up * np.sqrt(t235 * t235 + t237 * t237)
+    del h_wrist_right_noflip_up, t235, t237
     within_rounding_right_flip_up = t238 <= t56
+    del t238, t56
     t239 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    del here_right_flip_up, in_reach_right_flip_up
     inside_right_flip_up = t239 <= t3
+    del t239
     c_moved_right_flip_up = _runtime.select(inside_right_flip_up, -s_phi_right_noflip_up, c_near_right_flip_up)
+    del c_near_right_flip_up
     t240 = _runtime.select(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
+    del c_moved_right_flip_up, s_phi_right_noflip_up
     sphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t240)
+    del c_mid_right_noflip_up, t240
     t241 = across_right_noflip_up - d5 * sphi_right_flip_up
+    del across_right_noflip_up
     s_moved_right_flip_up = _runtime.select(inside_right_flip_up, -c_phi_right_flip_up, s_near_right_flip_up)
+    del inside_right_flip_up, s_near_right_flip_up
     t242 = _runtime.select(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
+    del c_phi_right_flip_up, s_moved_right_flip_up, within_rounding_right_flip_up
     cphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t242)
+    del s_mid_right_noflip_up, t242
     ey_right_flip_up = t34 - d5 * cphi_right_flip_up
+    del t34
     t243 = t241 * t241 + ey_right_flip_up * ey_right_flip_up
     r_elbow_right_flip_up = np.sqrt(t243)
+    del t243
     t244 = t1 - r_elbow_right_flip_up
     t245 = t37 + r_elbow_right_flip_up
     t246 = r_elbow_right_flip_up - t37
+    del t37
     t247 = t31 & (t30 <= t244) & (t30 <= t245) & (t30 <= t246)
+    del t30, t31
     unreachable_4 = np.logical_not(t247)
+    del t247
     t248 = _runtime.poison(invalid | unreachable_4)
     t249 = t145 + t248
+    del t145
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3
+    del t3
     A_elbow_right_flip_up = np.maximum(t244, 0.0)
+    del t244
     C_elbow_right_flip_up = np.maximum(t246, 0.0)
+    del t246
     t250 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = t1 + r_elbow_right_flip_up
+    del t1
     B_elbow_right_flip_up = np.maximum(t245, 0.0)
+    del t245
     t251 = S_elbow_right_flip_up * B_elbow_right_flip_up
     t252 = 1.0 / (t250 + t251)
     c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t250 - t251) * t252))
+    del t250, t251
     t253 = ey_right_flip_up * c_base_elbow_right_flip_up
     t254 = 1.0 / r_elbow_right_flip_up
+    del r_elbow_right_flip_up
     t255 = t253 * t254
+    del t253
     t256 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
     area_elbow_right_flip_up = t256 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    del t256
     s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t252 * area_elbow_right_flip_up)
+    del t252
     t257 = t254 * (t241 * s_base_elbow_right_flip_up)
     s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t255 + t257)
     t258 = ey_right_flip_up * s_base_elbow_right_flip_up
+    del ey_right_flip_up, s_base_elbow_right_flip_up
     t259 = t254 * t258
+    del t258
     t260 = t254 * (t241 * c_base_elbow_right_flip_up)
+    del c_base_elbow_right_flip_up, t241, t254
     c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t259 - t260)
     t261 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
     t262 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    del A_elbow_right_flip_up, S_elbow_right_flip_up
     t263 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    del B_elbow_right_flip_up, C_elbow_right_flip_up
     t264 = 1.0 / (t262 + t263)
     s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t264)
+    del area_elbow_right_flip_up
     c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t264 * (t262 - t263)))
+    del t262, t263, t264
     t265 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
     t266 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
     t267 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    del c2_right_flip_up, s2_right_flip_up
     t268 = c3_right_flip_up * t266 - s3_right_flip_up * t267
     t269 = c3_right_flip_up * t267 + s3_right_flip_up * t266
+    del t266, t267
     t270 = _runtime.wrap_cut(np.arctan2(t268, t269)) + t248
+    del t268, t269
     t271 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    del M_13_right_noflip_up
     t272 = _runtime.wrap_cut(-np.arctan2(t271, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t271
     t273 = t272 + t248
+    del t272
     t274 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
+    del M_11_right_noflip_up
     t275 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
+    del M_12_right_noflip_up
     t276 = _runtime.wrap_cut(-np.arctan2(t274, t275)) + t248
+    del t274, t275
     s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t255 - t257)
+    del t255, t257
     c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t260 + t259))
+    del t259, t260
     t277 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
     t278 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
     t279 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    del c2_right_flip_down, cphi_right_flip_up, s2_right_flip_down, sphi_right_flip_up
     t280 = c3_right_flip_up * t278 + s3_right_flip_up * t279
     t281 = c3_right_flip_up * t279 - s3_right_flip_up * t278
+    del c3_right_flip_up, s3_right_flip_up, t278, t279
     t282 = _runtime.wrap_cut(np.arctan2(t280, t281)) + t248
+    del t280, t281
     t283 = free1 | aligned_wrist | no_link_elbow
+    del aligned_wrist
     t284 = _runtime.status(invalid, unreachable, t283 | folded_elbow)
+    del folded_elbow, unreachable
     t285 = _runtime.status(invalid, unreachable_2, t283 | folded_elbow_left_flip_up)
+    del folded_elbow_left_flip_up, t283, unreachable_2
     t286 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    del aligned_wrist_right_noflip_up, free1, no_link_elbow
     t287 = _runtime.status(invalid, unreachable_3, t286 | folded_elbow_right_noflip_up)
+    del folded_elbow_right_noflip_up, unreachable_3
     t288 = _runtime.status(invalid, unreachable_4, t286 | folded_elbow_right_flip_up)
+    del folded_elbow_right_flip_up, invalid, t286, unreachable_4
     return (
         t65,
         _runtime.wrap_cut(np.arctan2(s2, c2)) + t64,

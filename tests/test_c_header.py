@@ -266,26 +266,23 @@ def test_atan2_of_special_values_is_that_of_c99(header):
     np.testing.assert_array_max_ulp(angle[number], libm[number], 1, header.real)
 
 
-@pytest.mark.parametrize(
-    ("name", "low", "high"),
-    [("wrap", -2, 2), ("wrap_down", -1, 2), ("wrap_up", -2, 1), ("wrap_cut", -1, 1)],
-)
-def test_wrap_stays_in_the_half_open_interval(header, name, low, high):
+@pytest.mark.parametrize(("name", "turns"), [("wrap", 4), ("wrap_cut", 0.5)])
+def test_wrap_stays_in_the_half_open_interval(header, name, turns):
     pi = header.real(np.pi)
-    ends = np.array([pi, -pi, 2 * pi, -2 * pi])
-    near = [np.nextafter(ends, header.real(0)), np.nextafter(ends[:2], 2 * ends[:2])]
-    inside = np.random.default_rng(7).uniform(-2 * pi, 2 * pi, 3000).astype(header.real)
+    ends = np.arange(-8, 9, dtype=header.real) * pi
+    near = [np.nextafter(ends, header.real(99)), np.nextafter(ends, header.real(-99))]
+    inside = np.random.default_rng(7).uniform(-25, 25, 3000).astype(header.real)
     x = np.concatenate([ends, *near, inside])
-    x = x[(low * pi <= x) & (x <= high * pi)]
+    x = x[np.abs(x) <= 2 * header.real(turns) * pi]
     wrapped = header(f"{name}_all", x)
     assert wrapped.max() <= pi and wrapped.min() > -pi
     ctx.prec = 160
     for angle, result in zip(x.tolist(), wrapped.tolist(), strict=True):
-        turns = round((angle - result) / (2 * math.pi))
-        error = abs(arb(angle) - 2 * arb.pi() * turns - arb(result))
-        assert error <= float(np.spacing(pi)) and abs(turns) <= 1
+        whole = round((angle - result) / (2 * math.pi))
+        error = abs(arb(angle) - 2 * arb.pi() * whole - arb(result))
+        assert error <= float(np.spacing(header.real(max(abs(angle), math.pi))))
         assert not -pi < angle <= pi or result == angle
-    assert np.signbit(header(f"{name}_all", [-0.0]))[0]
+    assert header(f"{name}_all", [-0.0])[0] == 0
     assert np.isnan(header(f"{name}_all", [np.nan]))[0]
 
 
@@ -354,6 +351,6 @@ def test_every_loop_becomes_vectors_in_every_clone(real, tmp_path):
     loops: dict[str, set[str]] = {}
     for line, width in re.findall(r"(\S+:\d+):\d+: .*loop vectorized using (\d+) byte", told):
         loops.setdefault(width, set()).add(line)
-    # The header's loop over a block, and eight of the driver.
-    assert len(loops["64"]) == 9
+    # The header's loop over a block, and six of the driver.
+    assert len(loops["64"]) == 7
     assert loops["64"] <= loops["32"] and loops["64"] <= loops["16"]

@@ -39,9 +39,7 @@ def run(program: Lowered, values: dict[str, float]) -> list[float]:
         "cos": math.cos,
         "abs": abs,
         "atan2": math.atan2,
-        "wrap": lambda a: a - math.tau * (a > math.pi) + math.tau * (a <= -math.pi),
-        "wrap_down": lambda a: a - math.tau * (a > math.pi),
-        "wrap_up": lambda a: a + math.tau * (a <= -math.pi),
+        "wrap": lambda a: math.pi - (math.pi - a) % math.tau,
         "wrap_cut": lambda a: math.pi if a <= -math.pi else a,
     }
     for node in program.schedule():

@@ -17,7 +17,7 @@ from closedform.lower import Lowered
 from closedform.lower.graph import BOOLEAN, Node
 
 LONGEST = 44
-WRAPS = ("wrap", "wrap_cut", "wrap_down", "wrap_up")
+WRAPS = ("wrap", "wrap_cut")
 ATOM, UNARY, PRODUCT, SUM, COMPARE, LOGIC = 7, 6, 5, 4, 3, 2
 
 

@@ -37,13 +37,9 @@ class Ranges:
         if found is None:
             raise UnboundedError
         low, high = found
-        while low < -2 or high > 2:
-            angle = graph.node("wrap", angle)
-            low, high = min(low + 2, Fraction(-1)), max(high - 2, Fraction(1))
-        if high <= 1:
-            op = "wrap_cut" if low == -1 else "wrap_up"
-            return angle if low > -1 else graph.node(op, angle)
-        return graph.node("wrap" if low <= -1 else "wrap_down", angle)
+        if -1 < low and high <= 1:
+            return angle
+        return graph.node("wrap_cut" if low == -1 and high <= 1 else "wrap", angle)
 
     def of(self, node: Node) -> Range | None:
         """The least and the largest value in units of pi, if anything is known of them."""

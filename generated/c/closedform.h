@@ -375,26 +375,14 @@ CF_INLINE void cf_atan2_lanes(size_t n, const real_t *y, const real_t *x, real_t
 /* An angle in [-CF_PI, CF_PI], the range of cf_atan2, brought to (-CF_PI, CF_PI]. */
 CF_INLINE real_t cf_wrap_cut(real_t angle) { return angle <= -CF_PI ? CF_PI : angle; }
 
-/* The sum or difference of two angles, in [-2 pi, 2 pi], brought to (-CF_PI, CF_PI]. */
+/* The sum of a few angles brought to (-CF_PI, CF_PI]; one that is there already stays as it is. */
 CF_INLINE real_t cf_wrap(real_t angle)
 {
-    const real_t down = (angle - 2 * CF_PI) - CF_TWO_PI_LO;
-    const real_t a = angle > CF_PI ? down : angle;
-    const real_t up = (a + 2 * CF_PI) + CF_TWO_PI_LO;
-    return a <= -CF_PI ? cf_min(up, CF_PI) : a;
-}
-
-/* The same for an angle in (-CF_PI, 2 pi], and in [-2 pi, CF_PI]. */
-CF_INLINE real_t cf_wrap_down(real_t angle)
-{
-    const real_t down = (angle - 2 * CF_PI) - CF_TWO_PI_LO;
-    return cf_wrap_cut(angle > CF_PI ? down : angle);
-}
-
-CF_INLINE real_t cf_wrap_up(real_t angle)
-{
-    const real_t up = (angle + 2 * CF_PI) + CF_TWO_PI_LO;
-    return angle <= -CF_PI ? cf_min(up, CF_PI) : angle;
+    /* Adding this rounds to an integer of either sign. */
+    const real_t shift = CLOSEDFORM_C(1.5) * CF_ROUND;
+    const real_t turns = (angle * CLOSEDFORM_C(0.15915494309189535) + shift) - shift;
+    const real_t a = (angle - turns * (2 * CF_PI)) - turns * CF_TWO_PI_LO;
+    return cf_wrap_cut(a > CF_PI ? CF_PI : a);
 }
 
 #endif

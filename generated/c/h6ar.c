@@ -11,7 +11,7 @@
  *   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
  *   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
  *   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
- *   ik: 418 compare and select, 344 add, 26 atan2, 58 divide, 421 multiply, 3 sincos, 31 sqrt
+ *   ik: 394 compare and select, 344 add, 26 atan2, 58 divide, 421 multiply, 3 sincos, 31 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -1721,65 +1721,49 @@ CF_INLINE void h6ar_ik_kernel(const int single, const h6ar_params *params,
     const real_t t360 = cf_wrap(-t359);
     const real_t t361 = cf_select(folded, CLOSEDFORM_C(0.0), angles[2]);
     const real_t t362 = t361 + angles[3];
-    const real_t t363 = cf_wrap_cut(cf_wrap(t362 - angles[4])) + t118;
-    const real_t t364 = angles[4] - angles[5];
-    const real_t t365 = cf_select(short_2, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
-    const real_t t366 = t365 + angles[3] - (angles[7] + angles[8]);
-    const real_t t367 = cf_wrap_cut(cf_wrap(cf_wrap(t364 - t366))) + t118;
-    const real_t t368 = cf_wrap_cut(cf_wrap(t362 + angles[4])) + t118;
-    const real_t t369 = cf_wrap_cut(cf_wrap(cf_wrap(-(t366 + t364))));
-    const real_t t370 = cf_wrap_cut(angles[9]);
-    const real_t t371 = cf_select(folded, CLOSEDFORM_C(0.0), angles[10]);
-    const real_t t372 = t371 + angles[11];
-    const real_t t373 = cf_wrap_cut(cf_wrap(t372 - angles[12])) + t188;
-    const real_t t374 = t365 + angles[7] - (angles[11] - angles[13]);
-    const real_t t375 = angles[12] - angles[14];
-    const real_t t376 = cf_wrap_cut(cf_wrap(cf_wrap(t374 + t375))) + t188;
-    const real_t t377 = cf_wrap_cut(cf_wrap(t372 + angles[12])) + t188;
-    const real_t t378 = cf_wrap_cut(cf_wrap(cf_wrap(t374 - t375))) + t188;
-    const real_t t379 = cf_select(nowhere, CLOSEDFORM_C(0.0), angles[0] + t358);
-    const real_t t380 = cf_wrap_up(-t379);
-    const real_t t381 = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(0.0), angles[15]);
-    const real_t t382 = t381 + angles[16];
-    const real_t t383 = cf_wrap_cut(cf_wrap(t382 - angles[17])) + t271;
-    const real_t t384 = cf_select(short_2, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[18]);
-    const real_t t385 = angles[7] - angles[16] + (t384 + angles[19]);
-    const real_t t386 = angles[17] - angles[20];
-    const real_t t387 = cf_wrap_cut(cf_wrap(cf_wrap(t385 + t386))) + t271;
-    const real_t t388 = cf_wrap_cut(cf_wrap(t382 + angles[17])) + t271;
-    const real_t t389 = cf_wrap_cut(cf_wrap(cf_wrap(t385 - t386))) + t271;
-    const real_t t390 = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(0.0), angles[21]);
-    const real_t t391 = t390 + angles[22];
-    const real_t t392 = cf_wrap_cut(cf_wrap(t391 - angles[23])) + t345;
-    const real_t t393 = angles[7] - t384 - (angles[22] - angles[24]);
-    const real_t t394 = angles[23] - angles[25];
-    const real_t t395 = cf_wrap_cut(cf_wrap(cf_wrap(t393 + t394))) + t345;
-    const real_t t396 = cf_wrap_cut(cf_wrap(t391 + angles[23])) + t345;
-    const real_t t397 = cf_wrap_cut(cf_wrap(cf_wrap(t393 - t394))) + t345;
+    const real_t t363 = angles[4] - angles[5];
+    const real_t t364 = cf_select(short_2, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
+    const real_t t365 = t364 + angles[3] - (angles[7] + angles[8]);
+    const real_t t366 = cf_wrap_cut(angles[9]);
+    const real_t t367 = cf_select(folded, CLOSEDFORM_C(0.0), angles[10]);
+    const real_t t368 = t367 + angles[11];
+    const real_t t369 = t364 + angles[7] - (angles[11] - angles[13]);
+    const real_t t370 = angles[12] - angles[14];
+    const real_t t371 = cf_select(nowhere, CLOSEDFORM_C(0.0), angles[0] + t358);
+    const real_t t372 = cf_wrap(-t371);
+    const real_t t373 = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(0.0), angles[15]);
+    const real_t t374 = t373 + angles[16];
+    const real_t t375 = cf_select(short_2, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[18]);
+    const real_t t376 = angles[7] - angles[16] + (t375 + angles[19]);
+    const real_t t377 = angles[17] - angles[20];
+    const real_t t378 = cf_select(folded_rear_elbow_up, CLOSEDFORM_C(0.0), angles[21]);
+    const real_t t379 = t378 + angles[22];
+    const real_t t380 = angles[7] - t375 - (angles[22] - angles[24]);
+    const real_t t381 = angles[23] - angles[25];
     q[0] = t360 + t118;
-    q[1] = t363;
-    q[2] = t367;
-    q[3] = t368;
-    q[4] = t369 + t118;
-    q[5] = t370 + t118;
+    q[1] = cf_wrap(t362 - angles[4]) + t118;
+    q[2] = cf_wrap(t363 - t365) + t118;
+    q[3] = cf_wrap(t362 + angles[4]) + t118;
+    q[4] = cf_wrap(-(t365 + t363)) + t118;
+    q[5] = t366 + t118;
     q[6] = t360 + t188;
-    q[7] = t373;
-    q[8] = t376;
-    q[9] = t377;
-    q[10] = t378;
-    q[11] = t370 + t188;
-    q[12] = t380 + t271;
-    q[13] = t383;
-    q[14] = t387;
-    q[15] = t388;
-    q[16] = t389;
-    q[17] = t370 + t271;
-    q[18] = t380 + t345;
-    q[19] = t392;
-    q[20] = t395;
-    q[21] = t396;
-    q[22] = t397;
-    q[23] = t370 + t345;
+    q[7] = cf_wrap(t368 - angles[12]) + t188;
+    q[8] = cf_wrap(t369 + t370) + t188;
+    q[9] = cf_wrap(t368 + angles[12]) + t188;
+    q[10] = cf_wrap(t369 - t370) + t188;
+    q[11] = t366 + t188;
+    q[12] = t372 + t271;
+    q[13] = cf_wrap(t374 - angles[17]) + t271;
+    q[14] = cf_wrap(t376 + t377) + t271;
+    q[15] = cf_wrap(t374 + angles[17]) + t271;
+    q[16] = cf_wrap(t376 - t377) + t271;
+    q[17] = t366 + t271;
+    q[18] = t372 + t345;
+    q[19] = cf_wrap(t379 - angles[23]) + t345;
+    q[20] = cf_wrap(t380 + t381) + t345;
+    q[21] = cf_wrap(t379 + angles[23]) + t345;
+    q[22] = cf_wrap(t380 - t381) + t345;
+    q[23] = t366 + t345;
     status[0] = t353;
     status[1] = t354;
     status[2] = t356;
@@ -1993,7 +1977,7 @@ CF_INLINE void h6ar_largest_yaw_kernel(const int single, const h6ar_params *para
     const int t5 = cf_nought(phi_2) + cf_nought(beta_min_2) == 0;
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
     const int failed = (!(t4 & (CLOSEDFORM_C(0.0) <= al) & t5)) | unreachable;
-    const real_t t6 = cf_wrap_down(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
+    const real_t t6 = cf_wrap(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
     psi[0] = t6;
 }
 
@@ -2050,7 +2034,7 @@ CF_INLINE void h6ar_largest_angle_kernel(const int single, const h6ar_params *pa
     const int t5 = cf_nought(beta_min_2) == 0;
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
     const int failed = (!(t4 & (CLOSEDFORM_C(0.0) <= al) & t5)) | unreachable;
-    const real_t t6 = cf_wrap_down(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
+    const real_t t6 = cf_wrap(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
     angle[0] = t6;
 }
 

@@ -11,7 +11,7 @@
  *   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
  *   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
  *   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
- *   ik: 418 compare and select, 344 add, 26 atan2, 58 divide, 421 multiply, 3 sincos, 31 sqrt
+ *   ik: 394 compare and select, 344 add, 26 atan2, 58 divide, 421 multiply, 3 sincos, 31 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt

@@ -11,7 +11,7 @@
  *   jacobian: 56 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
  *   determinant: 56 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
  *   singularities: 56 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
- *   ik: 374 compare and select, 374 add, 28 atan2, 41 divide, 517 multiply, 3 sincos, 31 sqrt
+ *   ik: 370 compare and select, 374 add, 28 atan2, 41 divide, 517 multiply, 3 sincos, 31 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -2120,7 +2120,7 @@ CF_INLINE void h6ar_loop_closed_ik_kernel(const int single,
     const real_t t398 = cf_rarely(single, folded_right, angles[2], angles[3]);
     const real_t t399 = cf_wrap_cut(t398) + t111;
     const real_t t400 = cf_select(short_right, CLOSEDFORM_C(0.0), t117 * angles[5]);
-    const real_t t401 = cf_wrap_cut(cf_wrap(angles[4] + t400)) + t111;
+    const real_t t401 = cf_wrap(angles[4] + t400) + t111;
     const real_t t402 = cf_rarely(single, folded_left, angles[2], angles[6]);
     const real_t t403 = cf_select(short_right, CLOSEDFORM_C(0.0), t117 * angles[7]);
     const real_t t404 = cf_wrap_cut(angles[8]);
@@ -2130,18 +2130,18 @@ CF_INLINE void h6ar_loop_closed_ik_kernel(const int single,
     const real_t t408 = cf_rarely(single, folded_right_front_elbow_down_alike, angles[10], angles[11]);
     const real_t t409 = cf_wrap_cut(t408) + t188;
     const real_t t410 = cf_select(short_right, CLOSEDFORM_C(0.0), t190 * angles[12]);
-    const real_t t411 = cf_wrap_cut(cf_wrap(angles[4] + t410)) + t188;
+    const real_t t411 = cf_wrap(angles[4] + t410) + t188;
     const real_t t412 = cf_rarely(single, folded_left_front_elbow_down_alike, angles[10], angles[13]);
     const real_t t413 = cf_select(short_right, CLOSEDFORM_C(0.0), t190 * angles[14]);
     const real_t t414 = t404 + t188;
     const real_t t415 = cf_rarely(single, folded_left_front_elbow_down_alike, angles[10], angles[15]);
     const real_t t416 = cf_select(nowhere, CLOSEDFORM_C(0.0), angles[0] + t394);
-    const real_t t417 = cf_wrap_up(-t416);
+    const real_t t417 = cf_wrap(-t416);
     const real_t t418 = t417 + t279;
     const real_t t419 = cf_rarely(single, folded_right_rear_elbow_up_alike, angles[16], angles[17]);
     const real_t t420 = cf_wrap_cut(t419) + t279;
     const real_t t421 = cf_select(short_right, CLOSEDFORM_C(0.0), t281 * angles[18]);
-    const real_t t422 = cf_wrap_cut(cf_wrap(angles[4] + t421)) + t279;
+    const real_t t422 = cf_wrap(angles[4] + t421) + t279;
     const real_t t423 = cf_rarely(single, folded_left_rear_elbow_up_alike, angles[16], angles[19]);
     const real_t t424 = cf_select(short_right, CLOSEDFORM_C(0.0), t281 * angles[20]);
     const real_t t425 = t404 + t279;
@@ -2150,7 +2150,7 @@ CF_INLINE void h6ar_loop_closed_ik_kernel(const int single,
     const real_t t428 = cf_rarely(single, folded_right_rear_elbow_down_alike, angles[22], angles[23]);
     const real_t t429 = cf_wrap_cut(t428) + t357;
     const real_t t430 = cf_select(short_right, CLOSEDFORM_C(0.0), t359 * angles[24]);
-    const real_t t431 = cf_wrap_cut(cf_wrap(angles[4] + t430)) + t357;
+    const real_t t431 = cf_wrap(angles[4] + t430) + t357;
     const real_t t432 = cf_rarely(single, folded_left_rear_elbow_down_alike, angles[22], angles[25]);
     const real_t t433 = cf_select(short_right, CLOSEDFORM_C(0.0), t359 * angles[26]);
     const real_t t434 = t404 + t357;
@@ -2466,7 +2466,7 @@ CF_INLINE void h6ar_loop_closed_largest_yaw_kernel(const int single,
     const int t5 = cf_nought(phi_2) + cf_nought(beta_min_2) == 0;
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
     const int failed = (!(t4 & (CLOSEDFORM_C(0.0) <= al) & t5)) | unreachable;
-    const real_t t6 = cf_wrap_down(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
+    const real_t t6 = cf_wrap(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
     psi[0] = t6;
 }
 
@@ -2526,7 +2526,7 @@ CF_INLINE void h6ar_loop_closed_largest_angle_kernel(const int single,
     const int t5 = cf_nought(beta_min_2) == 0;
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * (gs + al)) <= t1);
     const int failed = (!(t4 & (CLOSEDFORM_C(0.0) <= al) & t5)) | unreachable;
-    const real_t t6 = cf_wrap_down(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
+    const real_t t6 = cf_wrap(CLOSEDFORM_C(2.0) * t2) + cf_poison(single, failed);
     angle[0] = t6;
 }
 

@@ -80,23 +80,16 @@ def sincos(angle: Any) -> tuple[Any, Any]:
 
 
 def wrap(angle: Any) -> Any:
-    """An angle of [-2 pi, 2 pi] in (-pi, pi]; by arithmetic, for selections are slow in NumPy."""
-    turns = np.greater(angle, np.pi).view(np.int8) - np.less_equal(angle, -np.pi).view(np.int8)
-    return angle - 2 * np.pi * turns
-
-
-def wrap_down(angle: Any) -> Any:
-    """The same for an angle of (-pi, 2 pi]."""
-    return angle - 2 * np.pi * (angle > np.pi)
-
-
-def wrap_up(angle: Any) -> Any:
-    """The same for an angle of [-2 pi, pi]."""
-    return angle + 2 * np.pi * (angle <= -np.pi)
+    """The sum of a few angles in (-pi, pi]; one that is there already stays as it is."""
+    wrapped = angle - 2 * np.pi * np.rint(angle * (0.5 / np.pi))
+    rare = np.abs(wrapped) >= np.pi
+    if np.any(rare):
+        return np.where(rare, np.pi, wrapped)
+    return wrapped
 
 
 def wrap_cut(angle: Any) -> Any:
-    """The same for an angle of [-pi, pi], the range of ``atan2``."""
+    """An angle of [-pi, pi], the range of ``atan2``, in (-pi, pi]."""
     return select(angle <= -np.pi, np.pi, angle)
 
 

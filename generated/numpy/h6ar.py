@@ -10,7 +10,7 @@
 #   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 418 compare and select, 344 add, 26 atan2, 58 divide, 421 multiply, 3 sincos, 31 sqrt
+#   ik: 394 compare and select, 344 add, 26 atan2, 58 divide, 421 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -1244,24 +1244,18 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t119 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     t120 = np.arctan2((below_alpha - above_alpha) * t118, t118 * t119)
     del above_alpha, below_alpha, t118, t119
-    t121 = _runtime.wrap_cut(_runtime.wrap(t117 - t120))
-    t122 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t121 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     del above_beta, below_beta
-    t123 = t120 - np.arctan2(t110, t109 * t122)
-    del t109, t110, t122
-    t124 = _runtime.select(short, 0.0, 2.0 * np.arctan2(rN, rM))
+    t122 = t120 - np.arctan2(t110, t109 * t121)
+    del t109, t110, t121
+    t123 = _runtime.select(short, 0.0, 2.0 * np.arctan2(rN, rM))
     del rM, rN
-    t125 = np.arctan2(s_lag, c_lag)
-    t126 = t125 + np.arctan2(turn_alpha + turn_beta, 1.0)
+    t124 = np.arctan2(s_lag, c_lag)
+    t125 = t124 + np.arctan2(turn_alpha + turn_beta, 1.0)
     del turn_alpha, turn_beta
-    t127 = t124 + t116 - t126
-    del t116, t126
-    t128 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t123 - t127)))
-    t129 = _runtime.wrap_cut(_runtime.wrap(t117 + t120))
-    del t117, t120
-    t130 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(-(t127 + t123))))
-    del t123, t127
-    t131 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t126 = t123 + t116 - t125
+    del t116, t125
+    t127 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
     del c_pitch, s_pitch
     c_relative_front_elbow_down = t51 - t52
     del t51, t52
@@ -1269,190 +1263,184 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t53, t54
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t132 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
+    t128 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     out_front_elbow_down = t58 + t59
     del t58, t59
-    t133 = t61 - t62
+    t129 = t61 - t62
     del t61, t62
-    t134 = out_front_elbow_down * out_front_elbow_down + t133 * t133
-    t135 = 1.0 / np.sqrt(t134)
-    del t134
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down * t135)
-    t136 = _runtime.select(folded, 0.0, t133 * t135)
-    del t135
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t136
-    t137 = ahead * t136 + higher * ctheta2A_front_elbow_down
-    del ctheta2A_front_elbow_down, t136
-    t138 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t137
-    t139 = _runtime.select(0.0 <= -t138, 1.0, -1.0)
-    room_alpha_front_elbow_down = whole_alpha_front_elbow_down * t132 + t138 * t139
-    del t138, whole_alpha_front_elbow_down
+    t130 = out_front_elbow_down * out_front_elbow_down + t129 * t129
+    t131 = 1.0 / np.sqrt(t130)
+    del t130
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down * t131)
+    t132 = _runtime.select(folded, 0.0, t129 * t131)
+    del t131
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t132
+    t133 = ahead * t132 + higher * ctheta2A_front_elbow_down
+    del ctheta2A_front_elbow_down, t132
+    t134 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t133
+    t135 = _runtime.select(0.0 <= -t134, 1.0, -1.0)
+    room_alpha_front_elbow_down = whole_alpha_front_elbow_down * t128 + t134 * t135
+    del t134, whole_alpha_front_elbow_down
     spent_alpha_front_elbow_down = room_alpha_front_elbow_down <= t67
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t140 = 1.0 / (t68 + np.abs(tilt_front_elbow_down))
+    t136 = 1.0 / (t68 + np.abs(tilt_front_elbow_down))
     del tilt_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
-    t141 = v_2_front_elbow_down * t132 * drawn_front_elbow_down
-    del t132
-    t142 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t137
-    t143 = t141 - t139 * t142
-    del t139, t141, t142
-    t144 = _runtime.select(spent_alpha_front_elbow_down, t140 * (size * np.abs(t143)), 0.0)
-    t145 = -(_runtime.FEASIBILITY * (t47 + t144)) <= room_alpha_front_elbow_down
-    del t144
-    t146 = room_alpha_front_elbow_down - np.abs(room_alpha_front_elbow_down)
-    del room_alpha_front_elbow_down
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t143 * t146 / (2.0 * (t74 + t143 * t143)), 0.0)
-    del t143, t146
-    t147 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t76 * t147, 0.0)
-    del t147
-    t148 = p_1_front_elbow_down + t137 * lean_alpha_front_elbow_down
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t148, p_1_front_elbow_down)
-    del t148
-    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t149 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
-    t150 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
-    t151 = v_1_front_elbow_down - v_2_front_elbow_down * t150
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t151, v_1_front_elbow_down)
-    del t151
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t152 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
-    t153 = part_beta_front_elbow_down * t149 - whole_beta_front_elbow_down * t152
-    del part_beta_front_elbow_down, whole_beta_front_elbow_down
-    spent_beta_front_elbow_down = -t153 <= t67
-    t154 = v_2_front_elbow_down + v_1_front_elbow_down * t150
-    del t150, v_1_front_elbow_down
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t154, v_2_front_elbow_down)
-    del t154, v_2_front_elbow_down
-    t155 = drawn_front_elbow_down * t152 * v_2_alpha_front_elbow_down
-    del t152
-    t156 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    del p_1_front_elbow_down
-    t157 = _runtime.select(spent_alpha_front_elbow_down, t137 - t156, t137)
-    del spent_alpha_front_elbow_down, t137, t156
-    t158 = t155 + (L1 - drawn_front_elbow_down) * t149 * t157
-    del t149, t155
-    t159 = _runtime.select(spent_beta_front_elbow_down, t140 * (size * np.abs(t158)), 0.0)
+    t137 = v_2_front_elbow_down * t128 * drawn_front_elbow_down
+    del t128
+    t138 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t133
+    t139 = t137 - t135 * t138
+    del t135, t137, t138
+    t140 = _runtime.select(spent_alpha_front_elbow_down, t136 * (size * np.abs(t139)), 0.0)
+    t141 = -(_runtime.FEASIBILITY * (t47 + t140)) <= room_alpha_front_elbow_down
     del t140
-    t160 = -(_runtime.FEASIBILITY * (t47 + t159)) <= -t153
-    del t159
-    t161 = t158 * (t153 + np.abs(t153)) / (2.0 * (t74 + t158 * t158))
-    del t153, t158
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t161, 0.0)
-    del t161
-    t162 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    t142 = room_alpha_front_elbow_down - np.abs(room_alpha_front_elbow_down)
+    del room_alpha_front_elbow_down
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t139 * t142 / (2.0 * (t74 + t139 * t139)), 0.0)
+    del t139, t142
+    t143 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t76 * t143, 0.0)
+    del t143
+    t144 = p_1_front_elbow_down + t133 * lean_alpha_front_elbow_down
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t144, p_1_front_elbow_down)
+    del t144
+    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
+    t145 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
+    t146 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
+    t147 = v_1_front_elbow_down - v_2_front_elbow_down * t146
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t147, v_1_front_elbow_down)
+    del t147
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t148 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
+    t149 = part_beta_front_elbow_down * t145 - whole_beta_front_elbow_down * t148
+    del part_beta_front_elbow_down, whole_beta_front_elbow_down
+    spent_beta_front_elbow_down = -t149 <= t67
+    t150 = v_2_front_elbow_down + v_1_front_elbow_down * t146
+    del t146, v_1_front_elbow_down
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t150, v_2_front_elbow_down)
+    del t150, v_2_front_elbow_down
+    t151 = drawn_front_elbow_down * t148 * v_2_alpha_front_elbow_down
+    del t148
+    t152 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    del p_1_front_elbow_down
+    t153 = _runtime.select(spent_alpha_front_elbow_down, t133 - t152, t133)
+    del spent_alpha_front_elbow_down, t133, t152
+    t154 = t151 + (L1 - drawn_front_elbow_down) * t145 * t153
+    del t145, t151
+    t155 = _runtime.select(spent_beta_front_elbow_down, t136 * (size * np.abs(t154)), 0.0)
+    del t136
+    t156 = -(_runtime.FEASIBILITY * (t47 + t155)) <= -t149
+    del t155
+    t157 = t154 * (t149 + np.abs(t149)) / (2.0 * (t74 + t154 * t154))
+    del t149, t154
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t157, 0.0)
+    del t157
+    t158 = drawn_front_elbow_down * turn_beta_front_elbow_down
     del drawn_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t76 * t162, 0.0)
-    del t162
-    t163 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
-    t164 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t163
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t164, v_1_alpha_front_elbow_down)
-    del t164
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t76 * t158, 0.0)
+    del t158
+    t159 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
+    t160 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t159
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t160, v_1_alpha_front_elbow_down)
+    del t160
     sigma_uv_front_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_front_elbow_down), 1.0, -1.0)
-    t165 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t161 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
     del v_1_beta_front_elbow_down
-    t166 = p_1_alpha_front_elbow_down + t157 * lean_beta_front_elbow_down
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t166, p_1_alpha_front_elbow_down)
-    del t166
-    t167 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t162 = p_1_alpha_front_elbow_down + t153 * lean_beta_front_elbow_down
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t162, p_1_alpha_front_elbow_down)
+    del t162
+    t163 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
     del p_1_beta_front_elbow_down, sigma_uv_front_elbow_down
-    t168 = t46 & t145 & t160 & (t88 <= -(t165 + np.abs(t167)))
-    del t145, t160, t46
-    t169 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t164 = t46 & t141 & t156 & (t88 <= -(t161 + np.abs(t163)))
+    del t141, t156, t46
+    t165 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    p_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t157 - t169, t157)
-    del t157, t169
-    t170 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t163
-    del t163, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t170, v_2_alpha_front_elbow_down)
-    del spent_beta_front_elbow_down, t170, v_2_alpha_front_elbow_down
-    t171 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t165 <= _runtime.VANISHING * (64.0 * t171)
-    t172 = _runtime.select(0.0 <= v_2_beta_front_elbow_down, p_2_beta_front_elbow_down, -p_2_beta_front_elbow_down)
-    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, t172, -t167)
-    del t167, t172
-    t173 = v_2_beta_front_elbow_down * part_y_front_elbow_down
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t171, -t165)
-    rest_front_elbow_down = p_2_beta_front_elbow_down - t173 / whole_y_front_elbow_down
-    del t173
+    p_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t153 - t165, t153)
+    del t153, t165
+    t166 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t159
+    del t159, v_1_alpha_front_elbow_down
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t166, v_2_alpha_front_elbow_down)
+    del spent_beta_front_elbow_down, t166, v_2_alpha_front_elbow_down
+    t167 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t161 <= _runtime.VANISHING * (64.0 * t167)
+    t168 = _runtime.select(0.0 <= v_2_beta_front_elbow_down, p_2_beta_front_elbow_down, -p_2_beta_front_elbow_down)
+    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, t168, -t163)
+    del t163, t168
+    t169 = v_2_beta_front_elbow_down * part_y_front_elbow_down
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t167, -t161)
+    rest_front_elbow_down = p_2_beta_front_elbow_down - t169 / whole_y_front_elbow_down
+    del t169
     left_along_front_elbow_down = L1 - np.abs(-rest_front_elbow_down)
     spent_along_front_elbow_down = left_along_front_elbow_down <= t97
-    t174 = _runtime.select(spent_along_front_elbow_down, t171 / (t98 - t165), 0.0)
-    del t171
-    t175 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t174)))
-    del t174
-    t176 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
-    t177 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t178 = v_2_beta_front_elbow_down * t176 / (t165 * t165 + t177)
-    del t165, t176, t177
-    t179 = _runtime.select(0.0 <= rest_front_elbow_down, -t178, t178)
-    del rest_front_elbow_down, t178
-    t180 = part_y_front_elbow_down + whole_y_front_elbow_down * t179
-    del t179
-    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, t180, part_y_front_elbow_down)
-    del part_y_front_elbow_down, spent_along_front_elbow_down, t180
-    t181 = whole_y_front_elbow_down - eased_front_elbow_down
-    t182 = t168 & (t175 <= left_along_front_elbow_down) & (t88 <= t181)
-    del left_along_front_elbow_down, t168, t175
-    t183 = whole_y_front_elbow_down + eased_front_elbow_down
+    t170 = _runtime.select(spent_along_front_elbow_down, t167 / (t98 - t161), 0.0)
+    del t167
+    t171 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t170)))
+    del t170
+    t172 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
+    t173 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t174 = v_2_beta_front_elbow_down * t172 / (t161 * t161 + t173)
+    del t161, t172, t173
+    t175 = _runtime.select(0.0 <= rest_front_elbow_down, -t174, t174)
+    del rest_front_elbow_down, t174
+    t176 = part_y_front_elbow_down + whole_y_front_elbow_down * t175
+    del t175
+    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, t176, part_y_front_elbow_down)
+    del part_y_front_elbow_down, spent_along_front_elbow_down, t176
+    t177 = whole_y_front_elbow_down - eased_front_elbow_down
+    t178 = t164 & (t171 <= left_along_front_elbow_down) & (t88 <= t177)
+    del left_along_front_elbow_down, t164, t171
+    t179 = whole_y_front_elbow_down + eased_front_elbow_down
     del eased_front_elbow_down, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t181, t108)
-    del t181
-    above_beta_front_elbow_down = np.maximum(t183, t108)
-    t184 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t177, t108)
+    del t177
+    above_beta_front_elbow_down = np.maximum(t179, t108)
+    t180 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t185 = 1.0 / total_beta_front_elbow_down
+    t181 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t186 = t184 * t185
-    del t184
-    along_u_front_elbow_down = p_2_beta_front_elbow_down + v_2_beta_front_elbow_down * t186
+    t182 = t180 * t181
+    del t180
+    along_u_front_elbow_down = p_2_beta_front_elbow_down + v_2_beta_front_elbow_down * t182
     del p_2_beta_front_elbow_down, v_2_beta_front_elbow_down
-    t187 = L1 - along_u_front_elbow_down
-    t188 = L1 + along_u_front_elbow_down
+    t183 = L1 - along_u_front_elbow_down
+    t184 = L1 + along_u_front_elbow_down
     del along_u_front_elbow_down
-    t189 = t182 & (t88 <= t183) & (t88 <= t187) & (t88 <= t188)
-    del t182, t183
-    unreachable_2 = np.logical_not(t189)
-    del t189
-    t190 = _runtime.poison(invalid | unreachable_2)
-    t191 = _runtime.select(folded, 0.0, np.arctan2(-t133, out_front_elbow_down))
-    del out_front_elbow_down, t133
-    t192 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t185 = t178 & (t88 <= t179) & (t88 <= t183) & (t88 <= t184)
+    del t178, t179
+    unreachable_2 = np.logical_not(t185)
+    del t185
+    t186 = _runtime.poison(invalid | unreachable_2)
+    t187 = _runtime.select(folded, 0.0, np.arctan2(-t129, out_front_elbow_down))
+    del out_front_elbow_down, t129
+    t188 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
     del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t193 = np.arctan2(t192, 1.0)
-    del t192
-    t194 = t191 + t193
-    del t191
-    below_alpha_front_elbow_down = np.maximum(t187, t108)
-    del t187
-    above_alpha_front_elbow_down = np.maximum(t188, t108)
+    t189 = np.arctan2(t188, 1.0)
     del t188
-    t195 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t190 = t187 + t189
+    del t187
+    below_alpha_front_elbow_down = np.maximum(t183, t108)
+    del t183
+    above_alpha_front_elbow_down = np.maximum(t184, t108)
+    del t184
+    t191 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t196 = 1.0 / total_alpha_front_elbow_down
+    t192 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t197 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t193 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t198 = np.arctan2(t195 * t196, t196 * t197)
-    del t195, t196, t197
-    t199 = _runtime.wrap_cut(_runtime.wrap(t194 - t198))
-    t200 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t194 = np.arctan2(t191 * t192, t192 * t193)
+    del t191, t192, t193
+    t195 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t201 = t124 + t125 - (t193 - np.arctan2(t200, 1.0))
-    del t124, t193, t200
-    t202 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t196 = t123 + t124 - (t189 - np.arctan2(t195, 1.0))
+    del t123, t189, t195
+    t197 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t203 = t198 - np.arctan2(t186, t185 * t202)
-    del t185, t186, t202
-    t204 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t201 + t203)))
-    t205 = _runtime.wrap_cut(_runtime.wrap(t194 + t198))
-    del t194, t198
-    t206 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t201 - t203)))
-    del t201, t203
-    t207 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t15))
+    t198 = t194 - np.arctan2(t182, t181 * t197)
+    del t181, t182, t197
+    t199 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t15))
     del t15, t2
     c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -(t33 * (t36 + t37)))
     del t36, t37
@@ -1460,459 +1448,447 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t33, t38, t39
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
     del c1_rear_elbow_up, s1_rear_elbow_up
-    t208 = outward_rear_elbow_up * outward_rear_elbow_up
-    square_rear_elbow_up = t32 + t208
-    del t208, t32
-    t209 = t30 - square_rear_elbow_up
+    t200 = outward_rear_elbow_up * outward_rear_elbow_up
+    square_rear_elbow_up = t32 + t200
+    del t200, t32
+    t201 = t30 - square_rear_elbow_up
     del t30
-    t210 = square_rear_elbow_up - t44
+    t202 = square_rear_elbow_up - t44
     del square_rear_elbow_up, t44
-    t211 = t26 & (-t29 <= t209) & (-t43 <= t210)
+    t203 = t26 & (-t29 <= t201) & (-t43 <= t202)
     del t26, t29, t43
-    M_rear_elbow_up = np.maximum(t210, 0.0)
-    del t210
-    N_rear_elbow_up = np.maximum(t209, 0.0)
-    del t209
-    t212 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t212 * (M_rear_elbow_up - N_rear_elbow_up))
-    t213 = c_lag * c_bend_rear_elbow_up
+    M_rear_elbow_up = np.maximum(t202, 0.0)
+    del t202
+    N_rear_elbow_up = np.maximum(t201, 0.0)
+    del t201
+    t204 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t204 * (M_rear_elbow_up - N_rear_elbow_up))
+    t205 = c_lag * c_bend_rear_elbow_up
     rN_rear_elbow_up = np.sqrt(N_rear_elbow_up)
     del N_rear_elbow_up
     rM_rear_elbow_up = np.sqrt(M_rear_elbow_up)
-    t214 = t212 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
-    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t214)
-    del t214
-    t215 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t213 - t215
-    t216 = s_lag * c_bend_rear_elbow_up
+    t206 = t204 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
+    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t206)
+    del t206
+    t207 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t205 - t207
+    t208 = s_lag * c_bend_rear_elbow_up
     del c_bend_rear_elbow_up, s_lag
-    t217 = c_lag * s_bend_rear_elbow_up
+    t209 = c_lag * s_bend_rear_elbow_up
     del c_lag
-    s_relative_rear_elbow_up = t216 + t217
+    s_relative_rear_elbow_up = t208 + t209
     v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
     whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
-    t218 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
+    t210 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
     v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
     folded_rear_elbow_up = t56 + np.abs(outward_rear_elbow_up) <= t49
     del t49, t56
-    t219 = t57 * s_bend_rear_elbow_up
+    t211 = t57 * s_bend_rear_elbow_up
     del t57
-    ahead_1_rear_elbow_up = _runtime.select(short, t27, t42 + t28 * M_rear_elbow_up * t212)
-    del M_rear_elbow_up, t212, t27, t28, t42
-    t220 = outward_rear_elbow_up * ahead_1_rear_elbow_up
-    out_rear_elbow_up = t219 + t220
-    t221 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
+    ahead_1_rear_elbow_up = _runtime.select(short, t27, t42 + t28 * M_rear_elbow_up * t204)
+    del M_rear_elbow_up, t204, t27, t28, t42
+    t212 = outward_rear_elbow_up * ahead_1_rear_elbow_up
+    out_rear_elbow_up = t211 + t212
+    t213 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
     del fore, outward_rear_elbow_up, s_bend_rear_elbow_up
-    t222 = t31 * ahead_1_rear_elbow_up
+    t214 = t31 * ahead_1_rear_elbow_up
     del ahead_1_rear_elbow_up, t31
-    t223 = t221 - t222
-    t224 = out_rear_elbow_up * out_rear_elbow_up + t223 * t223
-    t225 = 1.0 / np.sqrt(t224)
-    del t224
-    ctheta2A_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, out_rear_elbow_up * t225)
-    t226 = _runtime.select(folded_rear_elbow_up, 0.0, t223 * t225)
-    del t225
-    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up - higher * t226
-    t227 = ahead * t226 + higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t226
-    t228 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t227
-    t229 = _runtime.select(0.0 <= -t228, 1.0, -1.0)
-    room_alpha_rear_elbow_up = whole_alpha_rear_elbow_up * t218 + t228 * t229
-    del t228, whole_alpha_rear_elbow_up
+    t215 = t213 - t214
+    t216 = out_rear_elbow_up * out_rear_elbow_up + t215 * t215
+    t217 = 1.0 / np.sqrt(t216)
+    del t216
+    ctheta2A_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, out_rear_elbow_up * t217)
+    t218 = _runtime.select(folded_rear_elbow_up, 0.0, t215 * t217)
+    del t217
+    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up - higher * t218
+    t219 = ahead * t218 + higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t218
+    t220 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t219
+    t221 = _runtime.select(0.0 <= -t220, 1.0, -1.0)
+    room_alpha_rear_elbow_up = whole_alpha_rear_elbow_up * t210 + t220 * t221
+    del t220, whole_alpha_rear_elbow_up
     spent_alpha_rear_elbow_up = room_alpha_rear_elbow_up <= t67
     tilt_rear_elbow_up = L_2W * c_relative_rear_elbow_up - a_3W * s_relative_rear_elbow_up
-    t230 = 1.0 / (t68 + np.abs(tilt_rear_elbow_up))
+    t222 = 1.0 / (t68 + np.abs(tilt_rear_elbow_up))
     del tilt_rear_elbow_up
     drawn_rear_elbow_up = L1 + L_2W * s_relative_rear_elbow_up + a_3W * c_relative_rear_elbow_up
     del c_relative_rear_elbow_up, s_relative_rear_elbow_up
-    t231 = v_2_rear_elbow_up * t218 * drawn_rear_elbow_up
-    del t218
-    t232 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t227
-    t233 = t231 - t229 * t232
-    del t229, t231, t232
-    t234 = _runtime.select(spent_alpha_rear_elbow_up, t230 * (size * np.abs(t233)), 0.0)
-    t235 = -(_runtime.FEASIBILITY * (t47 + t234)) <= room_alpha_rear_elbow_up
-    del t234
-    t236 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
+    t223 = v_2_rear_elbow_up * t210 * drawn_rear_elbow_up
+    del t210
+    t224 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t219
+    t225 = t223 - t221 * t224
+    del t221, t223, t224
+    t226 = _runtime.select(spent_alpha_rear_elbow_up, t222 * (size * np.abs(t225)), 0.0)
+    t227 = -(_runtime.FEASIBILITY * (t47 + t226)) <= room_alpha_rear_elbow_up
+    del t226
+    t228 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
     del room_alpha_rear_elbow_up
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t233 * t236 / (2.0 * (t74 + t233 * t233)), 0.0)
-    del t233, t236
-    t237 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t76 * t237, 0.0)
-    del t237
-    t238 = p_1_rear_elbow_up + t227 * lean_alpha_rear_elbow_up
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t238, p_1_rear_elbow_up)
-    del t238
-    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t239 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
-    t240 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t240, v_1_rear_elbow_up)
-    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t241 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
-    t242 = part_beta_rear_elbow_up * t239 - whole_beta_rear_elbow_up * t241
-    del part_beta_rear_elbow_up, whole_beta_rear_elbow_up
-    spent_beta_rear_elbow_up = -t242 <= t67
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t240, v_2_rear_elbow_up)
-    del t240, v_1_rear_elbow_up, v_2_rear_elbow_up
-    t243 = drawn_rear_elbow_up * t241 * v_2_alpha_rear_elbow_up
-    del t241
-    t244 = t227 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
-    del p_1_rear_elbow_up
-    t245 = _runtime.select(spent_alpha_rear_elbow_up, t244, t227)
-    del spent_alpha_rear_elbow_up, t227, t244
-    t246 = t243 + (L1 - drawn_rear_elbow_up) * t239 * t245
-    del t239, t243
-    t247 = _runtime.select(spent_beta_rear_elbow_up, t230 * (size * np.abs(t246)), 0.0)
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t225 * t228 / (2.0 * (t74 + t225 * t225)), 0.0)
+    del t225, t228
+    t229 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t76 * t229, 0.0)
+    del t229
+    t230 = p_1_rear_elbow_up + t219 * lean_alpha_rear_elbow_up
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t230, p_1_rear_elbow_up)
     del t230
-    t248 = -(_runtime.FEASIBILITY * (t47 + t247)) <= -t242
-    del t247
-    t249 = t246 * (t242 + np.abs(t242)) / (2.0 * (t74 + t246 * t246))
-    del t242, t246
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t249, 0.0)
-    del t249
-    t250 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
+    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
+    t231 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
+    t232 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t232, v_1_rear_elbow_up)
+    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
+    t233 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
+    t234 = part_beta_rear_elbow_up * t231 - whole_beta_rear_elbow_up * t233
+    del part_beta_rear_elbow_up, whole_beta_rear_elbow_up
+    spent_beta_rear_elbow_up = -t234 <= t67
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t232, v_2_rear_elbow_up)
+    del t232, v_1_rear_elbow_up, v_2_rear_elbow_up
+    t235 = drawn_rear_elbow_up * t233 * v_2_alpha_rear_elbow_up
+    del t233
+    t236 = t219 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    del p_1_rear_elbow_up
+    t237 = _runtime.select(spent_alpha_rear_elbow_up, t236, t219)
+    del spent_alpha_rear_elbow_up, t219, t236
+    t238 = t235 + (L1 - drawn_rear_elbow_up) * t231 * t237
+    del t231, t235
+    t239 = _runtime.select(spent_beta_rear_elbow_up, t222 * (size * np.abs(t238)), 0.0)
+    del t222
+    t240 = -(_runtime.FEASIBILITY * (t47 + t239)) <= -t234
+    del t239
+    t241 = t238 * (t234 + np.abs(t234)) / (2.0 * (t74 + t238 * t238))
+    del t234, t238
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t241, 0.0)
+    del t241
+    t242 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
     del drawn_rear_elbow_up
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t76 * t250, 0.0)
-    del t250
-    t251 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
-    t252 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t251
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t252, v_1_alpha_rear_elbow_up)
-    del t252
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t76 * t242, 0.0)
+    del t242
+    t243 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
+    t244 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t243
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t244, v_1_alpha_rear_elbow_up)
+    del t244
     sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_up), 1.0, -1.0)
-    t253 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t245 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
     del v_1_beta_rear_elbow_up
-    t254 = p_1_alpha_rear_elbow_up + t245 * lean_beta_rear_elbow_up
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t254, p_1_alpha_rear_elbow_up)
-    del t254
-    t255 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t246 = p_1_alpha_rear_elbow_up + t237 * lean_beta_rear_elbow_up
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t246, p_1_alpha_rear_elbow_up)
+    del t246
+    t247 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
     del p_1_beta_rear_elbow_up, sigma_uv_rear_elbow_up
-    t256 = t211 & t235 & t248 & (t88 <= -(t253 + np.abs(t255)))
-    del t235, t248
-    t257 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t248 = t203 & t227 & t240 & (t88 <= -(t245 + np.abs(t247)))
+    del t227, t240
+    t249 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del p_1_alpha_rear_elbow_up
-    p_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t245 - t257, t245)
-    del t245, t257
-    t258 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t251
-    del t251, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t258, v_2_alpha_rear_elbow_up)
-    del spent_beta_rear_elbow_up, t258, v_2_alpha_rear_elbow_up
-    t259 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t253 <= _runtime.VANISHING * (64.0 * t259)
-    t260 = _runtime.select(0.0 <= v_2_beta_rear_elbow_up, p_2_beta_rear_elbow_up, -p_2_beta_rear_elbow_up)
-    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, t260, -t255)
-    del t255, t260
-    t261 = v_2_beta_rear_elbow_up * part_y_rear_elbow_up
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t259, -t253)
-    rest_rear_elbow_up = p_2_beta_rear_elbow_up - t261 / whole_y_rear_elbow_up
-    del t261
+    p_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t237 - t249, t237)
+    del t237, t249
+    t250 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t243
+    del t243, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t250, v_2_alpha_rear_elbow_up)
+    del spent_beta_rear_elbow_up, t250, v_2_alpha_rear_elbow_up
+    t251 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t245 <= _runtime.VANISHING * (64.0 * t251)
+    t252 = _runtime.select(0.0 <= v_2_beta_rear_elbow_up, p_2_beta_rear_elbow_up, -p_2_beta_rear_elbow_up)
+    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, t252, -t247)
+    del t247, t252
+    t253 = v_2_beta_rear_elbow_up * part_y_rear_elbow_up
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t251, -t245)
+    rest_rear_elbow_up = p_2_beta_rear_elbow_up - t253 / whole_y_rear_elbow_up
+    del t253
     left_along_rear_elbow_up = L1 - np.abs(-rest_rear_elbow_up)
     spent_along_rear_elbow_up = left_along_rear_elbow_up <= t97
-    t262 = _runtime.select(spent_along_rear_elbow_up, t259 / (t98 - t253), 0.0)
+    t254 = _runtime.select(spent_along_rear_elbow_up, t251 / (t98 - t245), 0.0)
+    del t251
+    t255 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t254)))
+    del t254
+    t256 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
+    t257 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t258 = v_2_beta_rear_elbow_up * t256 / (t245 * t245 + t257)
+    del t245, t256, t257
+    t259 = _runtime.select(0.0 <= rest_rear_elbow_up, -t258, t258)
+    del rest_rear_elbow_up, t258
+    t260 = part_y_rear_elbow_up + whole_y_rear_elbow_up * t259
     del t259
-    t263 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t262)))
-    del t262
-    t264 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
-    t265 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t266 = v_2_beta_rear_elbow_up * t264 / (t253 * t253 + t265)
-    del t253, t264, t265
-    t267 = _runtime.select(0.0 <= rest_rear_elbow_up, -t266, t266)
-    del rest_rear_elbow_up, t266
-    t268 = part_y_rear_elbow_up + whole_y_rear_elbow_up * t267
-    del t267
-    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, t268, part_y_rear_elbow_up)
-    del part_y_rear_elbow_up, spent_along_rear_elbow_up, t268
-    t269 = whole_y_rear_elbow_up - eased_rear_elbow_up
-    t270 = t256 & (t263 <= left_along_rear_elbow_up) & (t88 <= t269)
-    del left_along_rear_elbow_up, t256, t263
-    t271 = whole_y_rear_elbow_up + eased_rear_elbow_up
+    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, t260, part_y_rear_elbow_up)
+    del part_y_rear_elbow_up, spent_along_rear_elbow_up, t260
+    t261 = whole_y_rear_elbow_up - eased_rear_elbow_up
+    t262 = t248 & (t255 <= left_along_rear_elbow_up) & (t88 <= t261)
+    del left_along_rear_elbow_up, t248, t255
+    t263 = whole_y_rear_elbow_up + eased_rear_elbow_up
     del eased_rear_elbow_up, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t269, t108)
-    del t269
-    above_beta_rear_elbow_up = np.maximum(t271, t108)
-    t272 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t261, t108)
+    del t261
+    above_beta_rear_elbow_up = np.maximum(t263, t108)
+    t264 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t273 = 1.0 / total_beta_rear_elbow_up
+    t265 = 1.0 / total_beta_rear_elbow_up
     del total_beta_rear_elbow_up
-    t274 = t272 * t273
-    del t272
-    along_u_rear_elbow_up = p_2_beta_rear_elbow_up + v_2_beta_rear_elbow_up * t274
+    t266 = t264 * t265
+    del t264
+    along_u_rear_elbow_up = p_2_beta_rear_elbow_up + v_2_beta_rear_elbow_up * t266
     del p_2_beta_rear_elbow_up, v_2_beta_rear_elbow_up
-    t275 = L1 - along_u_rear_elbow_up
-    t276 = L1 + along_u_rear_elbow_up
+    t267 = L1 - along_u_rear_elbow_up
+    t268 = L1 + along_u_rear_elbow_up
     del along_u_rear_elbow_up
-    t277 = t270 & (t88 <= t271) & (t88 <= t275) & (t88 <= t276)
-    del t270, t271
-    unreachable_3 = np.logical_not(t277)
-    del t277
-    t278 = _runtime.poison(invalid | unreachable_3)
-    t279 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t223, out_rear_elbow_up))
-    del out_rear_elbow_up, t223
-    t280 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t269 = t262 & (t88 <= t263) & (t88 <= t267) & (t88 <= t268)
+    del t262, t263
+    unreachable_3 = np.logical_not(t269)
+    del t269
+    t270 = _runtime.poison(invalid | unreachable_3)
+    t271 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t215, out_rear_elbow_up))
+    del out_rear_elbow_up, t215
+    t272 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t281 = np.arctan2(t280, 1.0)
-    del t280
-    t282 = t279 + t281
-    del t279
-    below_alpha_rear_elbow_up = np.maximum(t275, t108)
-    del t275
-    above_alpha_rear_elbow_up = np.maximum(t276, t108)
-    del t276
-    t283 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t273 = np.arctan2(t272, 1.0)
+    del t272
+    t274 = t271 + t273
+    del t271
+    below_alpha_rear_elbow_up = np.maximum(t267, t108)
+    del t267
+    above_alpha_rear_elbow_up = np.maximum(t268, t108)
+    del t268
+    t275 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t284 = 1.0 / total_alpha_rear_elbow_up
+    t276 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t285 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t277 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t286 = np.arctan2(t283 * t284, t284 * t285)
-    del t283, t284, t285
-    t287 = _runtime.wrap_cut(_runtime.wrap(t282 - t286))
-    t288 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
+    t278 = np.arctan2(t275 * t276, t276 * t277)
+    del t275, t276, t277
+    t279 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
     del rM_rear_elbow_up, rN_rear_elbow_up
-    t289 = _runtime.select(short, 0.0, 2.0 * t288)
-    del t288
-    t290 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t280 = _runtime.select(short, 0.0, 2.0 * t279)
+    del t279
+    t281 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t291 = t125 - t281 + (t289 + np.arctan2(t290, 1.0))
-    del t281, t290
-    t292 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t282 = t124 - t273 + (t280 + np.arctan2(t281, 1.0))
+    del t273, t281
+    t283 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t293 = t286 - np.arctan2(t274, t273 * t292)
-    del t273, t274, t292
-    t294 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t291 + t293)))
-    t295 = _runtime.wrap_cut(_runtime.wrap(t282 + t286))
-    del t282, t286
-    t296 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t291 - t293)))
-    del t291, t293
-    c_relative_rear_elbow_down = t213 + t215
-    del t213, t215
-    s_relative_rear_elbow_down = t216 - t217
-    del t216, t217
+    t284 = t278 - np.arctan2(t266, t265 * t283)
+    del t265, t266, t283
+    c_relative_rear_elbow_down = t205 + t207
+    del t205, t207
+    s_relative_rear_elbow_down = t208 - t209
+    del t208, t209
     v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
     whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
-    t297 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
+    t285 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
     v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
-    t298 = t219 - t220
-    del t219, t220
-    up_rear_elbow_down = t221 + t222
-    del t221, t222
-    t299 = t298 * t298 + up_rear_elbow_down * up_rear_elbow_down
-    t300 = 1.0 / np.sqrt(t299)
-    del t299
-    ctheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 1.0, -(t298 * t300))
-    stheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 0.0, up_rear_elbow_down * t300)
-    del t300
+    t286 = t211 - t212
+    del t211, t212
+    up_rear_elbow_down = t213 + t214
+    del t213, t214
+    t287 = t286 * t286 + up_rear_elbow_down * up_rear_elbow_down
+    t288 = 1.0 / np.sqrt(t287)
+    del t287
+    ctheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 1.0, -(t286 * t288))
+    stheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 0.0, up_rear_elbow_down * t288)
+    del t288
     p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
-    t301 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
+    t289 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
     del ahead, ctheta2A_rear_elbow_down, higher, stheta2A_rear_elbow_down
-    t302 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t301
-    t303 = _runtime.select(0.0 <= -t302, 1.0, -1.0)
-    room_alpha_rear_elbow_down = whole_alpha_rear_elbow_down * t297 + t302 * t303
-    del t302, whole_alpha_rear_elbow_down
+    t290 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t289
+    t291 = _runtime.select(0.0 <= -t290, 1.0, -1.0)
+    room_alpha_rear_elbow_down = whole_alpha_rear_elbow_down * t285 + t290 * t291
+    del t290, whole_alpha_rear_elbow_down
     spent_alpha_rear_elbow_down = room_alpha_rear_elbow_down <= t67
     tilt_rear_elbow_down = L_2W * c_relative_rear_elbow_down - a_3W * s_relative_rear_elbow_down
-    t304 = 1.0 / (t68 + np.abs(tilt_rear_elbow_down))
+    t292 = 1.0 / (t68 + np.abs(tilt_rear_elbow_down))
     del t68, tilt_rear_elbow_down
     drawn_rear_elbow_down = L1 + L_2W * s_relative_rear_elbow_down + a_3W * c_relative_rear_elbow_down
     del L_2W, a_3W, c_relative_rear_elbow_down, s_relative_rear_elbow_down
-    t305 = v_2_rear_elbow_down * t297 * drawn_rear_elbow_down
-    del t297
-    t306 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t301
-    t307 = t305 - t303 * t306
-    del t303, t305, t306
-    t308 = _runtime.select(spent_alpha_rear_elbow_down, t304 * (size * np.abs(t307)), 0.0)
-    t309 = -(_runtime.FEASIBILITY * (t47 + t308)) <= room_alpha_rear_elbow_down
-    del t308
-    t310 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
+    t293 = v_2_rear_elbow_down * t285 * drawn_rear_elbow_down
+    del t285
+    t294 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t289
+    t295 = t293 - t291 * t294
+    del t291, t293, t294
+    t296 = _runtime.select(spent_alpha_rear_elbow_down, t292 * (size * np.abs(t295)), 0.0)
+    t297 = -(_runtime.FEASIBILITY * (t47 + t296)) <= room_alpha_rear_elbow_down
+    del t296
+    t298 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
     del room_alpha_rear_elbow_down
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t307 * t310 / (2.0 * (t74 + t307 * t307)), 0.0)
-    del t307, t310
-    t311 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t76 * t311, 0.0)
-    del t311
-    t312 = p_1_rear_elbow_down - t301 * lean_alpha_rear_elbow_down
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t312, p_1_rear_elbow_down)
-    del t312
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t295 * t298 / (2.0 * (t74 + t295 * t295)), 0.0)
+    del t295, t298
+    t299 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t76 * t299, 0.0)
+    del t299
+    t300 = p_1_rear_elbow_down - t289 * lean_alpha_rear_elbow_down
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t300, p_1_rear_elbow_down)
+    del t300
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t313 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
-    t314 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
-    t315 = v_1_rear_elbow_down - v_2_rear_elbow_down * t314
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t315, v_1_rear_elbow_down)
-    del t315
+    t301 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
+    t302 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
+    t303 = v_1_rear_elbow_down - v_2_rear_elbow_down * t302
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t303, v_1_rear_elbow_down)
+    del t303
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t316 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
-    t317 = part_beta_rear_elbow_down * t313 - whole_beta_rear_elbow_down * t316
+    t304 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
+    t305 = part_beta_rear_elbow_down * t301 - whole_beta_rear_elbow_down * t304
     del part_beta_rear_elbow_down, whole_beta_rear_elbow_down
-    spent_beta_rear_elbow_down = -t317 <= t67
+    spent_beta_rear_elbow_down = -t305 <= t67
     del t67
-    t318 = v_2_rear_elbow_down + v_1_rear_elbow_down * t314
-    del t314, v_1_rear_elbow_down
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t318, v_2_rear_elbow_down)
-    del t318, v_2_rear_elbow_down
-    t319 = drawn_rear_elbow_down * t316 * v_2_alpha_rear_elbow_down
-    del t316
-    t320 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t306 = v_2_rear_elbow_down + v_1_rear_elbow_down * t302
+    del t302, v_1_rear_elbow_down
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t306, v_2_rear_elbow_down)
+    del t306, v_2_rear_elbow_down
+    t307 = drawn_rear_elbow_down * t304 * v_2_alpha_rear_elbow_down
+    del t304
+    t308 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t321 = _runtime.select(spent_alpha_rear_elbow_down, t301 + t320, t301)
-    del spent_alpha_rear_elbow_down, t301, t320
-    t322 = t319 - (L1 - drawn_rear_elbow_down) * t313 * t321
-    del t313, t319
-    t323 = _runtime.select(spent_beta_rear_elbow_down, t304 * (size * np.abs(t322)), 0.0)
-    del size, t304
-    t324 = -(_runtime.FEASIBILITY * (t47 + t323)) <= -t317
-    del t323, t47
-    t325 = t322 * (t317 + np.abs(t317)) / (2.0 * (t74 + t322 * t322))
-    del t317, t322, t74
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t325, 0.0)
-    del t325
-    t326 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
+    t309 = _runtime.select(spent_alpha_rear_elbow_down, t289 + t308, t289)
+    del spent_alpha_rear_elbow_down, t289, t308
+    t310 = t307 - (L1 - drawn_rear_elbow_down) * t301 * t309
+    del t301, t307
+    t311 = _runtime.select(spent_beta_rear_elbow_down, t292 * (size * np.abs(t310)), 0.0)
+    del size, t292
+    t312 = -(_runtime.FEASIBILITY * (t47 + t311)) <= -t305
+    del t311, t47
+    t313 = t310 * (t305 + np.abs(t305)) / (2.0 * (t74 + t310 * t310))
+    del t305, t310, t74
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t313, 0.0)
+    del t313
+    t314 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
     del drawn_rear_elbow_down
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t76 * t326, 0.0)
-    del t326, t76
-    t327 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
-    t328 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t327
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t328, v_1_alpha_rear_elbow_down)
-    del t328
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t76 * t314, 0.0)
+    del t314, t76
+    t315 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
+    t316 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t315
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t316, v_1_alpha_rear_elbow_down)
+    del t316
     sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_down), 1.0, -1.0)
-    t329 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t317 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     del v_1_beta_rear_elbow_down
-    t330 = p_1_alpha_rear_elbow_down - t321 * lean_beta_rear_elbow_down
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t330, p_1_alpha_rear_elbow_down)
-    del t330
-    t331 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t318 = p_1_alpha_rear_elbow_down - t309 * lean_beta_rear_elbow_down
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t318, p_1_alpha_rear_elbow_down)
+    del t318
+    t319 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
     del p_1_beta_rear_elbow_down, sigma_uv_rear_elbow_down
-    t332 = t211 & t309 & t324 & (t88 <= -(t329 + np.abs(t331)))
-    del t211, t309, t324
-    t333 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t320 = t203 & t297 & t312 & (t88 <= -(t317 + np.abs(t319)))
+    del t203, t297, t312
+    t321 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del p_1_alpha_rear_elbow_down
-    t334 = _runtime.select(spent_beta_rear_elbow_down, t321 + t333, t321)
-    del t321, t333
-    t335 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t327
-    del t327, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t335, v_2_alpha_rear_elbow_down)
-    del spent_beta_rear_elbow_down, t335, v_2_alpha_rear_elbow_down
-    t336 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t329 <= _runtime.VANISHING * (64.0 * t336)
-    t337 = _runtime.select(0.0 <= v_2_beta_rear_elbow_down, -t334, t334)
-    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t337, -t331)
-    del t331, t337
-    t338 = v_2_beta_rear_elbow_down * part_y_rear_elbow_down
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t336, -t329)
-    t339 = t334 + t338 / whole_y_rear_elbow_down
-    del t338
-    left_along_rear_elbow_down = L1 - np.abs(t339)
+    t322 = _runtime.select(spent_beta_rear_elbow_down, t309 + t321, t309)
+    del t309, t321
+    t323 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t315
+    del t315, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t323, v_2_alpha_rear_elbow_down)
+    del spent_beta_rear_elbow_down, t323, v_2_alpha_rear_elbow_down
+    t324 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t317 <= _runtime.VANISHING * (64.0 * t324)
+    t325 = _runtime.select(0.0 <= v_2_beta_rear_elbow_down, -t322, t322)
+    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t325, -t319)
+    del t319, t325
+    t326 = v_2_beta_rear_elbow_down * part_y_rear_elbow_down
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t324, -t317)
+    t327 = t322 + t326 / whole_y_rear_elbow_down
+    del t326
+    left_along_rear_elbow_down = L1 - np.abs(t327)
     spent_along_rear_elbow_down = left_along_rear_elbow_down <= t97
     del t97
-    t340 = _runtime.select(spent_along_rear_elbow_down, t336 / (t98 - t329), 0.0)
-    del t336, t98
-    t341 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t340)))
-    del t340, t87
-    t342 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
-    t343 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t344 = v_2_beta_rear_elbow_down * t342 / (t329 * t329 + t343)
-    del t329, t342, t343
-    t345 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t339, -t344, t344)
-    del t339, t344
-    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t345, part_y_rear_elbow_down)
-    del part_y_rear_elbow_down, spent_along_rear_elbow_down, t345
-    t346 = whole_y_rear_elbow_down - eased_rear_elbow_down
-    t347 = t332 & (t341 <= left_along_rear_elbow_down) & (t88 <= t346)
-    del left_along_rear_elbow_down, t332, t341
-    t348 = whole_y_rear_elbow_down + eased_rear_elbow_down
+    t328 = _runtime.select(spent_along_rear_elbow_down, t324 / (t98 - t317), 0.0)
+    del t324, t98
+    t329 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t328)))
+    del t328, t87
+    t330 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
+    t331 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t332 = v_2_beta_rear_elbow_down * t330 / (t317 * t317 + t331)
+    del t317, t330, t331
+    t333 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t327, -t332, t332)
+    del t327, t332
+    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t333, part_y_rear_elbow_down)
+    del part_y_rear_elbow_down, spent_along_rear_elbow_down, t333
+    t334 = whole_y_rear_elbow_down - eased_rear_elbow_down
+    t335 = t320 & (t329 <= left_along_rear_elbow_down) & (t88 <= t334)
+    del left_along_rear_elbow_down, t320, t329
+    t336 = whole_y_rear_elbow_down + eased_rear_elbow_down
     del eased_rear_elbow_down, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t346, t108)
-    del t346
-    above_beta_rear_elbow_down = np.maximum(t348, t108)
-    t349 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t334, t108)
+    del t334
+    above_beta_rear_elbow_down = np.maximum(t336, t108)
+    t337 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t350 = 1.0 / total_beta_rear_elbow_down
+    t338 = 1.0 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t351 = t349 * t350
-    del t349
-    t352 = t334 - v_2_beta_rear_elbow_down * t351
-    del t334, v_2_beta_rear_elbow_down
-    t353 = L1 + t352
-    t354 = L1 - t352
-    del t352
-    t355 = t347 & (t88 <= t348) & (t88 <= t353) & (t88 <= t354)
-    del t347, t348, t88
-    unreachable_4 = np.logical_not(t355)
-    del t355
-    t356 = _runtime.poison(invalid | unreachable_4)
-    t357 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t298))
-    del t298, up_rear_elbow_down
-    t358 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t339 = t337 * t338
+    del t337
+    t340 = t322 - v_2_beta_rear_elbow_down * t339
+    del t322, v_2_beta_rear_elbow_down
+    t341 = L1 + t340
+    t342 = L1 - t340
+    del t340
+    t343 = t335 & (t88 <= t336) & (t88 <= t341) & (t88 <= t342)
+    del t335, t336, t88
+    unreachable_4 = np.logical_not(t343)
+    del t343
+    t344 = _runtime.poison(invalid | unreachable_4)
+    t345 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t286))
+    del t286, up_rear_elbow_down
+    t346 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t359 = np.arctan2(t358, 1.0)
-    del t358
-    t360 = t357 + t359
-    del t357
-    below_alpha_rear_elbow_down = np.maximum(t353, t108)
-    del t353
-    above_alpha_rear_elbow_down = np.maximum(t354, t108)
-    del t108, t354
-    t361 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t347 = np.arctan2(t346, 1.0)
+    del t346
+    t348 = t345 + t347
+    del t345
+    below_alpha_rear_elbow_down = np.maximum(t341, t108)
+    del t341
+    above_alpha_rear_elbow_down = np.maximum(t342, t108)
+    del t108, t342
+    t349 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t362 = 1.0 / total_alpha_rear_elbow_down
+    t350 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t363 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t351 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t364 = np.arctan2(t361 * t362, t362 * t363)
-    del t361, t362, t363
-    t365 = _runtime.wrap_cut(_runtime.wrap(t360 - t364))
-    t366 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t352 = np.arctan2(t349 * t350, t350 * t351)
+    del t349, t350, t351
+    t353 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t367 = t125 - t289 - (t359 - np.arctan2(t366, 1.0))
-    del t125, t289, t359, t366
-    t368 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t354 = t124 - t280 - (t347 - np.arctan2(t353, 1.0))
+    del t124, t280, t347, t353
+    t355 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t369 = t364 - np.arctan2(t351, t350 * t368)
-    del t350, t351, t368
-    t370 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t367 + t369)))
-    t371 = _runtime.wrap_cut(_runtime.wrap(t360 + t364))
-    del t360, t364
-    t372 = _runtime.wrap_cut(_runtime.wrap(_runtime.wrap(t367 - t369)))
-    del t367, t369
-    t373 = nowhere | folded | short
+    t356 = t352 - np.arctan2(t339, t338 * t355)
+    del t338, t339, t355
+    t357 = nowhere | folded | short
     del folded
-    t374 = _runtime.status(invalid, unreachable, t373 | parallel)
+    t358 = _runtime.status(invalid, unreachable, t357 | parallel)
     del parallel, unreachable
-    t375 = _runtime.status(invalid, unreachable_2, t373 | parallel_front_elbow_down)
-    del parallel_front_elbow_down, t373, unreachable_2
-    t376 = nowhere | folded_rear_elbow_up | short
+    t359 = _runtime.status(invalid, unreachable_2, t357 | parallel_front_elbow_down)
+    del parallel_front_elbow_down, t357, unreachable_2
+    t360 = nowhere | folded_rear_elbow_up | short
     del folded_rear_elbow_up, nowhere, short
-    t377 = _runtime.status(invalid, unreachable_3, t376 | parallel_rear_elbow_up)
+    t361 = _runtime.status(invalid, unreachable_3, t360 | parallel_rear_elbow_up)
     del parallel_rear_elbow_up, unreachable_3
-    t378 = _runtime.status(invalid, unreachable_4, t376 | parallel_rear_elbow_down)
-    del invalid, parallel_rear_elbow_down, t376, unreachable_4
+    t362 = _runtime.status(invalid, unreachable_4, t360 | parallel_rear_elbow_down)
+    del invalid, parallel_rear_elbow_down, t360, unreachable_4
     return (
         t16 + t114,
-        t121 + t114,
-        t128 + t114,
-        t129 + t114,
-        t130 + t114,
-        t131 + t114,
-        t16 + t190,
-        t199 + t190,
-        t204 + t190,
-        t205 + t190,
-        t206 + t190,
-        t131 + t190,
-        t207 + t278,
-        t287 + t278,
-        t294 + t278,
-        t295 + t278,
-        t296 + t278,
-        t131 + t278,
-        t207 + t356,
-        t365 + t356,
-        t370 + t356,
-        t371 + t356,
-        t372 + t356,
-        t131 + t356,
-        t374,
-        t375,
-        t377,
-        t378,
+        _runtime.wrap(t117 - t120) + t114,
+        _runtime.wrap(t122 - t126) + t114,
+        _runtime.wrap(t117 + t120) + t114,
+        _runtime.wrap(-(t126 + t122)) + t114,
+        t127 + t114,
+        t16 + t186,
+        _runtime.wrap(t190 - t194) + t186,
+        _runtime.wrap(t196 + t198) + t186,
+        _runtime.wrap(t190 + t194) + t186,
+        _runtime.wrap(t196 - t198) + t186,
+        t127 + t186,
+        t199 + t270,
+        _runtime.wrap(t274 - t278) + t270,
+        _runtime.wrap(t282 + t284) + t270,
+        _runtime.wrap(t274 + t278) + t270,
+        _runtime.wrap(t282 - t284) + t270,
+        t127 + t270,
+        t199 + t344,
+        _runtime.wrap(t348 - t352) + t344,
+        _runtime.wrap(t354 + t356) + t344,
+        _runtime.wrap(t348 + t352) + t344,
+        _runtime.wrap(t354 - t356) + t344,
+        t127 + t344,
+        t358,
+        t359,
+        t361,
+        t362,
     )
 
 
@@ -2034,7 +2010,7 @@ def _largest_yaw(phi, beta_min, d, gs, al):
     t5 = _runtime.poison(np.logical_not(t4) | unreachable)
     del t4, unreachable
     return (
-        _runtime.wrap_down(2.0 * t2) + t5,
+        _runtime.wrap(2.0 * t2) + t5,
     )
 
 
@@ -2074,7 +2050,7 @@ def _largest_angle(beta_min, d, gs, al):
     t5 = _runtime.poison(np.logical_not(t4) | unreachable)
     del t4, unreachable
     return (
-        _runtime.wrap_down(2.0 * t2) + t5,
+        _runtime.wrap(2.0 * t2) + t5,
     )
 
 

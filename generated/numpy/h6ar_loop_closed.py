@@ -10,7 +10,7 @@
 #   jacobian: 56 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
 #   determinant: 56 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
 #   singularities: 56 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
-#   ik: 374 compare and select, 374 add, 28 atan2, 41 divide, 517 multiply, 3 sincos, 31 sqrt
+#   ik: 370 compare and select, 374 add, 28 atan2, 41 divide, 517 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -1768,255 +1768,251 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del bare_right, t122
     t124 = _runtime.select(short_right, 0.0, t116 * np.arctan2(rN_right, rM_right))
     del rM_right, rN_right
-    t125 = _runtime.wrap_cut(_runtime.wrap(t123 + t124))
+    t125 = _runtime.wrap(t123 + t124) + t110
     del t124
-    t126 = t125 + t110
-    del t125
     folded_left = np.abs(h_left) + np.abs(r_left) <= t112
     M_left = np.maximum(t109, 0.0)
     del t109
     N_left = np.maximum(t107, 0.0)
     del t107
-    t127 = 1.0 / (M_left + N_left)
-    ahead_1_left = _runtime.select(short_right, size, t101 + t118 * M_left * t127)
-    t128 = h_left * ahead_1_left
+    t126 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t101 + t118 * M_left * t126)
+    t127 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     del N_left
     rM_left = np.sqrt(M_left)
     del M_left
-    s_bend_left = _runtime.select(short_right, 0.0, t127 * (t116 * rN_left * rM_left))
-    del t127
-    t129 = fore_arm * s_bend_left
+    s_bend_left = _runtime.select(short_right, 0.0, t126 * (t116 * rN_left * rM_left))
+    del t126
+    t128 = fore_arm * s_bend_left
     del s_bend_left
-    t130 = r_left * t129
-    t131 = r_left * ahead_1_left
+    t129 = r_left * t128
+    t130 = r_left * ahead_1_left
     del ahead_1_left, r_left
-    t132 = h_left * t129
-    del h_left, t129
-    t133 = _runtime.select(folded_left, t113, np.arctan2(t128 - t130, t131 + t132))
-    t134 = _runtime.select(short_right, 0.0, t116 * np.arctan2(rN_left, rM_left))
+    t131 = h_left * t128
+    del h_left, t128
+    t132 = _runtime.select(folded_left, t113, np.arctan2(t127 - t129, t130 + t131))
+    t133 = _runtime.select(short_right, 0.0, t116 * np.arctan2(rN_left, rM_left))
     del rM_left, rN_left, t116
-    t135 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t134 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
     del c_pitch, s_pitch
-    t136 = t135 + t110
-    t137 = _runtime.select(folded_left, t113, np.arctan2(t128 + t130, t131 - t132))
-    del t113, t128, t130, t131, t132
+    t135 = t134 + t110
+    t136 = _runtime.select(folded_left, t113, np.arctan2(t127 + t129, t130 - t131))
+    del t113, t127, t129, t130, t131
     s_relative_front_elbow_down_alike = t53 + t54
     del t53, t54
     c_relative_front_elbow_down_alike = t55 - t56
     del t55, t56
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t138 = 0.0 <= straight_mid_front_elbow_down_alike
-    t139 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    t140 = _runtime.select(t138, straight_mid_front_elbow_down_alike, -straight_mid_front_elbow_down_alike)
+    t137 = 0.0 <= straight_mid_front_elbow_down_alike
+    t138 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    t139 = _runtime.select(t137, straight_mid_front_elbow_down_alike, -straight_mid_front_elbow_down_alike)
     del straight_mid_front_elbow_down_alike
-    large_mid_front_elbow_down_alike = fore_arm + t140
-    del t140
-    small_mid_front_elbow_down_alike = t139 * t139 / large_mid_front_elbow_down_alike
-    t141 = _runtime.select(t138, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    large_mid_front_elbow_down_alike = fore_arm + t139
+    del t139
+    small_mid_front_elbow_down_alike = t138 * t138 / large_mid_front_elbow_down_alike
+    t140 = _runtime.select(t137, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
     out_front_elbow_down_alike = t63 + t64
     del t63, t64
-    t142 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t143 = t66 - t67
+    t141 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t142 = t66 - t67
     del t66, t67
-    t144 = 1.0 / np.sqrt(t142 + t143 * t143)
-    del t142
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, out_front_elbow_down_alike * t144)
-    del out_front_elbow_down_alike
-    t145 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t146 = _runtime.select(folded, 0.0, t143 * t144)
-    del t143, t144
-    ctheta23A_front_elbow_down_alike = t145 + s_relative_front_elbow_down_alike * t146
-    del t145
-    t147 = t60 * (s_phi * ctheta23A_front_elbow_down_alike)
-    t148 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t149 = c_relative_front_elbow_down_alike * t146 - t148
-    del t148
-    t150 = d * (t147 + t5 * (s_psi * t149))
-    del t147
-    t151 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
-    t152 = d * (t151 - t60 * (s_phi * t149))
-    del t151
-    gap_front_elbow_down_alike = t150 * t150 + t152 * t152
-    t153 = t29 * t141 - gap_front_elbow_down_alike
+    t143 = 1.0 / np.sqrt(t141 + t142 * t142)
     del t141
-    t154 = L1 * ctheta2A_front_elbow_down_alike - L2 * t149
-    point_11_front_elbow_down_alike = t154 + a3 * ctheta23A_front_elbow_down_alike
-    del t154
-    t155 = L1 * t146 + L2 * ctheta23A_front_elbow_down_alike
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, out_front_elbow_down_alike * t143)
+    del out_front_elbow_down_alike
+    t144 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t145 = _runtime.select(folded, 0.0, t142 * t143)
+    del t142, t143
+    ctheta23A_front_elbow_down_alike = t144 + s_relative_front_elbow_down_alike * t145
+    del t144
+    t146 = t60 * (s_phi * ctheta23A_front_elbow_down_alike)
+    t147 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t148 = c_relative_front_elbow_down_alike * t145 - t147
+    del t147
+    t149 = d * (t146 + t5 * (s_psi * t148))
+    del t146
+    t150 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
+    t151 = d * (t150 - t60 * (s_phi * t148))
+    del t150
+    gap_front_elbow_down_alike = t149 * t149 + t151 * t151
+    t152 = t29 * t140 - gap_front_elbow_down_alike
+    del t140
+    t153 = L1 * ctheta2A_front_elbow_down_alike - L2 * t148
+    point_11_front_elbow_down_alike = t153 + a3 * ctheta23A_front_elbow_down_alike
+    del t153
+    t154 = L1 * t145 + L2 * ctheta23A_front_elbow_down_alike
     del ctheta23A_front_elbow_down_alike
-    t156 = t155 + a3 * t149
-    del t149, t155
-    t157 = 2.0 * t150 * point_11_front_elbow_down_alike - 2.0 * t152 * t156
-    room_right_front_elbow_down_alike = t153 + t157
+    t155 = t154 + a3 * t148
+    del t148, t154
+    t156 = 2.0 * t149 * point_11_front_elbow_down_alike - 2.0 * t151 * t155
+    room_right_front_elbow_down_alike = t152 + t156
     spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t75
     tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t158 = 1.0 / (t76 + np.abs(tilt_front_elbow_down_alike))
+    t157 = 1.0 / (t76 + np.abs(tilt_front_elbow_down_alike))
     del tilt_front_elbow_down_alike
-    t159 = L1 + L_2W * s_relative_front_elbow_down_alike
+    t158 = L1 + L_2W * s_relative_front_elbow_down_alike
     del s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t159 + a_3W * c_relative_front_elbow_down_alike
-    del c_relative_front_elbow_down_alike, t159
-    t160 = 2.0 * drawn_front_elbow_down_alike
-    t161 = t152 + t156
-    t162 = t150 - point_11_front_elbow_down_alike
-    t163 = ctheta2A_front_elbow_down_alike * t161 + t146 * t162
-    t164 = t160 * t163
-    del t163
-    t165 = _runtime.select(spent_right_front_elbow_down_alike, t158 * (size * np.abs(-t164)), 0.0)
-    t166 = -(_runtime.FEASIBILITY * (t49 + t165)) <= room_right_front_elbow_down_alike
-    del t165
-    room_left_front_elbow_down_alike = t153 - t157
-    del t153
+    drawn_front_elbow_down_alike = t158 + a_3W * c_relative_front_elbow_down_alike
+    del c_relative_front_elbow_down_alike, t158
+    t159 = 2.0 * drawn_front_elbow_down_alike
+    t160 = t151 + t155
+    t161 = t149 - point_11_front_elbow_down_alike
+    t162 = ctheta2A_front_elbow_down_alike * t160 + t145 * t161
+    t163 = t159 * t162
+    del t162
+    t164 = _runtime.select(spent_right_front_elbow_down_alike, t157 * (size * np.abs(-t163)), 0.0)
+    t165 = -(_runtime.FEASIBILITY * (t49 + t164)) <= room_right_front_elbow_down_alike
+    del t164
+    room_left_front_elbow_down_alike = t152 - t156
+    del t152
     spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t75
-    h_left_0_front_elbow_down_alike = t152 - t156
-    del t152, t156
-    t167 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = t150 + point_11_front_elbow_down_alike
-    del point_11_front_elbow_down_alike, t150
-    t168 = t167 + t146 * r_left_0_front_elbow_down_alike
-    del t167
-    slope_left_front_elbow_down_alike = t160 * t168
-    del t160, t168
-    t169 = size * np.abs(slope_left_front_elbow_down_alike)
-    t170 = _runtime.select(spent_left_front_elbow_down_alike, t158 * t169, 0.0)
-    del t158, t169
-    t171 = -(_runtime.FEASIBILITY * (t49 + t170)) <= room_left_front_elbow_down_alike
-    del t170
-    t172 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
-    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t164 * t172 / (2.0 * (t89 + t164 * t164)), 0.0)
-    del spent_right_front_elbow_down_alike, t172
-    t173 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
-    t174 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t175 = slope_left_front_elbow_down_alike * t173 / (2.0 * (t89 + t174))
-    del t173, t174
-    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t175, 0.0)
-    del spent_left_front_elbow_down_alike, t175
+    h_left_0_front_elbow_down_alike = t151 - t155
+    del t151, t155
+    t166 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = t149 + point_11_front_elbow_down_alike
+    del point_11_front_elbow_down_alike, t149
+    t167 = t166 + t145 * r_left_0_front_elbow_down_alike
+    del t166
+    slope_left_front_elbow_down_alike = t159 * t167
+    del t159, t167
+    t168 = size * np.abs(slope_left_front_elbow_down_alike)
+    t169 = _runtime.select(spent_left_front_elbow_down_alike, t157 * t168, 0.0)
+    del t157, t168
+    t170 = -(_runtime.FEASIBILITY * (t49 + t169)) <= room_left_front_elbow_down_alike
+    del t169
+    t171 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
+    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t163 * t171 / (2.0 * (t89 + t163 * t163)), 0.0)
+    del spent_right_front_elbow_down_alike, t171
+    t172 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
+    t173 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t174 = slope_left_front_elbow_down_alike * t172 / (2.0 * (t89 + t173))
+    del t172, t173
+    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t174, 0.0)
+    del spent_left_front_elbow_down_alike, t174
     turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
     del turn_left_front_elbow_down_alike, turn_right_front_elbow_down_alike
-    t176 = t164 * turn_front_elbow_down_alike
-    del t164
-    t177 = room_right_front_elbow_down_alike - t176
+    t175 = t163 * turn_front_elbow_down_alike
+    del t163
+    t176 = room_right_front_elbow_down_alike - t175
     del room_right_front_elbow_down_alike
-    t178 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    t177 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
     del drawn_front_elbow_down_alike
-    t179 = ctheta2A_front_elbow_down_alike * t178
-    t180 = t161 + t179 + t162 * turn_front_elbow_down_alike
-    t181 = t146 * t178
-    del t178
-    t182 = t162 - t161 * turn_front_elbow_down_alike + t181
-    del t161, t162
-    t183 = t180 * t180 + t182 * t182
-    t184 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t185 = _runtime.select(t138, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t138
-    M_mid_front_elbow_down_alike = t29 * t185
-    del t185
-    t186 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t187 = _runtime.select(t88 * t183 < t184, t102 - t183, t157 - t176 - t186)
-    del t176, t183
-    t188 = t48 & t166 & t171 & (t87 <= t177) & (t87 <= -t187)
-    del t166, t171, t48
-    t189 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
-    del slope_left_front_elbow_down_alike
-    t190 = room_left_front_elbow_down_alike + t189
-    del room_left_front_elbow_down_alike
-    t191 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t179 + t191
-    del t179, t191
-    t192 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    t193 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    del h_left_0_front_elbow_down_alike, turn_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t181 - t193
-    del r_left_0_front_elbow_down_alike, t181, t193
-    t194 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t195 = t192 + t194
-    del t192, t194
-    t196 = _runtime.select(t88 * t195 < t184, t195 - t102, t157 + t186 - t189)
-    del t157, t184, t186, t189, t195
-    unreachable_2 = np.logical_not(t188 & (t87 <= t190) & (t87 <= t196))
-    del t188
-    t197 = _runtime.poison(invalid | unreachable_2)
-    t198 = t17 + t197
-    del t17
-    folded_right_front_elbow_down_alike = np.abs(-t180) + np.abs(-t182) <= t112
-    t199 = np.arctan2(-t146, ctheta2A_front_elbow_down_alike)
-    del ctheta2A_front_elbow_down_alike, t146
-    M_right_front_elbow_down_alike = np.maximum(-t187, t114)
-    del t187
-    N_right_front_elbow_down_alike = np.maximum(t177, t114)
+    t178 = ctheta2A_front_elbow_down_alike * t177
+    t179 = t160 + t178 + t161 * turn_front_elbow_down_alike
+    t180 = t145 * t177
     del t177
+    t181 = t161 - t160 * turn_front_elbow_down_alike + t180
+    del t160, t161
+    t182 = t179 * t179 + t181 * t181
+    t183 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t184 = _runtime.select(t137, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t137
+    M_mid_front_elbow_down_alike = t29 * t184
+    del t184
+    t185 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t186 = _runtime.select(t88 * t182 < t183, t102 - t182, t156 - t175 - t185)
+    del t175, t182
+    t187 = t48 & t165 & t170 & (t87 <= t176) & (t87 <= -t186)
+    del t165, t170, t48
+    t188 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
+    del slope_left_front_elbow_down_alike
+    t189 = room_left_front_elbow_down_alike + t188
+    del room_left_front_elbow_down_alike
+    t190 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t178 + t190
+    del t178, t190
+    t191 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    t192 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    del h_left_0_front_elbow_down_alike, turn_front_elbow_down_alike
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t180 - t192
+    del r_left_0_front_elbow_down_alike, t180, t192
+    t193 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t194 = t191 + t193
+    del t191, t193
+    t195 = _runtime.select(t88 * t194 < t183, t194 - t102, t156 + t185 - t188)
+    del t156, t183, t185, t188, t194
+    unreachable_2 = np.logical_not(t187 & (t87 <= t189) & (t87 <= t195))
+    del t187
+    t196 = _runtime.poison(invalid | unreachable_2)
+    t197 = t17 + t196
+    del t17
+    folded_right_front_elbow_down_alike = np.abs(-t179) + np.abs(-t181) <= t112
+    t198 = np.arctan2(-t145, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike, t145
+    M_right_front_elbow_down_alike = np.maximum(-t186, t114)
+    del t186
+    N_right_front_elbow_down_alike = np.maximum(t176, t114)
+    del t176
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t200 = 1.0 / whole_right_front_elbow_down_alike
+    t199 = 1.0 / whole_right_front_elbow_down_alike
     del whole_right_front_elbow_down_alike
-    t201 = 2.0 * _runtime.select(0.0 <= -t139, 1.0, -1.0)
-    del t139
+    t200 = 2.0 * _runtime.select(0.0 <= -t138, 1.0, -1.0)
+    del t138
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
     del N_right_front_elbow_down_alike
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t202 = t201 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t200 * t202)
-    del t202
-    t203 = fore_arm * s_bend_right_front_elbow_down_alike
+    t201 = t200 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t199 * t201)
+    del t201
+    t202 = fore_arm * s_bend_right_front_elbow_down_alike
     del s_bend_right_front_elbow_down_alike
-    t204 = t101 + t118 * M_right_front_elbow_down_alike * t200
-    del M_right_front_elbow_down_alike, t200
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t204)
-    del t204
-    up_right_front_elbow_down_alike = t182 * t203 - t180 * ahead_1_right_front_elbow_down_alike
-    t205 = t182 * ahead_1_right_front_elbow_down_alike + t180 * t203
-    del ahead_1_right_front_elbow_down_alike, t180, t182, t203
-    t206 = np.arctan2(up_right_front_elbow_down_alike, -t205)
-    del t205, up_right_front_elbow_down_alike
-    t207 = _runtime.select(folded_right_front_elbow_down_alike, t199, t206)
+    t203 = t101 + t118 * M_right_front_elbow_down_alike * t199
+    del M_right_front_elbow_down_alike, t199
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t203)
+    del t203
+    up_right_front_elbow_down_alike = t181 * t202 - t179 * ahead_1_right_front_elbow_down_alike
+    t204 = t181 * ahead_1_right_front_elbow_down_alike + t179 * t202
+    del ahead_1_right_front_elbow_down_alike, t179, t181, t202
+    t205 = np.arctan2(up_right_front_elbow_down_alike, -t204)
+    del t204, up_right_front_elbow_down_alike
+    t206 = _runtime.select(folded_right_front_elbow_down_alike, t198, t205)
+    del t205
+    t207 = _runtime.wrap_cut(t206) + t196
     del t206
-    t208 = _runtime.wrap_cut(t207) + t197
-    del t207
-    t209 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t208 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
     del rM_right_front_elbow_down_alike, rN_right_front_elbow_down_alike
-    t210 = _runtime.select(short_right, 0.0, t201 * t209)
+    t209 = _runtime.select(short_right, 0.0, t200 * t208)
+    del t208
+    t210 = _runtime.wrap(t123 + t209) + t196
     del t209
-    t211 = _runtime.wrap_cut(_runtime.wrap(t123 + t210))
-    del t210
-    t212 = t211 + t197
+    t211 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t211 <= t112
     del t211
-    t213 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t213 <= t112
-    del t213
-    M_left_front_elbow_down_alike = np.maximum(t196, 0.0)
-    del t196
-    N_left_front_elbow_down_alike = np.maximum(t190, 0.0)
-    del t190
+    M_left_front_elbow_down_alike = np.maximum(t195, 0.0)
+    del t195
+    N_left_front_elbow_down_alike = np.maximum(t189, 0.0)
+    del t189
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t214 = 1.0 / whole_left_front_elbow_down_alike
+    t212 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    t215 = t101 + t118 * M_left_front_elbow_down_alike * t214
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t215)
-    del t215
-    t216 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t213 = t101 + t118 * M_left_front_elbow_down_alike * t212
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t213)
+    del t213
+    t214 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     del N_left_front_elbow_down_alike
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
     del M_left_front_elbow_down_alike
-    t217 = t201 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t214 * t217)
-    del t214, t217
-    t218 = fore_arm * s_bend_left_front_elbow_down_alike
+    t215 = t200 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t212 * t215)
+    del t212, t215
+    t216 = fore_arm * s_bend_left_front_elbow_down_alike
     del s_bend_left_front_elbow_down_alike
-    t219 = r_left_front_elbow_down_alike * t218
-    t220 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t217 = r_left_front_elbow_down_alike * t216
+    t218 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
-    t221 = h_left_front_elbow_down_alike * t218
-    del h_left_front_elbow_down_alike, t218
-    t222 = _runtime.select(folded_left_front_elbow_down_alike, t199, np.arctan2(t216 - t219, t220 + t221))
-    t223 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t219 = h_left_front_elbow_down_alike * t216
+    del h_left_front_elbow_down_alike, t216
+    t220 = _runtime.select(folded_left_front_elbow_down_alike, t198, np.arctan2(t214 - t217, t218 + t219))
+    t221 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
     del rM_left_front_elbow_down_alike, rN_left_front_elbow_down_alike
-    t224 = _runtime.select(short_right, 0.0, t201 * t223)
-    del t201, t223
-    t225 = t135 + t197
-    t226 = _runtime.select(folded_left_front_elbow_down_alike, t199, np.arctan2(t216 + t219, t220 - t221))
-    del t199, t216, t219, t220, t221
-    t227 = _runtime.wrap_up(-_runtime.select(nowhere, 0.0, t2 + t16))
+    t222 = _runtime.select(short_right, 0.0, t200 * t221)
+    del t200, t221
+    t223 = t134 + t196
+    t224 = _runtime.select(folded_left_front_elbow_down_alike, t198, np.arctan2(t214 + t217, t218 - t219))
+    del t198, t214, t217, t218, t219
+    t225 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t16))
     del t16, t2
     c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -(t35 * (t38 + t39)))
     del t38, t39
@@ -2024,578 +2020,574 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t35, t40, t41
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
     del c1_rear_elbow_up_alike, s1_rear_elbow_up_alike
-    t228 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    square_rear_elbow_up_alike = t34 + t228
-    del t228, t34
-    t229 = t32 - square_rear_elbow_up_alike
+    t226 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    square_rear_elbow_up_alike = t34 + t226
+    del t226, t34
+    t227 = t32 - square_rear_elbow_up_alike
     del t32
-    t230 = square_rear_elbow_up_alike - t46
+    t228 = square_rear_elbow_up_alike - t46
     del square_rear_elbow_up_alike, t46
-    t231 = t27 & (t31 <= t229) & (-t45 <= t230)
+    t229 = t27 & (t31 <= t227) & (-t45 <= t228)
     del t27, t31, t45
-    N_rear_elbow_up_alike = np.maximum(t229, 0.0)
-    del t229
-    M_rear_elbow_up_alike = np.maximum(t230, 0.0)
-    del t230
-    t232 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
+    N_rear_elbow_up_alike = np.maximum(t227, 0.0)
+    del t227
+    M_rear_elbow_up_alike = np.maximum(t228, 0.0)
+    del t228
+    t230 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
     whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
-    t233 = 1.0 / whole_rear_elbow_up_alike
+    t231 = 1.0 / whole_rear_elbow_up_alike
     del whole_rear_elbow_up_alike
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t232 * t233))
-    del t232
-    t234 = s_lag * c_bend_rear_elbow_up_alike
-    t235 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t230 * t231))
+    del t230
+    t232 = s_lag * c_bend_rear_elbow_up_alike
+    t233 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
     del N_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t233 * t235)
-    del t235
-    t236 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t234 + t236
-    t237 = c_lag * c_bend_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t231 * t233)
+    del t233
+    t234 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t232 + t234
+    t235 = c_lag * c_bend_rear_elbow_up_alike
     del c_bend_rear_elbow_up_alike, c_lag
-    t238 = s_lag * s_bend_rear_elbow_up_alike
+    t236 = s_lag * s_bend_rear_elbow_up_alike
     del s_lag
-    c_relative_rear_elbow_up_alike = t237 - t238
+    c_relative_rear_elbow_up_alike = t235 - t236
     straight_mid_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
-    t239 = 0.0 <= straight_mid_rear_elbow_up_alike
-    t240 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
-    t241 = _runtime.select(t239, straight_mid_rear_elbow_up_alike, -straight_mid_rear_elbow_up_alike)
+    t237 = 0.0 <= straight_mid_rear_elbow_up_alike
+    t238 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
+    t239 = _runtime.select(t237, straight_mid_rear_elbow_up_alike, -straight_mid_rear_elbow_up_alike)
     del straight_mid_rear_elbow_up_alike
-    large_mid_rear_elbow_up_alike = fore_arm + t241
-    del t241
-    small_mid_rear_elbow_up_alike = t240 * t240 / large_mid_rear_elbow_up_alike
-    t242 = _runtime.select(t239, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
+    large_mid_rear_elbow_up_alike = fore_arm + t239
+    del t239
+    small_mid_rear_elbow_up_alike = t238 * t238 / large_mid_rear_elbow_up_alike
+    t240 = _runtime.select(t237, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
     folded_rear_elbow_up_alike = t61 + np.abs(outward_rear_elbow_up_alike) <= t51
     del t51, t61
-    t243 = t62 * s_bend_rear_elbow_up_alike
+    t241 = t62 * s_bend_rear_elbow_up_alike
     del t62
-    ahead_1_rear_elbow_up_alike = _runtime.select(short, t28, t44 + t233 * (t30 * M_rear_elbow_up_alike))
-    del M_rear_elbow_up_alike, t233, t28, t30, t44
-    t244 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
-    out_rear_elbow_up_alike = t243 + t244
-    t245 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
-    t246 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
+    ahead_1_rear_elbow_up_alike = _runtime.select(short, t28, t44 + t231 * (t30 * M_rear_elbow_up_alike))
+    del M_rear_elbow_up_alike, t231, t28, t30, t44
+    t242 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
+    out_rear_elbow_up_alike = t241 + t242
+    t243 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
+    t244 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
     del fore, outward_rear_elbow_up_alike, s_bend_rear_elbow_up_alike
-    t247 = t33 * ahead_1_rear_elbow_up_alike
+    t245 = t33 * ahead_1_rear_elbow_up_alike
     del ahead_1_rear_elbow_up_alike, t33
-    t248 = t246 - t247
-    t249 = 1.0 / np.sqrt(t245 + t248 * t248)
-    del t245
-    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, out_rear_elbow_up_alike * t249)
+    t246 = t244 - t245
+    t247 = 1.0 / np.sqrt(t243 + t246 * t246)
+    del t243
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, out_rear_elbow_up_alike * t247)
     del out_rear_elbow_up_alike
-    t250 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t251 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t248 * t249)
-    del t248, t249
-    ctheta23A_rear_elbow_up_alike = t250 + s_relative_rear_elbow_up_alike * t251
+    t248 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t249 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t246 * t247)
+    del t246, t247
+    ctheta23A_rear_elbow_up_alike = t248 + s_relative_rear_elbow_up_alike * t249
+    del t248
+    t250 = t60 * (s_phi * ctheta23A_rear_elbow_up_alike)
+    t251 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t252 = c_relative_rear_elbow_up_alike * t249 - t251
+    del t251
+    t253 = d * (t250 + t5 * (s_psi * t252))
     del t250
-    t252 = t60 * (s_phi * ctheta23A_rear_elbow_up_alike)
-    t253 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t254 = c_relative_rear_elbow_up_alike * t251 - t253
-    del t253
-    t255 = d * (t252 + t5 * (s_psi * t254))
-    del t252
-    t256 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) - t60 * (s_phi * t254)
-    t257 = d * t256
-    del t256
-    gap_rear_elbow_up_alike = t255 * t255 + t257 * t257
-    t258 = t29 * t242 - gap_rear_elbow_up_alike
-    del t242
-    t259 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t254
-    point_11_rear_elbow_up_alike = t259 + a3 * ctheta23A_rear_elbow_up_alike
-    del t259
-    t260 = L1 * t251 + L2 * ctheta23A_rear_elbow_up_alike
+    t254 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) - t60 * (s_phi * t252)
+    t255 = d * t254
+    del t254
+    gap_rear_elbow_up_alike = t253 * t253 + t255 * t255
+    t256 = t29 * t240 - gap_rear_elbow_up_alike
+    del t240
+    t257 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t252
+    point_11_rear_elbow_up_alike = t257 + a3 * ctheta23A_rear_elbow_up_alike
+    del t257
+    t258 = L1 * t249 + L2 * ctheta23A_rear_elbow_up_alike
     del ctheta23A_rear_elbow_up_alike
-    t261 = t260 + a3 * t254
-    del t254, t260
-    t262 = 2.0 * t255 * point_11_rear_elbow_up_alike - 2.0 * t257 * t261
-    room_right_rear_elbow_up_alike = t258 + t262
+    t259 = t258 + a3 * t252
+    del t252, t258
+    t260 = 2.0 * t253 * point_11_rear_elbow_up_alike - 2.0 * t255 * t259
+    room_right_rear_elbow_up_alike = t256 + t260
     spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t75
     tilt_rear_elbow_up_alike = L_2W * c_relative_rear_elbow_up_alike - a_3W * s_relative_rear_elbow_up_alike
-    t263 = 1.0 / (t76 + np.abs(tilt_rear_elbow_up_alike))
+    t261 = 1.0 / (t76 + np.abs(tilt_rear_elbow_up_alike))
     del tilt_rear_elbow_up_alike
     drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
     del c_relative_rear_elbow_up_alike, s_relative_rear_elbow_up_alike
-    t264 = 2.0 * drawn_rear_elbow_up_alike
-    t265 = t257 + t261
-    t266 = t255 - point_11_rear_elbow_up_alike
-    t267 = ctheta2A_rear_elbow_up_alike * t265 + t251 * t266
-    t268 = t264 * t267
+    t262 = 2.0 * drawn_rear_elbow_up_alike
+    t263 = t255 + t259
+    t264 = t253 - point_11_rear_elbow_up_alike
+    t265 = ctheta2A_rear_elbow_up_alike * t263 + t249 * t264
+    t266 = t262 * t265
+    del t265
+    t267 = _runtime.select(spent_right_rear_elbow_up_alike, t261 * (size * np.abs(-t266)), 0.0)
+    t268 = -(_runtime.FEASIBILITY * (t49 + t267)) <= room_right_rear_elbow_up_alike
     del t267
-    t269 = _runtime.select(spent_right_rear_elbow_up_alike, t263 * (size * np.abs(-t268)), 0.0)
-    t270 = -(_runtime.FEASIBILITY * (t49 + t269)) <= room_right_rear_elbow_up_alike
-    del t269
-    room_left_rear_elbow_up_alike = t258 - t262
-    del t258
+    room_left_rear_elbow_up_alike = t256 - t260
+    del t256
     spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t75
-    h_left_0_rear_elbow_up_alike = t257 - t261
-    del t257, t261
-    t271 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t255 + point_11_rear_elbow_up_alike
-    del point_11_rear_elbow_up_alike, t255
-    slope_left_rear_elbow_up_alike = t264 * (t271 + t251 * r_left_0_rear_elbow_up_alike)
-    del t264, t271
-    t272 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t273 = _runtime.select(spent_left_rear_elbow_up_alike, t263 * t272, 0.0)
-    del t263, t272
-    t274 = -(_runtime.FEASIBILITY * (t49 + t273)) <= room_left_rear_elbow_up_alike
-    del t273
-    t275 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
-    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t268 * t275 / (2.0 * (t89 + t268 * t268)), 0.0)
-    del spent_right_rear_elbow_up_alike, t275
-    t276 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
-    t277 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t278 = slope_left_rear_elbow_up_alike * t276 / (2.0 * (t89 + t277))
-    del t276, t277
-    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t278, 0.0)
-    del spent_left_rear_elbow_up_alike, t278
+    h_left_0_rear_elbow_up_alike = t255 - t259
+    del t255, t259
+    t269 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t253 + point_11_rear_elbow_up_alike
+    del point_11_rear_elbow_up_alike, t253
+    slope_left_rear_elbow_up_alike = t262 * (t269 + t249 * r_left_0_rear_elbow_up_alike)
+    del t262, t269
+    t270 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t271 = _runtime.select(spent_left_rear_elbow_up_alike, t261 * t270, 0.0)
+    del t261, t270
+    t272 = -(_runtime.FEASIBILITY * (t49 + t271)) <= room_left_rear_elbow_up_alike
+    del t271
+    t273 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
+    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t266 * t273 / (2.0 * (t89 + t266 * t266)), 0.0)
+    del spent_right_rear_elbow_up_alike, t273
+    t274 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
+    t275 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t276 = slope_left_rear_elbow_up_alike * t274 / (2.0 * (t89 + t275))
+    del t274, t275
+    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t276, 0.0)
+    del spent_left_rear_elbow_up_alike, t276
     turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
     del turn_left_rear_elbow_up_alike, turn_right_rear_elbow_up_alike
-    t279 = t268 * turn_rear_elbow_up_alike
-    del t268
-    t280 = room_right_rear_elbow_up_alike - t279
+    t277 = t266 * turn_rear_elbow_up_alike
+    del t266
+    t278 = room_right_rear_elbow_up_alike - t277
     del room_right_rear_elbow_up_alike
-    t281 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t279 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
     del drawn_rear_elbow_up_alike
-    t282 = ctheta2A_rear_elbow_up_alike * t281
-    t283 = t265 + t282 + t266 * turn_rear_elbow_up_alike
-    t284 = t251 * t281
-    del t281
-    t285 = t266 - t265 * turn_rear_elbow_up_alike + t284
-    del t265, t266
-    t286 = t283 * t283 + t285 * t285
-    t287 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t288 = _runtime.select(t239, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
-    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t239
-    M_mid_rear_elbow_up_alike = t29 * t288
-    del t288
-    t289 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
-    t290 = _runtime.select(t88 * t286 < t287, t102 - t286, t262 - t279 - t289)
-    del t279, t286
-    t291 = t231 & t270 & t274 & (t87 <= t280) & (t87 <= -t290)
-    del t270, t274
-    t292 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t280 = ctheta2A_rear_elbow_up_alike * t279
+    t281 = t263 + t280 + t264 * turn_rear_elbow_up_alike
+    t282 = t249 * t279
+    del t279
+    t283 = t264 - t263 * turn_rear_elbow_up_alike + t282
+    del t263, t264
+    t284 = t281 * t281 + t283 * t283
+    t285 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t286 = _runtime.select(t237, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
+    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t237
+    M_mid_rear_elbow_up_alike = t29 * t286
+    del t286
+    t287 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
+    t288 = _runtime.select(t88 * t284 < t285, t102 - t284, t260 - t277 - t287)
+    del t277, t284
+    t289 = t229 & t268 & t272 & (t87 <= t278) & (t87 <= -t288)
+    del t268, t272
+    t290 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
     del slope_left_rear_elbow_up_alike
-    t293 = room_left_rear_elbow_up_alike + t292
+    t291 = room_left_rear_elbow_up_alike + t290
     del room_left_rear_elbow_up_alike
-    t294 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t282 + t294
-    del t282, t294
-    t295 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    t296 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t292 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t280 + t292
+    del t280, t292
+    t293 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    t294 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
     del h_left_0_rear_elbow_up_alike, turn_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t284 - t296
-    del r_left_0_rear_elbow_up_alike, t284, t296
-    t297 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t298 = t295 + t297
-    del t295, t297
-    t299 = _runtime.select(t88 * t298 < t287, t298 - t102, t262 + t289 - t292)
-    del t262, t287, t289, t292, t298
-    unreachable_3 = np.logical_not(t291 & (t87 <= t293) & (t87 <= t299))
-    del t291
-    t300 = _runtime.poison(invalid | unreachable_3)
-    t301 = t227 + t300
-    folded_right_rear_elbow_up_alike = np.abs(-t283) + np.abs(-t285) <= t112
-    t302 = np.arctan2(-t251, ctheta2A_rear_elbow_up_alike)
-    del ctheta2A_rear_elbow_up_alike, t251
-    M_right_rear_elbow_up_alike = np.maximum(-t290, t114)
-    del t290
-    N_right_rear_elbow_up_alike = np.maximum(t280, t114)
-    del t280
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t282 - t294
+    del r_left_0_rear_elbow_up_alike, t282, t294
+    t295 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t296 = t293 + t295
+    del t293, t295
+    t297 = _runtime.select(t88 * t296 < t285, t296 - t102, t260 + t287 - t290)
+    del t260, t285, t287, t290, t296
+    unreachable_3 = np.logical_not(t289 & (t87 <= t291) & (t87 <= t297))
+    del t289
+    t298 = _runtime.poison(invalid | unreachable_3)
+    t299 = t225 + t298
+    folded_right_rear_elbow_up_alike = np.abs(-t281) + np.abs(-t283) <= t112
+    t300 = np.arctan2(-t249, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, t249
+    M_right_rear_elbow_up_alike = np.maximum(-t288, t114)
+    del t288
+    N_right_rear_elbow_up_alike = np.maximum(t278, t114)
+    del t278
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t303 = 1.0 / whole_right_rear_elbow_up_alike
+    t301 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    t304 = 2.0 * _runtime.select(0.0 <= -t240, 1.0, -1.0)
-    del t240
+    t302 = 2.0 * _runtime.select(0.0 <= -t238, 1.0, -1.0)
+    del t238
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
     del N_right_rear_elbow_up_alike
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t305 = t304 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t303 * t305)
-    del t305
-    t306 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t303 = t302 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t301 * t303)
+    del t303
+    t304 = fore_arm * s_bend_right_rear_elbow_up_alike
     del s_bend_right_rear_elbow_up_alike
-    t307 = t101 + t118 * M_right_rear_elbow_up_alike * t303
-    del M_right_rear_elbow_up_alike, t303
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t307)
+    t305 = t101 + t118 * M_right_rear_elbow_up_alike * t301
+    del M_right_rear_elbow_up_alike, t301
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t305)
+    del t305
+    up_right_rear_elbow_up_alike = t283 * t304 - t281 * ahead_1_right_rear_elbow_up_alike
+    t306 = t283 * ahead_1_right_rear_elbow_up_alike + t281 * t304
+    del ahead_1_right_rear_elbow_up_alike, t281, t283, t304
+    t307 = np.arctan2(up_right_rear_elbow_up_alike, -t306)
+    del t306, up_right_rear_elbow_up_alike
+    t308 = _runtime.select(folded_right_rear_elbow_up_alike, t300, t307)
     del t307
-    up_right_rear_elbow_up_alike = t285 * t306 - t283 * ahead_1_right_rear_elbow_up_alike
-    t308 = t285 * ahead_1_right_rear_elbow_up_alike + t283 * t306
-    del ahead_1_right_rear_elbow_up_alike, t283, t285, t306
-    t309 = np.arctan2(up_right_rear_elbow_up_alike, -t308)
-    del t308, up_right_rear_elbow_up_alike
-    t310 = _runtime.select(folded_right_rear_elbow_up_alike, t302, t309)
-    del t309
-    t311 = _runtime.wrap_cut(t310) + t300
-    del t310
-    t312 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t309 = _runtime.wrap_cut(t308) + t298
+    del t308
+    t310 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
     del rM_right_rear_elbow_up_alike, rN_right_rear_elbow_up_alike
-    t313 = _runtime.select(short_right, 0.0, t304 * t312)
-    del t312
-    t314 = _runtime.wrap_cut(_runtime.wrap(t123 + t313))
+    t311 = _runtime.select(short_right, 0.0, t302 * t310)
+    del t310
+    t312 = _runtime.wrap(t123 + t311) + t298
+    del t311
+    t313 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t313 <= t112
     del t313
-    t315 = t314 + t300
-    del t314
-    t316 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t316 <= t112
-    del t316
-    M_left_rear_elbow_up_alike = np.maximum(t299, 0.0)
-    del t299
-    N_left_rear_elbow_up_alike = np.maximum(t293, 0.0)
-    del t293
+    M_left_rear_elbow_up_alike = np.maximum(t297, 0.0)
+    del t297
+    N_left_rear_elbow_up_alike = np.maximum(t291, 0.0)
+    del t291
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t317 = 1.0 / whole_left_rear_elbow_up_alike
+    t314 = 1.0 / whole_left_rear_elbow_up_alike
     del whole_left_rear_elbow_up_alike
-    t318 = t101 + t118 * M_left_rear_elbow_up_alike * t317
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t318)
-    del t318
-    t319 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t315 = t101 + t118 * M_left_rear_elbow_up_alike * t314
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t315)
+    del t315
+    t316 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     del N_left_rear_elbow_up_alike
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
     del M_left_rear_elbow_up_alike
-    t320 = t304 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t317 * t320)
-    del t317, t320
-    t321 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t317 = t302 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t314 * t317)
+    del t314, t317
+    t318 = fore_arm * s_bend_left_rear_elbow_up_alike
     del s_bend_left_rear_elbow_up_alike
-    t322 = r_left_rear_elbow_up_alike * t321
-    t323 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t319 = r_left_rear_elbow_up_alike * t318
+    t320 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
-    t324 = h_left_rear_elbow_up_alike * t321
-    del h_left_rear_elbow_up_alike, t321
-    t325 = _runtime.select(folded_left_rear_elbow_up_alike, t302, np.arctan2(t319 - t322, t323 + t324))
-    t326 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t321 = h_left_rear_elbow_up_alike * t318
+    del h_left_rear_elbow_up_alike, t318
+    t322 = _runtime.select(folded_left_rear_elbow_up_alike, t300, np.arctan2(t316 - t319, t320 + t321))
+    t323 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
     del rM_left_rear_elbow_up_alike, rN_left_rear_elbow_up_alike
-    t327 = _runtime.select(short_right, 0.0, t304 * t326)
-    del t304, t326
-    t328 = t135 + t300
-    t329 = _runtime.select(folded_left_rear_elbow_up_alike, t302, np.arctan2(t319 + t322, t323 - t324))
-    del t302, t319, t322, t323, t324
-    s_relative_rear_elbow_down_alike = t234 - t236
-    del t234, t236
-    c_relative_rear_elbow_down_alike = t237 + t238
-    del t237, t238
+    t324 = _runtime.select(short_right, 0.0, t302 * t323)
+    del t302, t323
+    t325 = t134 + t298
+    t326 = _runtime.select(folded_left_rear_elbow_up_alike, t300, np.arctan2(t316 + t319, t320 - t321))
+    del t300, t316, t319, t320, t321
+    s_relative_rear_elbow_down_alike = t232 - t234
+    del t232, t234
+    c_relative_rear_elbow_down_alike = t235 + t236
+    del t235, t236
     straight_mid_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
-    t330 = 0.0 <= straight_mid_rear_elbow_down_alike
-    t331 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
-    t332 = _runtime.select(t330, straight_mid_rear_elbow_down_alike, -straight_mid_rear_elbow_down_alike)
+    t327 = 0.0 <= straight_mid_rear_elbow_down_alike
+    t328 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
+    t329 = _runtime.select(t327, straight_mid_rear_elbow_down_alike, -straight_mid_rear_elbow_down_alike)
     del straight_mid_rear_elbow_down_alike
-    large_mid_rear_elbow_down_alike = fore_arm + t332
+    large_mid_rear_elbow_down_alike = fore_arm + t329
+    del t329
+    small_mid_rear_elbow_down_alike = t328 * t328 / large_mid_rear_elbow_down_alike
+    t330 = _runtime.select(t327, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
+    t331 = t241 - t242
+    del t241, t242
+    up_rear_elbow_down_alike = t244 + t245
+    del t244, t245
+    t332 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
+    t333 = 1.0 / np.sqrt(t331 * t331 + t332)
     del t332
-    small_mid_rear_elbow_down_alike = t331 * t331 / large_mid_rear_elbow_down_alike
-    t333 = _runtime.select(t330, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
-    t334 = t243 - t244
-    del t243, t244
-    up_rear_elbow_down_alike = t246 + t247
-    del t246, t247
-    t335 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
-    t336 = 1.0 / np.sqrt(t334 * t334 + t335)
-    del t335
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t334 * t336))
-    del t334
-    t337 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, up_rear_elbow_down_alike * t336)
-    del t336, up_rear_elbow_down_alike
-    t338 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t337 - t338
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t331 * t333))
+    del t331
+    t334 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, up_rear_elbow_down_alike * t333)
+    del t333, up_rear_elbow_down_alike
+    t335 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t334 - t335
+    del t334, t335
+    t336 = t60 * (s_phi * ctheta23A_rear_elbow_down_alike)
+    t337 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t338 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t337 + t338
     del t337, t338
-    t339 = t60 * (s_phi * ctheta23A_rear_elbow_down_alike)
-    t340 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    t341 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t340 + t341
-    del t340, t341
-    t342 = t5 * (s_psi * stheta23A_rear_elbow_down_alike)
-    t343 = d * (t339 - t342)
-    del t339, t342
-    t344 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
+    t339 = t5 * (s_psi * stheta23A_rear_elbow_down_alike)
+    t340 = d * (t336 - t339)
+    del t336, t339
+    t341 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
     del s_psi, t5
-    t345 = t60 * (s_phi * stheta23A_rear_elbow_down_alike)
+    t342 = t60 * (s_phi * stheta23A_rear_elbow_down_alike)
     del s_phi, t60
-    t346 = d * (t344 + t345)
-    del t344, t345
-    gap_rear_elbow_down_alike = t343 * t343 + t346 * t346
-    t347 = t29 * t333 - gap_rear_elbow_down_alike
-    del t333
-    t348 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t348 + a3 * ctheta23A_rear_elbow_down_alike
-    del t348
-    t349 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    t343 = d * (t341 + t342)
+    del t341, t342
+    gap_rear_elbow_down_alike = t340 * t340 + t343 * t343
+    t344 = t29 * t330 - gap_rear_elbow_down_alike
+    del t330
+    t345 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t345 + a3 * ctheta23A_rear_elbow_down_alike
+    del t345
+    t346 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
     del ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t349 + a3 * stheta23A_rear_elbow_down_alike
-    del stheta23A_rear_elbow_down_alike, t349
-    t350 = 2.0 * t343 * point_11_rear_elbow_down_alike + 2.0 * t346 * point_21_rear_elbow_down_alike
-    room_right_rear_elbow_down_alike = t347 + t350
+    point_21_rear_elbow_down_alike = t346 + a3 * stheta23A_rear_elbow_down_alike
+    del stheta23A_rear_elbow_down_alike, t346
+    t347 = 2.0 * t340 * point_11_rear_elbow_down_alike + 2.0 * t343 * point_21_rear_elbow_down_alike
+    room_right_rear_elbow_down_alike = t344 + t347
     spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t75
     tilt_rear_elbow_down_alike = L_2W * c_relative_rear_elbow_down_alike - a_3W * s_relative_rear_elbow_down_alike
-    t351 = 1.0 / (t76 + np.abs(tilt_rear_elbow_down_alike))
+    t348 = 1.0 / (t76 + np.abs(tilt_rear_elbow_down_alike))
     del t76, tilt_rear_elbow_down_alike
     drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
     del L_2W, a_3W, c_relative_rear_elbow_down_alike, s_relative_rear_elbow_down_alike
-    t352 = 2.0 * drawn_rear_elbow_down_alike
-    t353 = t346 - point_21_rear_elbow_down_alike
-    t354 = t343 - point_11_rear_elbow_down_alike
-    t355 = ctheta2A_rear_elbow_down_alike * t353 - stheta2A_rear_elbow_down_alike * t354
-    t356 = t352 * t355
-    del t355
-    t357 = _runtime.select(spent_right_rear_elbow_down_alike, t351 * (size * np.abs(-t356)), 0.0)
-    t358 = -(_runtime.FEASIBILITY * (t49 + t357)) <= room_right_rear_elbow_down_alike
-    del t357
-    room_left_rear_elbow_down_alike = t347 - t350
-    del t347
+    t349 = 2.0 * drawn_rear_elbow_down_alike
+    t350 = t343 - point_21_rear_elbow_down_alike
+    t351 = t340 - point_11_rear_elbow_down_alike
+    t352 = ctheta2A_rear_elbow_down_alike * t350 - stheta2A_rear_elbow_down_alike * t351
+    t353 = t349 * t352
+    del t352
+    t354 = _runtime.select(spent_right_rear_elbow_down_alike, t348 * (size * np.abs(-t353)), 0.0)
+    t355 = -(_runtime.FEASIBILITY * (t49 + t354)) <= room_right_rear_elbow_down_alike
+    del t354
+    room_left_rear_elbow_down_alike = t344 - t347
+    del t344
     spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t75
     del t75
-    h_left_0_rear_elbow_down_alike = t346 + point_21_rear_elbow_down_alike
-    del point_21_rear_elbow_down_alike, t346
-    t359 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t343 + point_11_rear_elbow_down_alike
-    del point_11_rear_elbow_down_alike, t343
-    t360 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t352 * (t359 - t360)
-    del t352, t359, t360
-    t361 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t362 = _runtime.select(spent_left_rear_elbow_down_alike, t351 * t361, 0.0)
-    del t351, t361
-    t363 = -(_runtime.FEASIBILITY * (t49 + t362)) <= room_left_rear_elbow_down_alike
-    del t362, t49
-    t364 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
-    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t356 * t364 / (2.0 * (t89 + t356 * t356)), 0.0)
-    del spent_right_rear_elbow_down_alike, t364
-    t365 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
-    t366 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t367 = slope_left_rear_elbow_down_alike * t365 / (2.0 * (t89 + t366))
-    del t365, t366, t89
-    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t367, 0.0)
-    del spent_left_rear_elbow_down_alike, t367
+    h_left_0_rear_elbow_down_alike = t343 + point_21_rear_elbow_down_alike
+    del point_21_rear_elbow_down_alike, t343
+    t356 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t340 + point_11_rear_elbow_down_alike
+    del point_11_rear_elbow_down_alike, t340
+    t357 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t349 * (t356 - t357)
+    del t349, t356, t357
+    t358 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t359 = _runtime.select(spent_left_rear_elbow_down_alike, t348 * t358, 0.0)
+    del t348, t358
+    t360 = -(_runtime.FEASIBILITY * (t49 + t359)) <= room_left_rear_elbow_down_alike
+    del t359, t49
+    t361 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
+    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t353 * t361 / (2.0 * (t89 + t353 * t353)), 0.0)
+    del spent_right_rear_elbow_down_alike, t361
+    t362 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
+    t363 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t364 = slope_left_rear_elbow_down_alike * t362 / (2.0 * (t89 + t363))
+    del t362, t363, t89
+    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t364, 0.0)
+    del spent_left_rear_elbow_down_alike, t364
     turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
     del turn_left_rear_elbow_down_alike, turn_right_rear_elbow_down_alike
-    t368 = t356 * turn_rear_elbow_down_alike
-    del t356
-    t369 = room_right_rear_elbow_down_alike - t368
+    t365 = t353 * turn_rear_elbow_down_alike
+    del t353
+    t366 = room_right_rear_elbow_down_alike - t365
     del room_right_rear_elbow_down_alike
-    t370 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t367 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del drawn_rear_elbow_down_alike
-    t371 = ctheta2A_rear_elbow_down_alike * t370
-    t372 = t353 + t371 + t354 * turn_rear_elbow_down_alike
-    t373 = stheta2A_rear_elbow_down_alike * t370
-    del t370
-    t374 = t354 - t353 * turn_rear_elbow_down_alike - t373
-    del t353, t354
-    t375 = t372 * t372 + t374 * t374
-    t376 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t377 = _runtime.select(t330, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
-    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t330
-    M_mid_rear_elbow_down_alike = t29 * t377
-    del t29, t377
-    t378 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
-    t379 = _runtime.select(t88 * t375 < t376, t102 - t375, t350 - t368 - t378)
-    del t368, t375
-    t380 = t231 & t358 & t363 & (t87 <= t369) & (t87 <= -t379)
-    del t231, t358, t363
-    t381 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t368 = ctheta2A_rear_elbow_down_alike * t367
+    t369 = t350 + t368 + t351 * turn_rear_elbow_down_alike
+    t370 = stheta2A_rear_elbow_down_alike * t367
+    del t367
+    t371 = t351 - t350 * turn_rear_elbow_down_alike - t370
+    del t350, t351
+    t372 = t369 * t369 + t371 * t371
+    t373 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t374 = _runtime.select(t327, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
+    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t327
+    M_mid_rear_elbow_down_alike = t29 * t374
+    del t29, t374
+    t375 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
+    t376 = _runtime.select(t88 * t372 < t373, t102 - t372, t347 - t365 - t375)
+    del t365, t372
+    t377 = t229 & t355 & t360 & (t87 <= t366) & (t87 <= -t376)
+    del t229, t355, t360
+    t378 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del slope_left_rear_elbow_down_alike
-    t382 = room_left_rear_elbow_down_alike + t381
+    t379 = room_left_rear_elbow_down_alike + t378
     del room_left_rear_elbow_down_alike
-    t383 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t371 + t383
-    del t371, t383
-    t384 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    t385 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t380 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t368 + t380
+    del t368, t380
+    t381 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    t382 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del h_left_0_rear_elbow_down_alike, turn_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t373 - t385
-    del r_left_0_rear_elbow_down_alike, t373, t385
-    t386 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t387 = t384 + t386
-    del t384, t386
-    t388 = _runtime.select(t88 * t387 < t376, t387 - t102, t350 + t378 - t381)
-    del t350, t376, t378, t381, t387
-    unreachable_4 = np.logical_not(t380 & (t87 <= t382) & (t87 <= t388))
-    del t380, t87
-    t389 = _runtime.poison(invalid | unreachable_4)
-    t390 = t227 + t389
-    del t227
-    folded_right_rear_elbow_down_alike = np.abs(-t372) + np.abs(-t374) <= t112
-    t391 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t370 - t382
+    del r_left_0_rear_elbow_down_alike, t370, t382
+    t383 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t384 = t381 + t383
+    del t381, t383
+    t385 = _runtime.select(t88 * t384 < t373, t384 - t102, t347 + t375 - t378)
+    del t347, t373, t375, t378, t384
+    unreachable_4 = np.logical_not(t377 & (t87 <= t379) & (t87 <= t385))
+    del t377, t87
+    t386 = _runtime.poison(invalid | unreachable_4)
+    t387 = t225 + t386
+    del t225
+    folded_right_rear_elbow_down_alike = np.abs(-t369) + np.abs(-t371) <= t112
+    t388 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
     del ctheta2A_rear_elbow_down_alike, stheta2A_rear_elbow_down_alike
-    M_right_rear_elbow_down_alike = np.maximum(-t379, t114)
-    del t379
-    N_right_rear_elbow_down_alike = np.maximum(t369, t114)
-    del t114, t369
+    M_right_rear_elbow_down_alike = np.maximum(-t376, t114)
+    del t376
+    N_right_rear_elbow_down_alike = np.maximum(t366, t114)
+    del t114, t366
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t392 = 1.0 / whole_right_rear_elbow_down_alike
+    t389 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t393 = 2.0 * _runtime.select(0.0 <= -t331, 1.0, -1.0)
-    del t331
+    t390 = 2.0 * _runtime.select(0.0 <= -t328, 1.0, -1.0)
+    del t328
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
     del N_right_rear_elbow_down_alike
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t394 = t393 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t392 * t394)
-    del t394
-    t395 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t391 = t390 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t389 * t391)
+    del t391
+    t392 = fore_arm * s_bend_right_rear_elbow_down_alike
     del s_bend_right_rear_elbow_down_alike
-    t396 = t101 + t118 * M_right_rear_elbow_down_alike * t392
-    del M_right_rear_elbow_down_alike, t392
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t396)
+    t393 = t101 + t118 * M_right_rear_elbow_down_alike * t389
+    del M_right_rear_elbow_down_alike, t389
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t393)
+    del t393
+    up_right_rear_elbow_down_alike = t371 * t392 - t369 * ahead_1_right_rear_elbow_down_alike
+    t394 = t371 * ahead_1_right_rear_elbow_down_alike + t369 * t392
+    del ahead_1_right_rear_elbow_down_alike, t369, t371, t392
+    t395 = np.arctan2(up_right_rear_elbow_down_alike, -t394)
+    del t394, up_right_rear_elbow_down_alike
+    t396 = _runtime.select(folded_right_rear_elbow_down_alike, t388, t395)
+    del t395
+    t397 = _runtime.wrap_cut(t396) + t386
     del t396
-    up_right_rear_elbow_down_alike = t374 * t395 - t372 * ahead_1_right_rear_elbow_down_alike
-    t397 = t374 * ahead_1_right_rear_elbow_down_alike + t372 * t395
-    del ahead_1_right_rear_elbow_down_alike, t372, t374, t395
-    t398 = np.arctan2(up_right_rear_elbow_down_alike, -t397)
-    del t397, up_right_rear_elbow_down_alike
-    t399 = _runtime.select(folded_right_rear_elbow_down_alike, t391, t398)
-    del t398
-    t400 = _runtime.wrap_cut(t399) + t389
-    del t399
-    t401 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t398 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
     del rM_right_rear_elbow_down_alike, rN_right_rear_elbow_down_alike
-    t402 = _runtime.select(short_right, 0.0, t393 * t401)
-    del t401
-    t403 = _runtime.wrap_cut(_runtime.wrap(t123 + t402))
-    del t402
-    t404 = t403 + t389
-    del t403
-    t405 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t405 <= t112
-    del t112, t405
-    M_left_rear_elbow_down_alike = np.maximum(t388, 0.0)
-    del t388
-    N_left_rear_elbow_down_alike = np.maximum(t382, 0.0)
-    del t382
+    t399 = _runtime.select(short_right, 0.0, t390 * t398)
+    del t398
+    t400 = _runtime.wrap(t123 + t399) + t386
+    del t399
+    t401 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t401 <= t112
+    del t112, t401
+    M_left_rear_elbow_down_alike = np.maximum(t385, 0.0)
+    del t385
+    N_left_rear_elbow_down_alike = np.maximum(t379, 0.0)
+    del t379
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t406 = 1.0 / whole_left_rear_elbow_down_alike
+    t402 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t407 = t101 + t118 * M_left_rear_elbow_down_alike * t406
+    t403 = t101 + t118 * M_left_rear_elbow_down_alike * t402
     del t101, t118
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t407)
-    del size, t407
-    t408 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t403)
+    del size, t403
+    t404 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     del N_left_rear_elbow_down_alike
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
     del M_left_rear_elbow_down_alike
-    t409 = t393 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t406 * t409)
-    del t406, t409
-    t410 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t405 = t390 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t402 * t405)
+    del t402, t405
+    t406 = fore_arm * s_bend_left_rear_elbow_down_alike
     del fore_arm, s_bend_left_rear_elbow_down_alike
-    t411 = r_left_rear_elbow_down_alike * t410
-    t412 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t407 = r_left_rear_elbow_down_alike * t406
+    t408 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
-    t413 = h_left_rear_elbow_down_alike * t410
-    del h_left_rear_elbow_down_alike, t410
-    t414 = _runtime.select(folded_left_rear_elbow_down_alike, t391, np.arctan2(t408 - t411, t412 + t413))
-    t415 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t409 = h_left_rear_elbow_down_alike * t406
+    del h_left_rear_elbow_down_alike, t406
+    t410 = _runtime.select(folded_left_rear_elbow_down_alike, t388, np.arctan2(t404 - t407, t408 + t409))
+    t411 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
     del rM_left_rear_elbow_down_alike, rN_left_rear_elbow_down_alike
-    t416 = _runtime.select(short_right, 0.0, t393 * t415)
-    del t393, t415
-    t417 = t135 + t389
-    del t135
-    t418 = _runtime.select(folded_left_rear_elbow_down_alike, t391, np.arctan2(t408 + t411, t412 - t413))
-    del t391, t408, t411, t412, t413
-    t419 = nowhere | folded | short
+    t412 = _runtime.select(short_right, 0.0, t390 * t411)
+    del t390, t411
+    t413 = t134 + t386
+    del t134
+    t414 = _runtime.select(folded_left_rear_elbow_down_alike, t388, np.arctan2(t404 + t407, t408 - t409))
+    del t388, t404, t407, t408, t409
+    t415 = nowhere | folded | short
     del folded
     square_mid = t102 + M_mid
-    t420 = 10000.0 * t88
+    t416 = 10000.0 * t88
     del t88
-    pole = M_mid * square_mid <= _runtime.VANISHING * (t420 * gap)
+    pole = M_mid * square_mid <= _runtime.VANISHING * (t416 * gap)
     del M_mid, gap
-    t421 = _runtime.VANISHING * t420
-    t422 = t419 | pole | (square_mid <= t421) | folded_right
+    t417 = _runtime.VANISHING * t416
+    t418 = t415 | pole | (square_mid <= t417) | folded_right
     del folded_right, pole, square_mid
-    t423 = _runtime.status(invalid, unreachable, t422 | short_right | folded_left)
-    del folded_left, t422, unreachable
+    t419 = _runtime.status(invalid, unreachable, t418 | short_right | folded_left)
+    del folded_left, t418, unreachable
     square_mid_front_elbow_down_alike = t102 + M_mid_front_elbow_down_alike
-    t424 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t420 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t425 = _runtime.VANISHING * (t420 * gap_front_elbow_down_alike)
+    t421 = _runtime.VANISHING * (t416 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t426 = t419 | (t424 <= t425) | (square_mid_front_elbow_down_alike <= t421)
-    del square_mid_front_elbow_down_alike, t419, t424, t425
-    t427 = t426 | folded_right_front_elbow_down_alike | short_right
-    del folded_right_front_elbow_down_alike, t426
-    t428 = _runtime.status(invalid, unreachable_2, t427 | folded_left_front_elbow_down_alike)
-    del folded_left_front_elbow_down_alike, t427, unreachable_2
-    t429 = nowhere | folded_rear_elbow_up_alike | short
+    t422 = t415 | (t420 <= t421) | (square_mid_front_elbow_down_alike <= t417)
+    del square_mid_front_elbow_down_alike, t415, t420, t421
+    t423 = t422 | folded_right_front_elbow_down_alike | short_right
+    del folded_right_front_elbow_down_alike, t422
+    t424 = _runtime.status(invalid, unreachable_2, t423 | folded_left_front_elbow_down_alike)
+    del folded_left_front_elbow_down_alike, t423, unreachable_2
+    t425 = nowhere | folded_rear_elbow_up_alike | short
     del folded_rear_elbow_up_alike, nowhere, short
     square_mid_rear_elbow_up_alike = t102 + M_mid_rear_elbow_up_alike
-    t430 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
+    t426 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
     del M_mid_rear_elbow_up_alike
-    t431 = _runtime.VANISHING * (t420 * gap_rear_elbow_up_alike)
+    t427 = _runtime.VANISHING * (t416 * gap_rear_elbow_up_alike)
     del gap_rear_elbow_up_alike
-    t432 = t429 | (t430 <= t431) | (square_mid_rear_elbow_up_alike <= t421)
-    del square_mid_rear_elbow_up_alike, t430, t431
-    t433 = t432 | folded_right_rear_elbow_up_alike | short_right
-    del folded_right_rear_elbow_up_alike, t432
-    t434 = _runtime.status(invalid, unreachable_3, t433 | folded_left_rear_elbow_up_alike)
-    del folded_left_rear_elbow_up_alike, t433, unreachable_3
+    t428 = t425 | (t426 <= t427) | (square_mid_rear_elbow_up_alike <= t417)
+    del square_mid_rear_elbow_up_alike, t426, t427
+    t429 = t428 | folded_right_rear_elbow_up_alike | short_right
+    del folded_right_rear_elbow_up_alike, t428
+    t430 = _runtime.status(invalid, unreachable_3, t429 | folded_left_rear_elbow_up_alike)
+    del folded_left_rear_elbow_up_alike, t429, unreachable_3
     square_mid_rear_elbow_down_alike = t102 + M_mid_rear_elbow_down_alike
     del t102
-    t435 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
+    t431 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
     del M_mid_rear_elbow_down_alike
-    t436 = _runtime.VANISHING * (t420 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t420
-    t437 = t429 | (t435 <= t436) | (square_mid_rear_elbow_down_alike <= t421)
-    del square_mid_rear_elbow_down_alike, t421, t429, t435, t436
-    t438 = t437 | folded_right_rear_elbow_down_alike | short_right
-    del folded_right_rear_elbow_down_alike, short_right, t437
-    t439 = _runtime.status(invalid, unreachable_4, t438 | folded_left_rear_elbow_down_alike)
-    del folded_left_rear_elbow_down_alike, invalid, t438, unreachable_4
+    t432 = _runtime.VANISHING * (t416 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t416
+    t433 = t425 | (t431 <= t432) | (square_mid_rear_elbow_down_alike <= t417)
+    del square_mid_rear_elbow_down_alike, t417, t425, t431, t432
+    t434 = t433 | folded_right_rear_elbow_down_alike | short_right
+    del folded_right_rear_elbow_down_alike, short_right, t433
+    t435 = _runtime.status(invalid, unreachable_4, t434 | folded_left_rear_elbow_down_alike)
+    del folded_left_rear_elbow_down_alike, invalid, t434, unreachable_4
     return (
         t111,
         t121,
-        t126,
-        _runtime.wrap_cut(t133) + t110,
-        _runtime.wrap(t123 + t134) + t110,
-        t136,
+        t125,
+        _runtime.wrap_cut(t132) + t110,
+        _runtime.wrap(t123 + t133) + t110,
+        t135,
         t111,
         t121,
-        t126,
-        _runtime.wrap_cut(t137) + t110,
-        _runtime.wrap(t123 - t134) + t110,
-        t136,
-        t198,
-        t208,
-        t212,
-        _runtime.wrap_cut(t222) + t197,
-        _runtime.wrap(t123 + t224) + t197,
-        t225,
-        t198,
-        t208,
-        t212,
-        _runtime.wrap_cut(t226) + t197,
-        _runtime.wrap(t123 - t224) + t197,
-        t225,
-        t301,
-        t311,
-        t315,
-        _runtime.wrap_cut(t325) + t300,
-        _runtime.wrap(t123 + t327) + t300,
-        t328,
-        t301,
-        t311,
-        t315,
-        _runtime.wrap_cut(t329) + t300,
-        _runtime.wrap(t123 - t327) + t300,
-        t328,
-        t390,
+        t125,
+        _runtime.wrap_cut(t136) + t110,
+        _runtime.wrap(t123 - t133) + t110,
+        t135,
+        t197,
+        t207,
+        t210,
+        _runtime.wrap_cut(t220) + t196,
+        _runtime.wrap(t123 + t222) + t196,
+        t223,
+        t197,
+        t207,
+        t210,
+        _runtime.wrap_cut(t224) + t196,
+        _runtime.wrap(t123 - t222) + t196,
+        t223,
+        t299,
+        t309,
+        t312,
+        _runtime.wrap_cut(t322) + t298,
+        _runtime.wrap(t123 + t324) + t298,
+        t325,
+        t299,
+        t309,
+        t312,
+        _runtime.wrap_cut(t326) + t298,
+        _runtime.wrap(t123 - t324) + t298,
+        t325,
+        t387,
+        t397,
         t400,
-        t404,
-        _runtime.wrap_cut(t414) + t389,
-        _runtime.wrap(t123 + t416) + t389,
-        t417,
-        t390,
+        _runtime.wrap_cut(t410) + t386,
+        _runtime.wrap(t123 + t412) + t386,
+        t413,
+        t387,
+        t397,
         t400,
-        t404,
-        _runtime.wrap_cut(t418) + t389,
-        _runtime.wrap(t123 - t416) + t389,
-        t417,
-        t423,
-        t423,
-        t428,
-        t428,
-        t434,
-        t434,
-        t439,
-        t439,
+        _runtime.wrap_cut(t414) + t386,
+        _runtime.wrap(t123 - t412) + t386,
+        t413,
+        t419,
+        t419,
+        t424,
+        t424,
+        t430,
+        t430,
+        t435,
+        t435,
     )
 
 
@@ -2725,7 +2717,7 @@ def _largest_yaw(phi, beta_min, d, gs, al):
     t5 = _runtime.poison(np.logical_not(t4) | unreachable)
     del t4, unreachable
     return (
-        _runtime.wrap_down(2.0 * t2) + t5,
+        _runtime.wrap(2.0 * t2) + t5,
     )
 
 
@@ -2765,7 +2757,7 @@ def _largest_angle(beta_min, d, gs, al):
     t5 = _runtime.poison(np.logical_not(t4) | unreachable)
     del t4, unreachable
     return (
-        _runtime.wrap_down(2.0 * t2) + t5,
+        _runtime.wrap(2.0 * t2) + t5,
     )
 
 

@@ -645,7 +645,7 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     t18 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
     t19 = np.arctan2(-t11, h)
     del t11
-    t20 = _runtime.wrap_up(-_runtime.select(folded, 0.0, t18 + t19))
+    t20 = _runtime.wrap(-_runtime.select(folded, 0.0, t18 + t19))
     t21 = 2.0 * np.arctan2(rA * rS, rC * rB)
     del rA, rB, rC, rS
     t22 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t21)
@@ -715,15 +715,15 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
         t26,
         t17,
         t27 + t16,
-        _runtime.wrap_up(-t28) + t16,
+        _runtime.wrap(-t28) + t16,
         t26,
         t35,
-        _runtime.wrap_up(-t39) + t34,
+        _runtime.wrap(-t39) + t34,
         -t42 + t34,
         t44,
         t35,
         _runtime.wrap_cut(t45) + t34,
-        _runtime.wrap_up(-t46) + t34,
+        _runtime.wrap(-t46) + t34,
         t44,
         t47,
         t47,

@@ -9,8 +9,6 @@ void atan2_all(size_t n, const real_t *y, const real_t *x, real_t *angle);
 void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c, real_t *angle);
 void wrap_all(size_t n, const real_t *angle, real_t *wrapped);
 void wrap_cut_all(size_t n, const real_t *angle, real_t *wrapped);
-void wrap_down_all(size_t n, const real_t *angle, real_t *wrapped);
-void wrap_up_all(size_t n, const real_t *angle, real_t *wrapped);
 void nought_all(size_t n, const real_t *x, real_t *yes);
 void max_min_all(size_t n, const real_t *a, const real_t *b, real_t *larger, real_t *smaller);
 void constants(real_t *out);
@@ -65,8 +63,6 @@ void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c,
 
 WRAP(wrap)
 WRAP(wrap_cut)
-WRAP(wrap_down)
-WRAP(wrap_up)
 
 CLOSEDFORM_DISPATCHED void nought_all(size_t n, const real_t *CF_RESTRICT x,
                                     real_t *CF_RESTRICT zero)

@@ -49,7 +49,7 @@ int main(void)
     for (size_t i = 0; i < 2 * COUNT; ++i) {
         const real_t a = signed_values[i];
         cf_sincos(a, &s[i], &c[i]);
-        sink = sink + cf_sqrt(a) + cf_wrap(a) + cf_wrap_up(a) + (cf_nought(a) == 0 ? s[i] : c[i]);
+        sink = sink + cf_sqrt(a) + cf_wrap(a) + (cf_nought(a) == 0 ? s[i] : c[i]);
         for (size_t j = 0; j < 2 * COUNT; ++j, ++calls) {
             const real_t b = signed_values[j];
             sink = sink + cf_atan2(a, b) + cf_max(a, b) + cf_min(a, b);

@@ -35,6 +35,7 @@ CALLS = {
     "min": "cf_min",
     **{op: f"cf_{op}" for op in WRAPS},
     "select": "cf_select",
+    "sign": "cf_sign",
 }
 RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
 LOCALS = frozenset({

@@ -23,6 +23,7 @@ CALLS = {
     "max": "np.maximum",
     "min": "np.minimum",
     "select": "_runtime.select",
+    "sign": "_runtime.sign",
     "not": "np.logical_not",
     **{op: f"_runtime.{op}" for op in WRAPS},
     "poison": "_runtime.poison",

@@ -87,6 +87,11 @@ class Graph:
                 return factor
             if not is_const(factor, 1):
                 kept.append(factor)
+        for sign in [f for f in kept if f.op == "sign" and strip_sign(f.args[0]) in kept]:
+            value = strip_sign(sign.args[0])
+            negative ^= value is not sign.args[0]
+            kept.remove(sign)
+            kept[kept.index(value)] = self.node("abs", value)
         kept = self._constants_together(kept, sp.Mul, 1)
         kept.sort(key=lambda f: f.id)
         if not kept:
@@ -117,6 +122,8 @@ class Graph:
             return self.neg(self.select(condition, a.args[0], b.args[0]))
         if b.op == "neg" and is_const(a, 0):
             return self.neg(self.select(condition, a, b.args[0]))
+        if self.neg(a) is b and condition.op == "le" and is_const(condition.args[0], 0):
+            return self.product([a, self.node("sign", condition.args[1])])
         return self.node("select", condition, a, b)
 
     def every(self, conditions: Sequence[Node]) -> Node:

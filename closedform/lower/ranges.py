@@ -108,6 +108,8 @@ def _whole_numbers(node: Node) -> list[int] | None:
     value = constant_of(node)
     if value is not None:
         return [int(value)] if value.is_Integer else None
+    if node.op == "sign":
+        return [-1, 1]
     if node.op != "select":
         return None
     either = [_whole_numbers(a) for a in node.args[1:]]

@@ -149,6 +149,9 @@ CF_INLINE real_t cf_sqrt(real_t x) { return CF_LIBM(sqrt)(x); }
 CF_INLINE real_t cf_abs(real_t x) { return CF_LIBM(fabs)(x); }
 CF_INLINE real_t cf_copysign(real_t size, real_t sign) { return CF_LIBM(copysign)(size, sign); }
 
+/* 1 or -1; of either zero 1. */
+CF_INLINE real_t cf_sign(real_t x) { return cf_copysign(CLOSEDFORM_C(1.0), x + CLOSEDFORM_C(0.0)); }
+
 /* Unlike fmax and fmin these are one instruction: if either argument is NaN, the result is b. */
 CF_INLINE real_t cf_max(real_t a, real_t b) { return a > b ? a : b; }
 CF_INLINE real_t cf_min(real_t a, real_t b) { return a < b ? a : b; }

@@ -93,6 +93,11 @@ def wrap_cut(angle: Any) -> Any:
     return select(angle <= -np.pi, np.pi, angle)
 
 
+def sign(value: Any) -> Any:
+    """1 or -1; of either zero 1."""
+    return np.copysign(1.0, value + 0.0)
+
+
 def select(rare: Any, a: Any, b: Any) -> Any:
     """``a`` where a condition holds that hardly ever does, else ``b``."""
     if np.any(rare):

@@ -3,14 +3,14 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 45 add, 37 compare and select, 3 atan2, 8 divide, 60 multiply, 6 sincos, 4 sqrt
-#   pose: 72 add, 34 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
+#   fk: 45 add, 35 compare and select, 3 atan2, 8 divide, 60 multiply, 6 sincos, 4 sqrt
+#   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
-#   invariant_point: 19 add, 4 divide, 4 compare and select, 34 multiply, 5 sincos
-#   jacobian: 133 add, 32 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
-#   determinant: 38 add, 32 compare and select, 9 divide, 72 multiply, 5 sincos, 4 sqrt
-#   singularities: 43 add, 32 compare and select, 8 divide, 61 multiply, 5 sincos, 4 sqrt
-#   ik: 394 compare and select, 344 add, 26 atan2, 58 divide, 421 multiply, 3 sincos, 31 sqrt
+#   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
+#   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
+#   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
+#   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
+#   ik: 382 compare and select, 344 add, 26 atan2, 58 divide, 413 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -103,7 +103,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     s, c = _runtime.sincos(theta)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
-    side2A = _runtime.select(0.0 <= t1 + t2, 1.0, -1.0)
+    side2A = _runtime.sign(t1 + t2)
     t3 = t1 - t2
     del t1, t2
     t4 = c3L_half * c3R_half
@@ -117,7 +117,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t10 = c2R_half * t6 + s2R_half * t9
     t11 = s2R_half * t6 - c2R_half * t9
     del t6, t9
-    side23A = _runtime.select(0.0 <= c2L_half * t10 + s2L_half * t11, 1.0, -1.0)
+    side23A = _runtime.sign(c2L_half * t10 + s2L_half * t11)
     t12 = t4 - t5
     del t4, t5
     t13 = t7 + t8
@@ -241,7 +241,7 @@ def _pose(
     t7 = c2R_half * t3 + s2R_half * t6
     t8 = s2R_half * t3 - c2R_half * t6
     del t3, t6
-    side23A = _runtime.select(0.0 <= c2L_half * t7 + s2L_half * t8, 1.0, -1.0)
+    side23A = _runtime.sign(c2L_half * t7 + s2L_half * t8)
     t9 = t1 - t2
     del t1, t2
     t10 = t4 + t5
@@ -312,7 +312,7 @@ def _pose(
     t44 = c * t30 - s * t28
     hand_33 = c * c_psi
     t45 = t14 * hand_13 + s1 * t44 + t32 * hand_33 + t42
-    side2A = _runtime.select(0.0 <= t18 + t19, 1.0, -1.0)
+    side2A = _runtime.sign(t18 + t19)
     del t18, t19
     t46 = lp * s
     del s
@@ -436,7 +436,7 @@ def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2,
     s1, c1 = _runtime.sincos(theta1)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
-    side2A = _runtime.select(0.0 <= t1 + t2, 1.0, -1.0)
+    side2A = _runtime.sign(t1 + t2)
     t3 = c3L_half * c3R_half
     t4 = s3L_half * s3R_half
     t5 = t3 + t4
@@ -447,7 +447,7 @@ def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2,
     t8 = t6 - t7
     t9 = c2L_half * (c2R_half * t5 + s2R_half * t8) + s2L_half * (s2R_half * t5 - c2R_half * t8)
     del t5, t8
-    side23A = _runtime.select(0.0 <= t9, 1.0, -1.0)
+    side23A = _runtime.sign(t9)
     del t9
     t10 = t3 - t4
     del t3, t4
@@ -553,11 +553,11 @@ def _jacobian(
     wrist = np.sqrt(np.maximum(t33, 0.0)) * np.sqrt(np.maximum(t35, 0.0))
     t36 = loff + t32 + wrist
     t37 = t1 * t26 - t31 * t36
-    side2A = _runtime.select(0.0 <= t17 + t18, 1.0, -1.0)
+    side2A = _runtime.sign(t17 + t18)
     del t17, t18
     outer_32 = L1 * (side2A * t19)
     del t19
-    side23A = _runtime.select(0.0 <= c2L_half * t8 + s2L_half * t9, 1.0, -1.0)
+    side23A = _runtime.sign(c2L_half * t8 + s2L_half * t9)
     del t8, t9
     c23A = side23A * t16
     del t16
@@ -764,27 +764,27 @@ def _determinant(
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
     t3 = t1 + t2
-    side2A = _runtime.select(0.0 <= t3, 1.0, -1.0)
-    t4 = c3L_half * c3R_half
-    t5 = s3L_half * s3R_half
-    t6 = t4 + t5
-    t7 = s3L_half * c3R_half
-    del c3R_half, s3L_half
-    t8 = c3L_half * s3R_half
-    del c3L_half, s3R_half
-    t9 = t7 - t8
-    t10 = c2R_half * t6 + s2R_half * t9
-    t11 = s2R_half * t6 - c2R_half * t9
-    del t6, t9
-    t12 = c2L_half * t10 + s2L_half * t11
-    side23A = _runtime.select(0.0 <= t12, 1.0, -1.0)
-    t13 = t1 - t2
+    side2A = _runtime.sign(t3)
+    t4 = t1 - t2
     del t1, t2
-    c2A = side2A * t13
-    t14 = t4 - t5
-    del t4, t5
-    t15 = t7 + t8
-    del t7, t8
+    c2A = side2A * t4
+    t5 = c3L_half * c3R_half
+    t6 = s3L_half * s3R_half
+    t7 = t5 + t6
+    t8 = s3L_half * c3R_half
+    del c3R_half, s3L_half
+    t9 = c3L_half * s3R_half
+    del c3L_half, s3R_half
+    t10 = t8 - t9
+    t11 = c2R_half * t7 + s2R_half * t10
+    t12 = s2R_half * t7 - c2R_half * t10
+    del t10, t7
+    t13 = c2L_half * t11 + s2L_half * t12
+    side23A = _runtime.sign(t13)
+    t14 = t5 - t6
+    del t5, t6
+    t15 = t8 + t9
+    del t8, t9
     t16 = c2R_half * t14 - s2R_half * t15
     t17 = s2R_half * t14 + c2R_half * t15
     del t14, t15
@@ -796,52 +796,57 @@ def _determinant(
     del s2R_half
     t21 = t19 + t20
     s2A = side2A * t21
+    del side2A
     t22 = s2L_half * t16 + c2L_half * t17
     del t16, t17
     s23A = side23A * t22
+    del side23A
     t23 = c2A * c23A + s2A * s23A
     t24 = s2A * c23A - c2A * s23A
     del s2A
-    t25 = t3 * side2A * t12 * side23A * (L1 * L1) * (L2 * t23 + a3 * t24)
-    del side23A, side2A, t12, t3
+    t25 = L1 * L1 * (L2 * t23 + a3 * t24) * np.abs(t13)
+    del t13
     t26 = d * d
-    t27 = s2L_half * t10 - c2L_half * t11
-    del c2L_half, s2L_half, t10, t11
+    t27 = s2L_half * t11 - c2L_half * t12
+    del c2L_half, s2L_half, t11, t12
     t28 = L1 * (t19 - t20)
     del t19, t20
-    t29 = t27 * (L2 * t22 + a3 * t18) + t13 * t28
-    del t13
+    t29 = t27 * (L2 * t22 + a3 * t18) + t4 * t28
+    del t4
     rise = np.sqrt(t26 + t29 * t29)
     c_phi = d / rise
     t30 = t27 * (L2 * t18 - a3 * t22) - t21 * t28
     del t18, t21, t22, t27, t28
     base = np.sqrt(t26 + t30 * t30)
     c_psi = d / base
-    t31 = base - (gs - al)
-    t32 = gs + al
-    t33 = t32 - base
-    wrist = np.sqrt(np.maximum(t31, 0.0)) * np.sqrt(np.maximum(t33, 0.0))
-    t34 = loff + lp * c + wrist
+    t31 = t25 * np.abs(t3) * (c_phi * c_phi) * (c_psi * c_psi)
+    del t25, t3
+    t32 = base - (gs - al)
+    t33 = gs + al
+    t34 = t33 - base
+    wrist = np.sqrt(np.maximum(t32, 0.0)) * np.sqrt(np.maximum(t34, 0.0))
+    t35 = loff + lp * c + wrist
     del c, wrist
-    t35 = L2 + c_psi * t34
-    t36 = a3 + lp * s * c_phi + t30 / base * (t29 / rise) * t34
-    del base, rise, s, t29, t30, t34
-    t37 = t25 * (c_phi * c_phi) * (c_psi * c_psi) * (t23 * t35 + t24 * t36)
-    del c_phi, c_psi, t23, t24, t25
-    t38 = t37 * (L1 * c2A + c23A * t36 + s23A * t35) / (t26 * 4.0)
-    del c23A, c2A, s23A, t26, t35, t36, t37
+    t36 = L2 + c_psi * t35
+    del c_psi
+    t37 = a3 + lp * s * c_phi + t30 / base * (t29 / rise) * t35
+    del base, c_phi, rise, s, t29, t30, t35
+    t38 = t31 * (t23 * t36 + t24 * t37) * (L1 * c2A + c23A * t37 + s23A * t36)
+    del c23A, c2A, s23A, t23, t24, t31, t36, t37
     t39 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
     t40 = t39 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
     del t39
     t41 = t40 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
     del t40
     t42 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t43 = -(_runtime.FEASIBILITY * t32)
-    del t32
-    failed = np.logical_not(t41 & (0.0 <= lp) & t42) | np.logical_not((t43 <= t33) & (t43 <= t31))
-    del t31, t33, t41, t42, t43
+    t43 = -(_runtime.FEASIBILITY * t33)
+    del t33
+    failed = np.logical_not(t41 & (0.0 <= lp) & t42) | np.logical_not((t43 <= t34) & (t43 <= t32))
+    del t32, t34, t41, t42, t43
+    t44 = -(t38 / (t26 * 4.0)) + _runtime.poison(failed)
+    del failed, t26, t38
     return (
-        -t38 + _runtime.poison(failed),
+        t44,
     )
 
 
@@ -877,7 +882,7 @@ def _singularities(
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
     t3 = t1 + t2
-    side2A = _runtime.select(0.0 <= t3, 1.0, -1.0)
+    side2A = _runtime.sign(t3)
     t4 = t1 - t2
     del t1, t2
     c2A = side2A * t4
@@ -893,7 +898,7 @@ def _singularities(
     t12 = s2R_half * t7 - c2R_half * t10
     del t10, t7
     t13 = c2L_half * t11 + s2L_half * t12
-    side23A = _runtime.select(0.0 <= t13, 1.0, -1.0)
+    side23A = _runtime.sign(t13)
     t14 = t5 - t6
     del t5, t6
     t15 = t8 + t9
@@ -931,7 +936,7 @@ def _singularities(
     t32 = a3 + lp * s * (d / rise) + t27 / base * (t25 / rise) * t31
     del rise, s, t25, t27
     s23A = side23A * t21
-    del t21
+    del side23A, t21
     t33 = L2 + d / base * t31
     del base, t31
     t34 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
@@ -947,7 +952,7 @@ def _singularities(
     t39 = _runtime.poison(failed)
     del failed
     s2A = side2A * t26
-    del t26
+    del side2A, t26
     t40 = c2A * c23A + s2A * s23A
     t41 = s2A * c23A - c2A * s23A
     del s2A
@@ -955,8 +960,8 @@ def _singularities(
         L1 * c2A + c23A * t32 + s23A * t33 + t39,
         t40 * t33 + t41 * t32 + t39,
         L2 * t40 + a3 * t41 + t39,
-        t3 * side2A + t39,
-        t13 * side23A + t39,
+        np.abs(t3) + t39,
+        np.abs(t13) + t39,
         wrist + t39,
     )
 
@@ -1092,128 +1097,126 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     s_relative = t53 - t54
     v_1 = L2 * c_relative - a3 * s_relative
     whole_alpha = L1 * v_1
-    t55 = _runtime.select(0.0 <= whole_alpha, 1.0, -1.0)
     v_2 = L2 * s_relative + a3 * c_relative
     ahead = d * s_psi * t7
     del s_psi, t7
-    t56 = np.abs(t31)
-    folded = t56 + np.abs(outward) <= t49
-    t57 = t31 * fore
-    t58 = t57 * s_bend_front_elbow_down
+    t55 = np.abs(t31)
+    folded = t55 + np.abs(outward) <= t49
+    t56 = t31 * fore
+    t57 = t56 * s_bend_front_elbow_down
     ahead_1 = _runtime.select(short, t27, t42 + t28 * M * t48)
     del M, t48
-    t59 = outward * ahead_1
-    t60 = t58 - t59
-    t61 = fore * outward * s_bend_front_elbow_down
+    t58 = outward * ahead_1
+    t59 = t57 - t58
+    t60 = fore * outward * s_bend_front_elbow_down
     del outward, s_bend_front_elbow_down
-    t62 = t31 * ahead_1
+    t61 = t31 * ahead_1
     del ahead_1
-    up = t61 + t62
-    t63 = 1.0 / np.sqrt(t60 * t60 + up * up)
-    ctheta2A = _runtime.select(folded, 1.0, -(t60 * t63))
+    up = t60 + t61
+    t62 = 1.0 / np.sqrt(t59 * t59 + up * up)
+    ctheta2A = _runtime.select(folded, 1.0, -(t59 * t62))
     higher = d * s_phi / c_phi
     del c_phi, s_phi
-    stheta2A = _runtime.select(folded, 0.0, up * t63)
-    del t63
+    stheta2A = _runtime.select(folded, 0.0, up * t62)
+    del t62
     p_1 = ahead * ctheta2A + higher * stheta2A
-    t64 = ahead * stheta2A - higher * ctheta2A
+    t63 = ahead * stheta2A - higher * ctheta2A
     del ctheta2A, stheta2A
-    t65 = v_2 * p_1 + v_1 * t64
-    t66 = _runtime.select(0.0 <= -t65, 1.0, -1.0)
-    room_alpha = whole_alpha * t55 + t65 * t66
-    del t65, whole_alpha
-    t67 = _runtime.VANISHING * t47
-    spent_alpha = room_alpha <= t67
-    t68 = size / 100000.0
-    t69 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t70 = 1.0 / (t68 + t69)
-    del t69
+    t64 = v_2 * p_1 + v_1 * t63
+    room_alpha = np.abs(whole_alpha) - np.abs(t64)
+    t65 = _runtime.VANISHING * t47
+    spent_alpha = room_alpha <= t65
+    t66 = size / 100000.0
+    t67 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t68 = 1.0 / (t66 + t67)
+    del t67
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
     del c_relative, s_relative
-    t71 = v_2 * t55 * drawn - t66 * (v_1 * p_1 - v_2 * t64)
-    del t55, t66
-    t72 = _runtime.select(spent_alpha, t70 * (size * np.abs(t71)), 0.0)
-    t73 = -(_runtime.FEASIBILITY * (t47 + t72)) <= room_alpha
-    del t72
-    t74 = size * size * size * size / 10000000000.0
-    t75 = t71 * (room_alpha - np.abs(room_alpha)) / (2.0 * (t74 + t71 * t71))
-    del room_alpha, t71
-    turn_alpha = _runtime.select(spent_alpha, t75, 0.0)
-    del t75
-    t76 = 1.0 / L1
-    lean_alpha = _runtime.select(spent_alpha, turn_alpha - t76 * (drawn * turn_alpha), 0.0)
-    p_1_alpha = _runtime.select(spent_alpha, p_1 - t64 * lean_alpha, p_1)
+    t69 = _runtime.sign(-t64) * (v_1 * p_1 - v_2 * t63)
+    del t64
+    t70 = v_2 * drawn * _runtime.sign(whole_alpha) - t69
+    del t69, whole_alpha
+    t71 = _runtime.select(spent_alpha, t68 * (size * np.abs(t70)), 0.0)
+    t72 = -(_runtime.FEASIBILITY * (t47 + t71)) <= room_alpha
+    del t71
+    t73 = size * size * size * size / 10000000000.0
+    t74 = t70 * (room_alpha - np.abs(-room_alpha)) / (2.0 * (t73 + t70 * t70))
+    del room_alpha, t70
+    turn_alpha = _runtime.select(spent_alpha, t74, 0.0)
+    del t74
+    t75 = 1.0 / L1
+    lean_alpha = _runtime.select(spent_alpha, turn_alpha - t75 * (drawn * turn_alpha), 0.0)
+    p_1_alpha = _runtime.select(spent_alpha, p_1 - t63 * lean_alpha, p_1)
     part_beta = L1 * p_1_alpha
-    t77 = _runtime.select(0.0 <= part_beta, 1.0, -1.0)
-    t78 = turn_alpha - lean_alpha
-    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t78, v_1)
+    t76 = turn_alpha - lean_alpha
+    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t76, v_1)
     whole_beta = L1 * v_1_alpha
-    t79 = _runtime.select(0.0 <= whole_beta, 1.0, -1.0)
-    t80 = part_beta * t77 - whole_beta * t79
-    del part_beta, whole_beta
-    spent_beta = -t80 <= t67
-    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t78, v_2)
-    del t78, v_1, v_2
-    t81 = _runtime.select(spent_alpha, t64 + p_1 * lean_alpha, t64)
-    del p_1, spent_alpha, t64
-    t82 = drawn * t79 * v_2_alpha - (L1 - drawn) * t77 * t81
-    del t77, t79
-    t83 = _runtime.select(spent_beta, t70 * (size * np.abs(t82)), 0.0)
-    del t70
-    t84 = -(_runtime.FEASIBILITY * (t47 + t83)) <= -t80
-    del t83
-    t85 = np.abs(higher)
-    t86 = np.abs(ahead)
-    t87 = d + t85 + t86
-    t88 = -(_runtime.FEASIBILITY * t87)
-    t89 = t82 * (t80 + np.abs(t80)) / (2.0 * (t74 + t82 * t82))
-    del t80, t82
-    turn_beta = _runtime.select(spent_beta, -t89, 0.0)
-    del t89
-    lean_beta = _runtime.select(spent_beta, turn_beta - t76 * (drawn * turn_beta), 0.0)
+    t77 = np.abs(part_beta) - np.abs(whole_beta)
+    spent_beta = -t77 <= t65
+    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t76, v_2)
+    del t76, v_1, v_2
+    t78 = drawn * v_2_alpha * _runtime.sign(whole_beta)
+    del whole_beta
+    t79 = _runtime.select(spent_alpha, t63 + p_1 * lean_alpha, t63)
+    del p_1, spent_alpha, t63
+    t80 = (L1 - drawn) * t79 * _runtime.sign(part_beta)
+    del part_beta
+    t81 = t78 - t80
+    del t78, t80
+    t82 = _runtime.select(spent_beta, t68 * (size * np.abs(t81)), 0.0)
+    del t68
+    t83 = -(_runtime.FEASIBILITY * (t47 + t82)) <= -t77
+    del t82
+    t84 = np.abs(higher)
+    t85 = np.abs(ahead)
+    t86 = d + t84 + t85
+    t87 = -(_runtime.FEASIBILITY * t86)
+    t88 = t81 * (t77 + np.abs(t77)) / (2.0 * (t73 + t81 * t81))
+    del t77, t81
+    turn_beta = _runtime.select(spent_beta, -t88, 0.0)
+    del t88
+    lean_beta = _runtime.select(spent_beta, turn_beta - t75 * (drawn * turn_beta), 0.0)
     del drawn
-    t90 = turn_beta - lean_beta
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t90, v_1_alpha)
-    sigma_uv = _runtime.select(0.0 <= -(L1 * v_1_beta), 1.0, -1.0)
-    t91 = v_1_beta * sigma_uv
+    t89 = turn_beta - lean_beta
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t89, v_1_alpha)
+    sigma_uv = _runtime.sign(-(L1 * v_1_beta))
+    t90 = v_1_beta * sigma_uv
     del v_1_beta
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t81 * lean_beta, p_1_alpha)
-    t92 = sigma_uv * p_1_beta
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t79 * lean_beta, p_1_alpha)
+    t91 = sigma_uv * p_1_beta
     del p_1_beta, sigma_uv
-    t93 = t46 & t73 & t84 & (t88 <= -(t91 + np.abs(t92)))
-    del t73, t84
-    t94 = _runtime.select(spent_beta, t81 + p_1_alpha * lean_beta, t81)
-    del p_1_alpha, t81
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t90, v_2_alpha)
-    del spent_beta, t90, v_1_alpha, v_2_alpha
-    t95 = np.abs(v_2_beta)
-    parallel = -t91 <= _runtime.VANISHING * (64.0 * t95)
-    part_y = _runtime.select(parallel, _runtime.select(0.0 <= v_2_beta, -t94, t94), -t92)
-    del t92
-    whole_y = _runtime.select(parallel, L1 + t95, -t91)
-    t96 = t94 + v_2_beta * part_y / whole_y
+    t92 = t46 & t72 & t83 & (t87 <= -(t90 + np.abs(t91)))
+    del t72, t83
+    t93 = _runtime.select(spent_beta, t79 + p_1_alpha * lean_beta, t79)
+    del p_1_alpha, t79
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t89, v_2_alpha)
+    del spent_beta, t89, v_1_alpha, v_2_alpha
+    t94 = np.abs(v_2_beta)
+    parallel = -t90 <= _runtime.VANISHING * (64.0 * t94)
+    t95 = _runtime.select(parallel, t93 * _runtime.sign(v_2_beta), t91)
+    del t91
+    whole_y = _runtime.select(parallel, L1 + t94, -t90)
+    t96 = t93 - v_2_beta * t95 / whole_y
     left_along = L1 - np.abs(t96)
-    t97 = _runtime.VANISHING * t87
+    t97 = _runtime.VANISHING * t86
     spent_along = left_along <= t97
     t98 = L1 / 1000000000.0
-    t99 = _runtime.select(spent_along, t95 / (t98 - t91), 0.0)
-    del t95
-    t100 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t99)))
+    t99 = _runtime.select(spent_along, t94 / (t98 - t90), 0.0)
+    del t94
+    t100 = -(_runtime.FEASIBILITY * (t86 * (1.0 + t99)))
     del t99
     t101 = v_2_beta * (left_along / 2.0 - np.abs(left_along) / 2.0)
-    t102 = t101 / (t91 * t91 + v_2_beta * v_2_beta)
-    del t101, t91
-    t103 = whole_y * _runtime.select(0.0 <= -t96, -t102, t102)
-    del t102, t96
-    eased = _runtime.select(spent_along, part_y + t103, part_y)
-    del part_y, spent_along, t103
-    t104 = whole_y - eased
-    t105 = whole_y + eased
-    del eased, whole_y
-    t106 = t93 & (t100 <= left_along) & (t88 <= t104) & (t88 <= t105)
-    del left_along, t100, t93
-    t107 = _runtime.VANISHING * (d * 16.0 + t85 * 16.0 + 16.0 * t86)
-    del t85, t86
+    t102 = t101 / (t90 * t90 + v_2_beta * v_2_beta) * _runtime.sign(-t96)
+    del t101, t90, t96
+    t103 = _runtime.select(spent_along, t95 + whole_y * t102, t95)
+    del spent_along, t102, t95
+    t104 = whole_y + t103
+    t105 = whole_y - t103
+    del t103, whole_y
+    t106 = t92 & (t100 <= left_along) & (t87 <= t104) & (t87 <= t105)
+    del left_along, t100, t92
+    t107 = _runtime.VANISHING * (d * 16.0 + t84 * 16.0 + 16.0 * t85)
+    del t84, t85
     t108 = _runtime.VANISHING * t107
     del t107
     below_beta = np.maximum(t104, t108)
@@ -1222,16 +1225,16 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t105
     t109 = 1.0 / (below_beta + above_beta)
     t110 = (below_beta - above_beta) * t109
-    t111 = t94 - v_2_beta * t110
-    del t94, v_2_beta
+    t111 = t93 - v_2_beta * t110
+    del t93, v_2_beta
     t112 = L1 + t111
     t113 = L1 - t111
     del t111
-    unreachable = np.logical_not(t106 & (t88 <= t112) & (t88 <= t113))
+    unreachable = np.logical_not(t106 & (t87 <= t112) & (t87 <= t113))
     del t106
     t114 = _runtime.poison(invalid | unreachable)
-    t115 = _runtime.select(folded, 0.0, np.arctan2(up, -t60))
-    del t60, up
+    t115 = _runtime.select(folded, 0.0, np.arctan2(up, -t59))
+    del t59, up
     t116 = np.arctan2(lean_alpha + lean_beta, 1.0)
     del lean_alpha, lean_beta
     t117 = t115 + t116
@@ -1263,184 +1266,180 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t53, t54
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t128 = _runtime.select(0.0 <= whole_alpha_front_elbow_down, 1.0, -1.0)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    out_front_elbow_down = t58 + t59
-    del t58, t59
-    t129 = t61 - t62
-    del t61, t62
-    t130 = out_front_elbow_down * out_front_elbow_down + t129 * t129
-    t131 = 1.0 / np.sqrt(t130)
+    out_front_elbow_down = t57 + t58
+    del t57, t58
+    t128 = t60 - t61
+    del t60, t61
+    t129 = out_front_elbow_down * out_front_elbow_down + t128 * t128
+    t130 = 1.0 / np.sqrt(t129)
+    del t129
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down * t130)
+    t131 = _runtime.select(folded, 0.0, t128 * t130)
     del t130
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down * t131)
-    t132 = _runtime.select(folded, 0.0, t129 * t131)
-    del t131
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t132
-    t133 = ahead * t132 + higher * ctheta2A_front_elbow_down
-    del ctheta2A_front_elbow_down, t132
-    t134 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t133
-    t135 = _runtime.select(0.0 <= -t134, 1.0, -1.0)
-    room_alpha_front_elbow_down = whole_alpha_front_elbow_down * t128 + t134 * t135
-    del t134, whole_alpha_front_elbow_down
-    spent_alpha_front_elbow_down = room_alpha_front_elbow_down <= t67
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t131
+    t132 = ahead * t131 + higher * ctheta2A_front_elbow_down
+    del ctheta2A_front_elbow_down, t131
+    t133 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t132
+    room_alpha_front_elbow_down = np.abs(whole_alpha_front_elbow_down) - np.abs(t133)
+    spent_alpha_front_elbow_down = room_alpha_front_elbow_down <= t65
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t136 = 1.0 / (t68 + np.abs(tilt_front_elbow_down))
+    t134 = 1.0 / (t66 + np.abs(tilt_front_elbow_down))
     del tilt_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
-    t137 = v_2_front_elbow_down * t128 * drawn_front_elbow_down
-    del t128
-    t138 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t133
-    t139 = t137 - t135 * t138
-    del t135, t137, t138
-    t140 = _runtime.select(spent_alpha_front_elbow_down, t136 * (size * np.abs(t139)), 0.0)
-    t141 = -(_runtime.FEASIBILITY * (t47 + t140)) <= room_alpha_front_elbow_down
-    del t140
-    t142 = room_alpha_front_elbow_down - np.abs(room_alpha_front_elbow_down)
+    t135 = v_2_front_elbow_down * drawn_front_elbow_down
+    t136 = t135 * _runtime.sign(whole_alpha_front_elbow_down)
+    del t135, whole_alpha_front_elbow_down
+    t137 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t132
+    t138 = t136 - _runtime.sign(-t133) * t137
+    del t133, t136, t137
+    t139 = _runtime.select(spent_alpha_front_elbow_down, t134 * (size * np.abs(t138)), 0.0)
+    t140 = -(_runtime.FEASIBILITY * (t47 + t139)) <= room_alpha_front_elbow_down
+    del t139
+    t141 = room_alpha_front_elbow_down - np.abs(-room_alpha_front_elbow_down)
     del room_alpha_front_elbow_down
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t139 * t142 / (2.0 * (t74 + t139 * t139)), 0.0)
-    del t139, t142
-    t143 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t76 * t143, 0.0)
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t138 * t141 / (2.0 * (t73 + t138 * t138)), 0.0)
+    del t138, t141
+    t142 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t75 * t142, 0.0)
+    del t142
+    t143 = p_1_front_elbow_down + t132 * lean_alpha_front_elbow_down
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t143, p_1_front_elbow_down)
     del t143
-    t144 = p_1_front_elbow_down + t133 * lean_alpha_front_elbow_down
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t144, p_1_front_elbow_down)
-    del t144
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t145 = _runtime.select(0.0 <= part_beta_front_elbow_down, 1.0, -1.0)
-    t146 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
-    t147 = v_1_front_elbow_down - v_2_front_elbow_down * t146
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t147, v_1_front_elbow_down)
-    del t147
+    t144 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
+    t145 = v_1_front_elbow_down - v_2_front_elbow_down * t144
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t145, v_1_front_elbow_down)
+    del t145
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t148 = _runtime.select(0.0 <= whole_beta_front_elbow_down, 1.0, -1.0)
-    t149 = part_beta_front_elbow_down * t145 - whole_beta_front_elbow_down * t148
-    del part_beta_front_elbow_down, whole_beta_front_elbow_down
-    spent_beta_front_elbow_down = -t149 <= t67
-    t150 = v_2_front_elbow_down + v_1_front_elbow_down * t146
-    del t146, v_1_front_elbow_down
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t150, v_2_front_elbow_down)
-    del t150, v_2_front_elbow_down
-    t151 = drawn_front_elbow_down * t148 * v_2_alpha_front_elbow_down
-    del t148
-    t152 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t146 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    spent_beta_front_elbow_down = -t146 <= t65
+    t147 = v_2_front_elbow_down + v_1_front_elbow_down * t144
+    del t144, v_1_front_elbow_down
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t147, v_2_front_elbow_down)
+    del t147, v_2_front_elbow_down
+    t148 = drawn_front_elbow_down * v_2_alpha_front_elbow_down
+    t149 = t148 * _runtime.sign(whole_beta_front_elbow_down)
+    del t148, whole_beta_front_elbow_down
+    t150 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t153 = _runtime.select(spent_alpha_front_elbow_down, t133 - t152, t133)
-    del spent_alpha_front_elbow_down, t133, t152
-    t154 = t151 + (L1 - drawn_front_elbow_down) * t145 * t153
-    del t145, t151
-    t155 = _runtime.select(spent_beta_front_elbow_down, t136 * (size * np.abs(t154)), 0.0)
-    del t136
-    t156 = -(_runtime.FEASIBILITY * (t47 + t155)) <= -t149
-    del t155
-    t157 = t154 * (t149 + np.abs(t149)) / (2.0 * (t74 + t154 * t154))
-    del t149, t154
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t157, 0.0)
-    del t157
-    t158 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    t151 = _runtime.select(spent_alpha_front_elbow_down, t132 - t150, t132)
+    del spent_alpha_front_elbow_down, t132, t150
+    t152 = (L1 - drawn_front_elbow_down) * t151 * _runtime.sign(part_beta_front_elbow_down)
+    del part_beta_front_elbow_down
+    t153 = t149 + t152
+    del t149, t152
+    t154 = _runtime.select(spent_beta_front_elbow_down, t134 * (size * np.abs(t153)), 0.0)
+    del t134
+    t155 = -(_runtime.FEASIBILITY * (t47 + t154)) <= -t146
+    del t154
+    t156 = t153 * (t146 + np.abs(t146)) / (2.0 * (t73 + t153 * t153))
+    del t146, t153
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t156, 0.0)
+    del t156
+    t157 = drawn_front_elbow_down * turn_beta_front_elbow_down
     del drawn_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t76 * t158, 0.0)
-    del t158
-    t159 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
-    t160 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t159
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t160, v_1_alpha_front_elbow_down)
-    del t160
-    sigma_uv_front_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_front_elbow_down), 1.0, -1.0)
-    t161 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t75 * t157, 0.0)
+    del t157
+    t158 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
+    t159 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t158
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t159, v_1_alpha_front_elbow_down)
+    del t159
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t160 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
     del v_1_beta_front_elbow_down
-    t162 = p_1_alpha_front_elbow_down + t153 * lean_beta_front_elbow_down
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t162, p_1_alpha_front_elbow_down)
-    del t162
-    t163 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t161 = p_1_alpha_front_elbow_down + t151 * lean_beta_front_elbow_down
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t161, p_1_alpha_front_elbow_down)
+    del t161
+    t162 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
     del p_1_beta_front_elbow_down, sigma_uv_front_elbow_down
-    t164 = t46 & t141 & t156 & (t88 <= -(t161 + np.abs(t163)))
-    del t141, t156, t46
-    t165 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t163 = t46 & t140 & t155 & (t87 <= -(t160 + np.abs(t162)))
+    del t140, t155, t46
+    t164 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    p_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t153 - t165, t153)
-    del t153, t165
-    t166 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t159
-    del t159, v_1_alpha_front_elbow_down
+    t165 = _runtime.select(spent_beta_front_elbow_down, t151 - t164, t151)
+    del t151, t164
+    t166 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t158
+    del t158, v_1_alpha_front_elbow_down
     v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t166, v_2_alpha_front_elbow_down)
     del spent_beta_front_elbow_down, t166, v_2_alpha_front_elbow_down
     t167 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t161 <= _runtime.VANISHING * (64.0 * t167)
-    t168 = _runtime.select(0.0 <= v_2_beta_front_elbow_down, p_2_beta_front_elbow_down, -p_2_beta_front_elbow_down)
-    part_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, t168, -t163)
-    del t163, t168
-    t169 = v_2_beta_front_elbow_down * part_y_front_elbow_down
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t167, -t161)
-    rest_front_elbow_down = p_2_beta_front_elbow_down - t169 / whole_y_front_elbow_down
-    del t169
+    parallel_front_elbow_down = -t160 <= _runtime.VANISHING * (64.0 * t167)
+    t168 = t165 * _runtime.sign(v_2_beta_front_elbow_down)
+    t169 = _runtime.select(parallel_front_elbow_down, -t168, t162)
+    del t162, t168
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t167, -t160)
+    t170 = v_2_beta_front_elbow_down * t169 / whole_y_front_elbow_down
+    rest_front_elbow_down = t165 + t170
+    del t170
     left_along_front_elbow_down = L1 - np.abs(-rest_front_elbow_down)
     spent_along_front_elbow_down = left_along_front_elbow_down <= t97
-    t170 = _runtime.select(spent_along_front_elbow_down, t167 / (t98 - t161), 0.0)
+    t171 = _runtime.select(spent_along_front_elbow_down, t167 / (t98 - t160), 0.0)
     del t167
-    t171 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t170)))
-    del t170
-    t172 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
-    t173 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t174 = v_2_beta_front_elbow_down * t172 / (t161 * t161 + t173)
-    del t161, t172, t173
-    t175 = _runtime.select(0.0 <= rest_front_elbow_down, -t174, t174)
-    del rest_front_elbow_down, t174
-    t176 = part_y_front_elbow_down + whole_y_front_elbow_down * t175
-    del t175
-    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, t176, part_y_front_elbow_down)
-    del part_y_front_elbow_down, spent_along_front_elbow_down, t176
-    t177 = whole_y_front_elbow_down - eased_front_elbow_down
-    t178 = t164 & (t171 <= left_along_front_elbow_down) & (t88 <= t177)
-    del left_along_front_elbow_down, t164, t171
-    t179 = whole_y_front_elbow_down + eased_front_elbow_down
-    del eased_front_elbow_down, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t177, t108)
-    del t177
-    above_beta_front_elbow_down = np.maximum(t179, t108)
-    t180 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t172 = -(_runtime.FEASIBILITY * (t86 * (1.0 + t171)))
+    del t171
+    t173 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
+    t174 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t175 = v_2_beta_front_elbow_down * t173 / (t160 * t160 + t174)
+    del t160, t173, t174
+    t176 = whole_y_front_elbow_down * (t175 * _runtime.sign(rest_front_elbow_down))
+    del rest_front_elbow_down, t175
+    t177 = _runtime.select(spent_along_front_elbow_down, t169 + t176, t169)
+    del spent_along_front_elbow_down, t169, t176
+    t178 = whole_y_front_elbow_down + t177
+    t179 = t163 & (t172 <= left_along_front_elbow_down) & (t87 <= t178)
+    del left_along_front_elbow_down, t163, t172
+    t180 = whole_y_front_elbow_down - t177
+    del t177, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t178, t108)
+    del t178
+    above_beta_front_elbow_down = np.maximum(t180, t108)
+    t181 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t181 = 1.0 / total_beta_front_elbow_down
+    t182 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t182 = t180 * t181
-    del t180
-    along_u_front_elbow_down = p_2_beta_front_elbow_down + v_2_beta_front_elbow_down * t182
-    del p_2_beta_front_elbow_down, v_2_beta_front_elbow_down
-    t183 = L1 - along_u_front_elbow_down
-    t184 = L1 + along_u_front_elbow_down
+    t183 = t181 * t182
+    del t181
+    along_u_front_elbow_down = t165 + v_2_beta_front_elbow_down * t183
+    del t165, v_2_beta_front_elbow_down
+    t184 = L1 - along_u_front_elbow_down
+    t185 = L1 + along_u_front_elbow_down
     del along_u_front_elbow_down
-    t185 = t178 & (t88 <= t179) & (t88 <= t183) & (t88 <= t184)
-    del t178, t179
-    unreachable_2 = np.logical_not(t185)
-    del t185
-    t186 = _runtime.poison(invalid | unreachable_2)
-    t187 = _runtime.select(folded, 0.0, np.arctan2(-t129, out_front_elbow_down))
-    del out_front_elbow_down, t129
-    t188 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t186 = t179 & (t87 <= t180) & (t87 <= t184) & (t87 <= t185)
+    del t179, t180
+    unreachable_2 = np.logical_not(t186)
+    del t186
+    t187 = _runtime.poison(invalid | unreachable_2)
+    t188 = _runtime.select(folded, 0.0, np.arctan2(-t128, out_front_elbow_down))
+    del out_front_elbow_down, t128
+    t189 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
     del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t189 = np.arctan2(t188, 1.0)
+    t190 = np.arctan2(t189, 1.0)
+    del t189
+    t191 = t188 + t190
     del t188
-    t190 = t187 + t189
-    del t187
-    below_alpha_front_elbow_down = np.maximum(t183, t108)
-    del t183
-    above_alpha_front_elbow_down = np.maximum(t184, t108)
+    below_alpha_front_elbow_down = np.maximum(t184, t108)
     del t184
-    t191 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    above_alpha_front_elbow_down = np.maximum(t185, t108)
+    del t185
+    t192 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t192 = 1.0 / total_alpha_front_elbow_down
+    t193 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t193 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t194 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t194 = np.arctan2(t191 * t192, t192 * t193)
-    del t191, t192, t193
-    t195 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t195 = np.arctan2(t192 * t193, t193 * t194)
+    del t192, t193, t194
+    t196 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t196 = t123 + t124 - (t189 - np.arctan2(t195, 1.0))
-    del t123, t189, t195
-    t197 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t197 = t123 + t124 - (t190 - np.arctan2(t196, 1.0))
+    del t123, t190, t196
+    t198 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t198 = t194 - np.arctan2(t182, t181 * t197)
-    del t181, t182, t197
-    t199 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t15))
+    t199 = t195 - np.arctan2(t183, t182 * t198)
+    del t182, t183, t198
+    t200 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t15))
     del t15, t2
     c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -(t33 * (t36 + t37)))
     del t36, t37
@@ -1448,45 +1447,44 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t33, t38, t39
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
     del c1_rear_elbow_up, s1_rear_elbow_up
-    t200 = outward_rear_elbow_up * outward_rear_elbow_up
-    square_rear_elbow_up = t32 + t200
-    del t200, t32
-    t201 = t30 - square_rear_elbow_up
+    t201 = outward_rear_elbow_up * outward_rear_elbow_up
+    square_rear_elbow_up = t32 + t201
+    del t201, t32
+    t202 = t30 - square_rear_elbow_up
     del t30
-    t202 = square_rear_elbow_up - t44
+    t203 = square_rear_elbow_up - t44
     del square_rear_elbow_up, t44
-    t203 = t26 & (-t29 <= t201) & (-t43 <= t202)
+    t204 = t26 & (-t29 <= t202) & (-t43 <= t203)
     del t26, t29, t43
-    M_rear_elbow_up = np.maximum(t202, 0.0)
+    M_rear_elbow_up = np.maximum(t203, 0.0)
+    del t203
+    N_rear_elbow_up = np.maximum(t202, 0.0)
     del t202
-    N_rear_elbow_up = np.maximum(t201, 0.0)
-    del t201
-    t204 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t204 * (M_rear_elbow_up - N_rear_elbow_up))
-    t205 = c_lag * c_bend_rear_elbow_up
+    t205 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t205 * (M_rear_elbow_up - N_rear_elbow_up))
+    t206 = c_lag * c_bend_rear_elbow_up
     rN_rear_elbow_up = np.sqrt(N_rear_elbow_up)
     del N_rear_elbow_up
     rM_rear_elbow_up = np.sqrt(M_rear_elbow_up)
-    t206 = t204 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
-    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t206)
-    del t206
-    t207 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t205 - t207
-    t208 = s_lag * c_bend_rear_elbow_up
+    t207 = t205 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
+    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t207)
+    del t207
+    t208 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t206 - t208
+    t209 = s_lag * c_bend_rear_elbow_up
     del c_bend_rear_elbow_up, s_lag
-    t209 = c_lag * s_bend_rear_elbow_up
+    t210 = c_lag * s_bend_rear_elbow_up
     del c_lag
-    s_relative_rear_elbow_up = t208 + t209
+    s_relative_rear_elbow_up = t209 + t210
     v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
     whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
-    t210 = _runtime.select(0.0 <= whole_alpha_rear_elbow_up, 1.0, -1.0)
     v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
-    folded_rear_elbow_up = t56 + np.abs(outward_rear_elbow_up) <= t49
-    del t49, t56
-    t211 = t57 * s_bend_rear_elbow_up
-    del t57
-    ahead_1_rear_elbow_up = _runtime.select(short, t27, t42 + t28 * M_rear_elbow_up * t204)
-    del M_rear_elbow_up, t204, t27, t28, t42
+    folded_rear_elbow_up = t55 + np.abs(outward_rear_elbow_up) <= t49
+    del t49, t55
+    t211 = t56 * s_bend_rear_elbow_up
+    del t56
+    ahead_1_rear_elbow_up = _runtime.select(short, t27, t42 + t28 * M_rear_elbow_up * t205)
+    del M_rear_elbow_up, t205, t27, t28, t42
     t212 = outward_rear_elbow_up * ahead_1_rear_elbow_up
     out_rear_elbow_up = t211 + t212
     t213 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
@@ -1504,174 +1502,169 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t219 = ahead * t218 + higher * ctheta2A_rear_elbow_up
     del ctheta2A_rear_elbow_up, t218
     t220 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t219
-    t221 = _runtime.select(0.0 <= -t220, 1.0, -1.0)
-    room_alpha_rear_elbow_up = whole_alpha_rear_elbow_up * t210 + t220 * t221
-    del t220, whole_alpha_rear_elbow_up
-    spent_alpha_rear_elbow_up = room_alpha_rear_elbow_up <= t67
+    room_alpha_rear_elbow_up = np.abs(whole_alpha_rear_elbow_up) - np.abs(t220)
+    spent_alpha_rear_elbow_up = room_alpha_rear_elbow_up <= t65
     tilt_rear_elbow_up = L_2W * c_relative_rear_elbow_up - a_3W * s_relative_rear_elbow_up
-    t222 = 1.0 / (t68 + np.abs(tilt_rear_elbow_up))
+    t221 = 1.0 / (t66 + np.abs(tilt_rear_elbow_up))
     del tilt_rear_elbow_up
     drawn_rear_elbow_up = L1 + L_2W * s_relative_rear_elbow_up + a_3W * c_relative_rear_elbow_up
     del c_relative_rear_elbow_up, s_relative_rear_elbow_up
-    t223 = v_2_rear_elbow_up * t210 * drawn_rear_elbow_up
-    del t210
-    t224 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t219
-    t225 = t223 - t221 * t224
-    del t221, t223, t224
-    t226 = _runtime.select(spent_alpha_rear_elbow_up, t222 * (size * np.abs(t225)), 0.0)
-    t227 = -(_runtime.FEASIBILITY * (t47 + t226)) <= room_alpha_rear_elbow_up
-    del t226
-    t228 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
+    t222 = v_2_rear_elbow_up * drawn_rear_elbow_up * _runtime.sign(whole_alpha_rear_elbow_up)
+    del whole_alpha_rear_elbow_up
+    t223 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t219
+    t224 = t222 - _runtime.sign(-t220) * t223
+    del t220, t222, t223
+    t225 = _runtime.select(spent_alpha_rear_elbow_up, t221 * (size * np.abs(t224)), 0.0)
+    t226 = -(_runtime.FEASIBILITY * (t47 + t225)) <= room_alpha_rear_elbow_up
+    del t225
+    t227 = room_alpha_rear_elbow_up - np.abs(-room_alpha_rear_elbow_up)
     del room_alpha_rear_elbow_up
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t225 * t228 / (2.0 * (t74 + t225 * t225)), 0.0)
-    del t225, t228
-    t229 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t76 * t229, 0.0)
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t224 * t227 / (2.0 * (t73 + t224 * t224)), 0.0)
+    del t224, t227
+    t228 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t75 * t228, 0.0)
+    del t228
+    t229 = p_1_rear_elbow_up + t219 * lean_alpha_rear_elbow_up
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t229, p_1_rear_elbow_up)
     del t229
-    t230 = p_1_rear_elbow_up + t219 * lean_alpha_rear_elbow_up
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t230, p_1_rear_elbow_up)
-    del t230
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t231 = _runtime.select(0.0 <= part_beta_rear_elbow_up, 1.0, -1.0)
-    t232 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t232, v_1_rear_elbow_up)
+    t230 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t230, v_1_rear_elbow_up)
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t233 = _runtime.select(0.0 <= whole_beta_rear_elbow_up, 1.0, -1.0)
-    t234 = part_beta_rear_elbow_up * t231 - whole_beta_rear_elbow_up * t233
-    del part_beta_rear_elbow_up, whole_beta_rear_elbow_up
-    spent_beta_rear_elbow_up = -t234 <= t67
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t232, v_2_rear_elbow_up)
-    del t232, v_1_rear_elbow_up, v_2_rear_elbow_up
-    t235 = drawn_rear_elbow_up * t233 * v_2_alpha_rear_elbow_up
-    del t233
-    t236 = t219 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    t231 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    spent_beta_rear_elbow_up = -t231 <= t65
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t230, v_2_rear_elbow_up)
+    del t230, v_1_rear_elbow_up, v_2_rear_elbow_up
+    t232 = drawn_rear_elbow_up * v_2_alpha_rear_elbow_up
+    t233 = t232 * _runtime.sign(whole_beta_rear_elbow_up)
+    del t232, whole_beta_rear_elbow_up
+    t234 = t219 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
     del p_1_rear_elbow_up
-    t237 = _runtime.select(spent_alpha_rear_elbow_up, t236, t219)
-    del spent_alpha_rear_elbow_up, t219, t236
-    t238 = t235 + (L1 - drawn_rear_elbow_up) * t231 * t237
-    del t231, t235
-    t239 = _runtime.select(spent_beta_rear_elbow_up, t222 * (size * np.abs(t238)), 0.0)
-    del t222
-    t240 = -(_runtime.FEASIBILITY * (t47 + t239)) <= -t234
-    del t239
-    t241 = t238 * (t234 + np.abs(t234)) / (2.0 * (t74 + t238 * t238))
-    del t234, t238
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t241, 0.0)
-    del t241
-    t242 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
+    t235 = _runtime.select(spent_alpha_rear_elbow_up, t234, t219)
+    del spent_alpha_rear_elbow_up, t219, t234
+    t236 = (L1 - drawn_rear_elbow_up) * t235 * _runtime.sign(part_beta_rear_elbow_up)
+    del part_beta_rear_elbow_up
+    t237 = t233 + t236
+    del t233, t236
+    t238 = _runtime.select(spent_beta_rear_elbow_up, t221 * (size * np.abs(t237)), 0.0)
+    del t221
+    t239 = -(_runtime.FEASIBILITY * (t47 + t238)) <= -t231
+    del t238
+    t240 = t237 * (t231 + np.abs(t231)) / (2.0 * (t73 + t237 * t237))
+    del t231, t237
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t240, 0.0)
+    del t240
+    t241 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
     del drawn_rear_elbow_up
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t76 * t242, 0.0)
-    del t242
-    t243 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
-    t244 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t243
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t244, v_1_alpha_rear_elbow_up)
-    del t244
-    sigma_uv_rear_elbow_up = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_up), 1.0, -1.0)
-    t245 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t75 * t241, 0.0)
+    del t241
+    t242 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
+    t243 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t242
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t243, v_1_alpha_rear_elbow_up)
+    del t243
+    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
+    t244 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
     del v_1_beta_rear_elbow_up
-    t246 = p_1_alpha_rear_elbow_up + t237 * lean_beta_rear_elbow_up
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t246, p_1_alpha_rear_elbow_up)
-    del t246
-    t247 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t245 = p_1_alpha_rear_elbow_up + t235 * lean_beta_rear_elbow_up
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t245, p_1_alpha_rear_elbow_up)
+    del t245
+    t246 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
     del p_1_beta_rear_elbow_up, sigma_uv_rear_elbow_up
-    t248 = t203 & t227 & t240 & (t88 <= -(t245 + np.abs(t247)))
-    del t227, t240
-    t249 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t247 = t204 & t226 & t239 & (t87 <= -(t244 + np.abs(t246)))
+    del t226, t239
+    t248 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del p_1_alpha_rear_elbow_up
-    p_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t237 - t249, t237)
-    del t237, t249
-    t250 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t243
-    del t243, v_1_alpha_rear_elbow_up
+    t249 = _runtime.select(spent_beta_rear_elbow_up, t235 - t248, t235)
+    del t235, t248
+    t250 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t242
+    del t242, v_1_alpha_rear_elbow_up
     v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t250, v_2_alpha_rear_elbow_up)
     del spent_beta_rear_elbow_up, t250, v_2_alpha_rear_elbow_up
     t251 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t245 <= _runtime.VANISHING * (64.0 * t251)
-    t252 = _runtime.select(0.0 <= v_2_beta_rear_elbow_up, p_2_beta_rear_elbow_up, -p_2_beta_rear_elbow_up)
-    part_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, t252, -t247)
-    del t247, t252
-    t253 = v_2_beta_rear_elbow_up * part_y_rear_elbow_up
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t251, -t245)
-    rest_rear_elbow_up = p_2_beta_rear_elbow_up - t253 / whole_y_rear_elbow_up
-    del t253
+    parallel_rear_elbow_up = -t244 <= _runtime.VANISHING * (64.0 * t251)
+    t252 = -(t249 * _runtime.sign(v_2_beta_rear_elbow_up))
+    t253 = _runtime.select(parallel_rear_elbow_up, t252, t246)
+    del t246, t252
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t251, -t244)
+    t254 = v_2_beta_rear_elbow_up * t253 / whole_y_rear_elbow_up
+    rest_rear_elbow_up = t249 + t254
+    del t254
     left_along_rear_elbow_up = L1 - np.abs(-rest_rear_elbow_up)
     spent_along_rear_elbow_up = left_along_rear_elbow_up <= t97
-    t254 = _runtime.select(spent_along_rear_elbow_up, t251 / (t98 - t245), 0.0)
+    t255 = _runtime.select(spent_along_rear_elbow_up, t251 / (t98 - t244), 0.0)
     del t251
-    t255 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t254)))
-    del t254
-    t256 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
-    t257 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t258 = v_2_beta_rear_elbow_up * t256 / (t245 * t245 + t257)
-    del t245, t256, t257
-    t259 = _runtime.select(0.0 <= rest_rear_elbow_up, -t258, t258)
-    del rest_rear_elbow_up, t258
-    t260 = part_y_rear_elbow_up + whole_y_rear_elbow_up * t259
-    del t259
-    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, t260, part_y_rear_elbow_up)
-    del part_y_rear_elbow_up, spent_along_rear_elbow_up, t260
-    t261 = whole_y_rear_elbow_up - eased_rear_elbow_up
-    t262 = t248 & (t255 <= left_along_rear_elbow_up) & (t88 <= t261)
-    del left_along_rear_elbow_up, t248, t255
-    t263 = whole_y_rear_elbow_up + eased_rear_elbow_up
-    del eased_rear_elbow_up, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t261, t108)
-    del t261
-    above_beta_rear_elbow_up = np.maximum(t263, t108)
-    t264 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t256 = -(_runtime.FEASIBILITY * (t86 * (1.0 + t255)))
+    del t255
+    t257 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
+    t258 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t259 = v_2_beta_rear_elbow_up * t257 / (t244 * t244 + t258)
+    del t244, t257, t258
+    t260 = whole_y_rear_elbow_up * (t259 * _runtime.sign(rest_rear_elbow_up))
+    del rest_rear_elbow_up, t259
+    t261 = _runtime.select(spent_along_rear_elbow_up, t253 + t260, t253)
+    del spent_along_rear_elbow_up, t253, t260
+    t262 = whole_y_rear_elbow_up + t261
+    t263 = t247 & (t256 <= left_along_rear_elbow_up) & (t87 <= t262)
+    del left_along_rear_elbow_up, t247, t256
+    t264 = whole_y_rear_elbow_up - t261
+    del t261, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t262, t108)
+    del t262
+    above_beta_rear_elbow_up = np.maximum(t264, t108)
+    t265 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t265 = 1.0 / total_beta_rear_elbow_up
+    t266 = 1.0 / total_beta_rear_elbow_up
     del total_beta_rear_elbow_up
-    t266 = t264 * t265
-    del t264
-    along_u_rear_elbow_up = p_2_beta_rear_elbow_up + v_2_beta_rear_elbow_up * t266
-    del p_2_beta_rear_elbow_up, v_2_beta_rear_elbow_up
-    t267 = L1 - along_u_rear_elbow_up
-    t268 = L1 + along_u_rear_elbow_up
+    t267 = t265 * t266
+    del t265
+    along_u_rear_elbow_up = t249 + v_2_beta_rear_elbow_up * t267
+    del t249, v_2_beta_rear_elbow_up
+    t268 = L1 - along_u_rear_elbow_up
+    t269 = L1 + along_u_rear_elbow_up
     del along_u_rear_elbow_up
-    t269 = t262 & (t88 <= t263) & (t88 <= t267) & (t88 <= t268)
-    del t262, t263
-    unreachable_3 = np.logical_not(t269)
-    del t269
-    t270 = _runtime.poison(invalid | unreachable_3)
-    t271 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t215, out_rear_elbow_up))
+    t270 = t263 & (t87 <= t264) & (t87 <= t268) & (t87 <= t269)
+    del t263, t264
+    unreachable_3 = np.logical_not(t270)
+    del t270
+    t271 = _runtime.poison(invalid | unreachable_3)
+    t272 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t215, out_rear_elbow_up))
     del out_rear_elbow_up, t215
-    t272 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t273 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t273 = np.arctan2(t272, 1.0)
+    t274 = np.arctan2(t273, 1.0)
+    del t273
+    t275 = t272 + t274
     del t272
-    t274 = t271 + t273
-    del t271
-    below_alpha_rear_elbow_up = np.maximum(t267, t108)
-    del t267
-    above_alpha_rear_elbow_up = np.maximum(t268, t108)
+    below_alpha_rear_elbow_up = np.maximum(t268, t108)
     del t268
-    t275 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    above_alpha_rear_elbow_up = np.maximum(t269, t108)
+    del t269
+    t276 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t276 = 1.0 / total_alpha_rear_elbow_up
+    t277 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t277 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t278 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t278 = np.arctan2(t275 * t276, t276 * t277)
-    del t275, t276, t277
-    t279 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
+    t279 = np.arctan2(t276 * t277, t277 * t278)
+    del t276, t277, t278
+    t280 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
     del rM_rear_elbow_up, rN_rear_elbow_up
-    t280 = _runtime.select(short, 0.0, 2.0 * t279)
-    del t279
-    t281 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t281 = _runtime.select(short, 0.0, 2.0 * t280)
+    del t280
+    t282 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t282 = t124 - t273 + (t280 + np.arctan2(t281, 1.0))
-    del t273, t281
-    t283 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t283 = t124 - t274 + (t281 + np.arctan2(t282, 1.0))
+    del t274, t282
+    t284 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t284 = t278 - np.arctan2(t266, t265 * t283)
-    del t265, t266, t283
-    c_relative_rear_elbow_down = t205 + t207
-    del t205, t207
-    s_relative_rear_elbow_down = t208 - t209
-    del t208, t209
+    t285 = t279 - np.arctan2(t267, t266 * t284)
+    del t266, t267, t284
+    c_relative_rear_elbow_down = t206 + t208
+    del t206, t208
+    s_relative_rear_elbow_down = t209 - t210
+    del t209, t210
     v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
     whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
-    t285 = _runtime.select(0.0 <= whole_alpha_rear_elbow_down, 1.0, -1.0)
     v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
     t286 = t211 - t212
     del t211, t212
@@ -1687,179 +1680,177 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t289 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
     del ahead, ctheta2A_rear_elbow_down, higher, stheta2A_rear_elbow_down
     t290 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t289
-    t291 = _runtime.select(0.0 <= -t290, 1.0, -1.0)
-    room_alpha_rear_elbow_down = whole_alpha_rear_elbow_down * t285 + t290 * t291
-    del t290, whole_alpha_rear_elbow_down
-    spent_alpha_rear_elbow_down = room_alpha_rear_elbow_down <= t67
+    room_alpha_rear_elbow_down = np.abs(whole_alpha_rear_elbow_down) - np.abs(t290)
+    spent_alpha_rear_elbow_down = room_alpha_rear_elbow_down <= t65
     tilt_rear_elbow_down = L_2W * c_relative_rear_elbow_down - a_3W * s_relative_rear_elbow_down
-    t292 = 1.0 / (t68 + np.abs(tilt_rear_elbow_down))
-    del t68, tilt_rear_elbow_down
+    t291 = 1.0 / (t66 + np.abs(tilt_rear_elbow_down))
+    del t66, tilt_rear_elbow_down
     drawn_rear_elbow_down = L1 + L_2W * s_relative_rear_elbow_down + a_3W * c_relative_rear_elbow_down
     del L_2W, a_3W, c_relative_rear_elbow_down, s_relative_rear_elbow_down
-    t293 = v_2_rear_elbow_down * t285 * drawn_rear_elbow_down
-    del t285
-    t294 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t289
-    t295 = t293 - t291 * t294
-    del t291, t293, t294
-    t296 = _runtime.select(spent_alpha_rear_elbow_down, t292 * (size * np.abs(t295)), 0.0)
-    t297 = -(_runtime.FEASIBILITY * (t47 + t296)) <= room_alpha_rear_elbow_down
-    del t296
-    t298 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
+    t292 = v_2_rear_elbow_down * drawn_rear_elbow_down * _runtime.sign(whole_alpha_rear_elbow_down)
+    del whole_alpha_rear_elbow_down
+    t293 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t289
+    t294 = t292 - _runtime.sign(-t290) * t293
+    del t290, t292, t293
+    t295 = _runtime.select(spent_alpha_rear_elbow_down, t291 * (size * np.abs(t294)), 0.0)
+    t296 = -(_runtime.FEASIBILITY * (t47 + t295)) <= room_alpha_rear_elbow_down
+    del t295
+    t297 = room_alpha_rear_elbow_down - np.abs(-room_alpha_rear_elbow_down)
     del room_alpha_rear_elbow_down
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t295 * t298 / (2.0 * (t74 + t295 * t295)), 0.0)
-    del t295, t298
-    t299 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t76 * t299, 0.0)
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t294 * t297 / (2.0 * (t73 + t294 * t294)), 0.0)
+    del t294, t297
+    t298 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t75 * t298, 0.0)
+    del t298
+    t299 = p_1_rear_elbow_down - t289 * lean_alpha_rear_elbow_down
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t299, p_1_rear_elbow_down)
     del t299
-    t300 = p_1_rear_elbow_down - t289 * lean_alpha_rear_elbow_down
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t300, p_1_rear_elbow_down)
-    del t300
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t301 = _runtime.select(0.0 <= part_beta_rear_elbow_down, 1.0, -1.0)
-    t302 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
-    t303 = v_1_rear_elbow_down - v_2_rear_elbow_down * t302
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t303, v_1_rear_elbow_down)
-    del t303
+    t300 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
+    t301 = v_1_rear_elbow_down - v_2_rear_elbow_down * t300
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t301, v_1_rear_elbow_down)
+    del t301
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t304 = _runtime.select(0.0 <= whole_beta_rear_elbow_down, 1.0, -1.0)
-    t305 = part_beta_rear_elbow_down * t301 - whole_beta_rear_elbow_down * t304
-    del part_beta_rear_elbow_down, whole_beta_rear_elbow_down
-    spent_beta_rear_elbow_down = -t305 <= t67
-    del t67
-    t306 = v_2_rear_elbow_down + v_1_rear_elbow_down * t302
-    del t302, v_1_rear_elbow_down
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t306, v_2_rear_elbow_down)
-    del t306, v_2_rear_elbow_down
-    t307 = drawn_rear_elbow_down * t304 * v_2_alpha_rear_elbow_down
-    del t304
-    t308 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t302 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    spent_beta_rear_elbow_down = -t302 <= t65
+    del t65
+    t303 = v_2_rear_elbow_down + v_1_rear_elbow_down * t300
+    del t300, v_1_rear_elbow_down
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t303, v_2_rear_elbow_down)
+    del t303, v_2_rear_elbow_down
+    t304 = drawn_rear_elbow_down * v_2_alpha_rear_elbow_down
+    t305 = t304 * _runtime.sign(whole_beta_rear_elbow_down)
+    del t304, whole_beta_rear_elbow_down
+    t306 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t309 = _runtime.select(spent_alpha_rear_elbow_down, t289 + t308, t289)
-    del spent_alpha_rear_elbow_down, t289, t308
-    t310 = t307 - (L1 - drawn_rear_elbow_down) * t301 * t309
-    del t301, t307
-    t311 = _runtime.select(spent_beta_rear_elbow_down, t292 * (size * np.abs(t310)), 0.0)
-    del size, t292
-    t312 = -(_runtime.FEASIBILITY * (t47 + t311)) <= -t305
-    del t311, t47
-    t313 = t310 * (t305 + np.abs(t305)) / (2.0 * (t74 + t310 * t310))
-    del t305, t310, t74
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t313, 0.0)
-    del t313
-    t314 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
+    t307 = _runtime.select(spent_alpha_rear_elbow_down, t289 + t306, t289)
+    del spent_alpha_rear_elbow_down, t289, t306
+    t308 = (L1 - drawn_rear_elbow_down) * t307 * _runtime.sign(part_beta_rear_elbow_down)
+    del part_beta_rear_elbow_down
+    t309 = t305 - t308
+    del t305, t308
+    t310 = _runtime.select(spent_beta_rear_elbow_down, t291 * (size * np.abs(t309)), 0.0)
+    del size, t291
+    t311 = -(_runtime.FEASIBILITY * (t47 + t310)) <= -t302
+    del t310, t47
+    t312 = t309 * (t302 + np.abs(t302)) / (2.0 * (t73 + t309 * t309))
+    del t302, t309, t73
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t312, 0.0)
+    del t312
+    t313 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
     del drawn_rear_elbow_down
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t76 * t314, 0.0)
-    del t314, t76
-    t315 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
-    t316 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t315
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t316, v_1_alpha_rear_elbow_down)
-    del t316
-    sigma_uv_rear_elbow_down = _runtime.select(0.0 <= -(L1 * v_1_beta_rear_elbow_down), 1.0, -1.0)
-    t317 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t75 * t313, 0.0)
+    del t313, t75
+    t314 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
+    t315 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t314
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t315, v_1_alpha_rear_elbow_down)
+    del t315
+    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
+    t316 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     del v_1_beta_rear_elbow_down
-    t318 = p_1_alpha_rear_elbow_down - t309 * lean_beta_rear_elbow_down
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t318, p_1_alpha_rear_elbow_down)
-    del t318
-    t319 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t317 = p_1_alpha_rear_elbow_down - t307 * lean_beta_rear_elbow_down
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t317, p_1_alpha_rear_elbow_down)
+    del t317
+    t318 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
     del p_1_beta_rear_elbow_down, sigma_uv_rear_elbow_down
-    t320 = t203 & t297 & t312 & (t88 <= -(t317 + np.abs(t319)))
-    del t203, t297, t312
-    t321 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t319 = t204 & t296 & t311 & (t87 <= -(t316 + np.abs(t318)))
+    del t204, t296, t311
+    t320 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del p_1_alpha_rear_elbow_down
-    t322 = _runtime.select(spent_beta_rear_elbow_down, t309 + t321, t309)
-    del t309, t321
-    t323 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t315
-    del t315, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t323, v_2_alpha_rear_elbow_down)
-    del spent_beta_rear_elbow_down, t323, v_2_alpha_rear_elbow_down
-    t324 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t317 <= _runtime.VANISHING * (64.0 * t324)
-    t325 = _runtime.select(0.0 <= v_2_beta_rear_elbow_down, -t322, t322)
-    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t325, -t319)
-    del t319, t325
-    t326 = v_2_beta_rear_elbow_down * part_y_rear_elbow_down
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t324, -t317)
-    t327 = t322 + t326 / whole_y_rear_elbow_down
+    t321 = _runtime.select(spent_beta_rear_elbow_down, t307 + t320, t307)
+    del t307, t320
+    t322 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t314
+    del t314, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t322, v_2_alpha_rear_elbow_down)
+    del spent_beta_rear_elbow_down, t322, v_2_alpha_rear_elbow_down
+    t323 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t316 <= _runtime.VANISHING * (64.0 * t323)
+    t324 = t321 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t325 = _runtime.select(parallel_rear_elbow_down, t324, t318)
+    del t318, t324
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t323, -t316)
+    t326 = v_2_beta_rear_elbow_down * t325 / whole_y_rear_elbow_down
+    t327 = t321 - t326
     del t326
     left_along_rear_elbow_down = L1 - np.abs(t327)
     spent_along_rear_elbow_down = left_along_rear_elbow_down <= t97
     del t97
-    t328 = _runtime.select(spent_along_rear_elbow_down, t324 / (t98 - t317), 0.0)
-    del t324, t98
-    t329 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t328)))
-    del t328, t87
+    t328 = _runtime.select(spent_along_rear_elbow_down, t323 / (t98 - t316), 0.0)
+    del t323, t98
+    t329 = -(_runtime.FEASIBILITY * (t86 * (1.0 + t328)))
+    del t328, t86
     t330 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
     t331 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t332 = v_2_beta_rear_elbow_down * t330 / (t317 * t317 + t331)
-    del t317, t330, t331
-    t333 = whole_y_rear_elbow_down * _runtime.select(0.0 <= -t327, -t332, t332)
+    t332 = v_2_beta_rear_elbow_down * t330 / (t316 * t316 + t331)
+    del t316, t330, t331
+    t333 = whole_y_rear_elbow_down * (t332 * _runtime.sign(-t327))
     del t327, t332
-    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down + t333, part_y_rear_elbow_down)
-    del part_y_rear_elbow_down, spent_along_rear_elbow_down, t333
-    t334 = whole_y_rear_elbow_down - eased_rear_elbow_down
-    t335 = t320 & (t329 <= left_along_rear_elbow_down) & (t88 <= t334)
-    del left_along_rear_elbow_down, t320, t329
-    t336 = whole_y_rear_elbow_down + eased_rear_elbow_down
-    del eased_rear_elbow_down, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t334, t108)
-    del t334
-    above_beta_rear_elbow_down = np.maximum(t336, t108)
-    t337 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t334 = _runtime.select(spent_along_rear_elbow_down, t325 + t333, t325)
+    del spent_along_rear_elbow_down, t325, t333
+    t335 = whole_y_rear_elbow_down + t334
+    t336 = t319 & (t329 <= left_along_rear_elbow_down) & (t87 <= t335)
+    del left_along_rear_elbow_down, t319, t329
+    t337 = whole_y_rear_elbow_down - t334
+    del t334, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t335, t108)
+    del t335
+    above_beta_rear_elbow_down = np.maximum(t337, t108)
+    t338 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t338 = 1.0 / total_beta_rear_elbow_down
+    t339 = 1.0 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t339 = t337 * t338
-    del t337
-    t340 = t322 - v_2_beta_rear_elbow_down * t339
-    del t322, v_2_beta_rear_elbow_down
-    t341 = L1 + t340
-    t342 = L1 - t340
-    del t340
-    t343 = t335 & (t88 <= t336) & (t88 <= t341) & (t88 <= t342)
-    del t335, t336, t88
-    unreachable_4 = np.logical_not(t343)
-    del t343
-    t344 = _runtime.poison(invalid | unreachable_4)
-    t345 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t286))
-    del t286, up_rear_elbow_down
-    t346 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t347 = np.arctan2(t346, 1.0)
-    del t346
-    t348 = t345 + t347
-    del t345
-    below_alpha_rear_elbow_down = np.maximum(t341, t108)
+    t340 = t338 * t339
+    del t338
+    t341 = t321 - v_2_beta_rear_elbow_down * t340
+    del t321, v_2_beta_rear_elbow_down
+    t342 = L1 + t341
+    t343 = L1 - t341
     del t341
-    above_alpha_rear_elbow_down = np.maximum(t342, t108)
-    del t108, t342
-    t349 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t344 = t336 & (t87 <= t337) & (t87 <= t342) & (t87 <= t343)
+    del t336, t337, t87
+    unreachable_4 = np.logical_not(t344)
+    del t344
+    t345 = _runtime.poison(invalid | unreachable_4)
+    t346 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t286))
+    del t286, up_rear_elbow_down
+    t347 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
+    t348 = np.arctan2(t347, 1.0)
+    del t347
+    t349 = t346 + t348
+    del t346
+    below_alpha_rear_elbow_down = np.maximum(t342, t108)
+    del t342
+    above_alpha_rear_elbow_down = np.maximum(t343, t108)
+    del t108, t343
+    t350 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t350 = 1.0 / total_alpha_rear_elbow_down
+    t351 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t351 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t352 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t352 = np.arctan2(t349 * t350, t350 * t351)
-    del t349, t350, t351
-    t353 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t353 = np.arctan2(t350 * t351, t351 * t352)
+    del t350, t351, t352
+    t354 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t354 = t124 - t280 - (t347 - np.arctan2(t353, 1.0))
-    del t124, t280, t347, t353
-    t355 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t355 = t124 - t281 - (t348 - np.arctan2(t354, 1.0))
+    del t124, t281, t348, t354
+    t356 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t356 = t352 - np.arctan2(t339, t338 * t355)
-    del t338, t339, t355
-    t357 = nowhere | folded | short
+    t357 = t353 - np.arctan2(t340, t339 * t356)
+    del t339, t340, t356
+    t358 = nowhere | folded | short
     del folded
-    t358 = _runtime.status(invalid, unreachable, t357 | parallel)
+    t359 = _runtime.status(invalid, unreachable, t358 | parallel)
     del parallel, unreachable
-    t359 = _runtime.status(invalid, unreachable_2, t357 | parallel_front_elbow_down)
-    del parallel_front_elbow_down, t357, unreachable_2
-    t360 = nowhere | folded_rear_elbow_up | short
+    t360 = _runtime.status(invalid, unreachable_2, t358 | parallel_front_elbow_down)
+    del parallel_front_elbow_down, t358, unreachable_2
+    t361 = nowhere | folded_rear_elbow_up | short
     del folded_rear_elbow_up, nowhere, short
-    t361 = _runtime.status(invalid, unreachable_3, t360 | parallel_rear_elbow_up)
+    t362 = _runtime.status(invalid, unreachable_3, t361 | parallel_rear_elbow_up)
     del parallel_rear_elbow_up, unreachable_3
-    t362 = _runtime.status(invalid, unreachable_4, t360 | parallel_rear_elbow_down)
-    del invalid, parallel_rear_elbow_down, t360, unreachable_4
+    t363 = _runtime.status(invalid, unreachable_4, t361 | parallel_rear_elbow_down)
+    del invalid, parallel_rear_elbow_down, t361, unreachable_4
     return (
         t16 + t114,
         _runtime.wrap(t117 - t120) + t114,
@@ -1867,28 +1858,28 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap(t117 + t120) + t114,
         _runtime.wrap(-(t126 + t122)) + t114,
         t127 + t114,
-        t16 + t186,
-        _runtime.wrap(t190 - t194) + t186,
-        _runtime.wrap(t196 + t198) + t186,
-        _runtime.wrap(t190 + t194) + t186,
-        _runtime.wrap(t196 - t198) + t186,
-        t127 + t186,
-        t199 + t270,
-        _runtime.wrap(t274 - t278) + t270,
-        _runtime.wrap(t282 + t284) + t270,
-        _runtime.wrap(t274 + t278) + t270,
-        _runtime.wrap(t282 - t284) + t270,
-        t127 + t270,
-        t199 + t344,
-        _runtime.wrap(t348 - t352) + t344,
-        _runtime.wrap(t354 + t356) + t344,
-        _runtime.wrap(t348 + t352) + t344,
-        _runtime.wrap(t354 - t356) + t344,
-        t127 + t344,
-        t358,
+        t16 + t187,
+        _runtime.wrap(t191 - t195) + t187,
+        _runtime.wrap(t197 + t199) + t187,
+        _runtime.wrap(t191 + t195) + t187,
+        _runtime.wrap(t197 - t199) + t187,
+        t127 + t187,
+        t200 + t271,
+        _runtime.wrap(t275 - t279) + t271,
+        _runtime.wrap(t283 + t285) + t271,
+        _runtime.wrap(t275 + t279) + t271,
+        _runtime.wrap(t283 - t285) + t271,
+        t127 + t271,
+        t200 + t345,
+        _runtime.wrap(t349 - t353) + t345,
+        _runtime.wrap(t355 + t357) + t345,
+        _runtime.wrap(t349 + t353) + t345,
+        _runtime.wrap(t355 - t357) + t345,
+        t127 + t345,
         t359,
-        t361,
+        t360,
         t362,
+        t363,
     )
 
 

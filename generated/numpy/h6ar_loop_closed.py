@@ -3,14 +3,14 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 61 compare and select, 81 add, 3 atan2, 21 divide, 121 multiply, 6 sincos, 8 sqrt
-#   pose: 58 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 8 sqrt
+#   fk: 60 compare and select, 81 add, 3 atan2, 21 divide, 121 multiply, 6 sincos, 8 sqrt
+#   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 8 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 56 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
-#   determinant: 56 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
-#   singularities: 56 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
-#   ik: 370 compare and select, 374 add, 28 atan2, 41 divide, 517 multiply, 3 sincos, 31 sqrt
+#   jacobian: 55 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
+#   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
+#   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
+#   ik: 366 compare and select, 374 add, 28 atan2, 41 divide, 517 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -142,147 +142,141 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     del c3R_half, s3R_half
     straight_right = L2 * t25 + a3 * t26
     t27 = 0.0 <= straight_right
-    t28 = _runtime.select(t27, straight_right, -straight_right)
+    large_right = fore + np.abs(straight_right)
     del straight_right
-    large_right = fore + t28
-    del t28
-    t29 = L2 * t26 - a3 * t25
+    t28 = L2 * t26 - a3 * t25
     del t25, t26
-    small_right = t29 * t29 / large_right
-    t30 = _runtime.select(t27, large_right, small_right)
-    t31 = L1 * 2.0
-    t32 = L2 * t16 + a3 * t15
+    small_right = t28 * t28 / large_right
+    t29 = _runtime.select(t27, large_right, small_right)
+    t30 = L1 * 2.0
+    t31 = L2 * t16 + a3 * t15
     del t15, t16
-    t33 = c2L_half * c2R_half
-    t34 = s2L_half * s2R_half
-    t35 = t33 - t34
-    t36 = t32 * t10 + t35 * t21
+    t32 = c2L_half * c2R_half
+    t33 = s2L_half * s2R_half
+    t34 = t32 - t33
+    t35 = t31 * t10 + t34 * t21
     del t10, t21
-    gap = t22 * t22 + t36 * t36
-    t37 = s3L_half * c3L_half
-    t38 = t37 + t37
-    del t37
-    t39 = c3L_half * c3L_half - s3L_half * s3L_half
+    gap = t22 * t22 + t35 * t35
+    t36 = s3L_half * c3L_half
+    t37 = t36 + t36
+    del t36
+    t38 = c3L_half * c3L_half - s3L_half * s3L_half
     del c3L_half, s3L_half
-    straight_left = L2 * t38 + a3 * t39
-    t40 = 0.0 <= straight_left
-    t41 = _runtime.select(t40, straight_left, -straight_left)
+    straight_left = L2 * t37 + a3 * t38
+    t39 = 0.0 <= straight_left
+    large_left = fore + np.abs(straight_left)
     del straight_left
-    large_left = fore + t41
-    del t41
-    t42 = L2 * t39 - a3 * t38
-    del t38, t39
-    small_left = t42 * t42 / large_left
-    del t42
-    M_left = _runtime.select(t40, large_left, small_left) * t31
-    t43 = t30 * t31 / 2.0 - (gap - M_left / 2.0)
-    del M_left, t30
-    M_virtual = np.maximum(t43, 0.0)
-    N_left = _runtime.select(t40, small_left, large_left) * t31
-    del large_left, small_left, t40
-    t44 = _runtime.select(t27, small_right, large_right)
+    t40 = L2 * t38 - a3 * t37
+    del t37, t38
+    small_left = t40 * t40 / large_left
+    del t40
+    M_left = _runtime.select(t39, large_left, small_left) * t30
+    t41 = t29 * t30 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t29
+    M_virtual = np.maximum(t41, 0.0)
+    N_left = _runtime.select(t39, small_left, large_left) * t30
+    del large_left, small_left, t39
+    t42 = _runtime.select(t27, small_right, large_right)
     del large_right, small_right, t27
-    t45 = gap + N_left / 2.0 + t44 * t31 / 2.0
-    del N_left, t31, t44
-    N_virtual = np.maximum(t45, 0.0)
+    t43 = gap + N_left / 2.0 + t42 * t30 / 2.0
+    del N_left, t30, t42
+    N_virtual = np.maximum(t43, 0.0)
     whole_virtual = M_virtual + N_virtual
     c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     del bare_virtual
-    t46 = 2.0 * _runtime.select(0.0 <= -t29, 1.0, -1.0)
-    del t29
-    t47 = t46 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    del N_virtual, t46
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t47 / whole_virtual)
-    del t47
+    t44 = 2.0 * _runtime.sign(-t28) * np.sqrt(N_virtual)
+    del N_virtual, t28
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t44 * np.sqrt(M_virtual) / whole_virtual)
+    del t44
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t48 = c2L_half * t8 + s2L_half * t9
+    t45 = c2L_half * t8 + s2L_half * t9
     del c2L_half, s2L_half, t8, t9
-    t49 = L1 * (t33 + t34)
-    del t33, t34
-    t50 = t48 * t17 - t20 * t49
+    t46 = L1 * (t32 + t33)
+    del t32, t33
+    t47 = t45 * t17 - t20 * t46
     del t17, t20
-    r_I = t32 * t48 + t35 * t49
-    del t32, t35, t48, t49
-    t51 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.abs(-t50) + np.abs(r_I) <= t51
-    del t51
-    t52 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    r_I = t31 * t45 + t34 * t46
+    del t31, t34, t45, t46
+    t48 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.abs(-t47) + np.abs(r_I) <= t48
+    del t48
+    t49 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     del M_virtual, whole_virtual
-    ahead_1_virtual = _runtime.select(short_virtual, t23, t52)
-    del short_virtual, t52
-    t53 = fore * s_bend_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t23, t49)
+    del short_virtual, t49
+    t50 = fore * s_bend_virtual
     del fore
-    out_virtual = r_I * ahead_1_virtual - t50 * t53
-    t54 = t50 * ahead_1_virtual + r_I * t53
-    del ahead_1_virtual, r_I, t50, t53
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
+    out_virtual = r_I * ahead_1_virtual - t47 * t50
+    t51 = t47 * ahead_1_virtual + r_I * t50
+    del ahead_1_virtual, r_I, t47, t50
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
     ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
     del out_virtual
-    t55 = s2R_half * c2R_half
+    t52 = s2R_half * c2R_half
     del c2R_half, s2R_half
-    stheta2A = _runtime.select(folded_virtual, t55 + t55, -(t54 / norm_virtual))
-    del folded_virtual, norm_virtual, t54, t55
+    stheta2A = _runtime.select(folded_virtual, t52 + t52, -(t51 / norm_virtual))
+    del folded_virtual, norm_virtual, t51, t52
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
     del c_relative_virtual, s_relative_virtual
-    t56 = t22 * ctheta23A + t36 * stheta23A
-    t57 = d * d
-    tilted = np.sqrt(t57 + t56 * t56)
-    t58 = t56 / tilted
-    del t56
+    t53 = t22 * ctheta23A + t35 * stheta23A
+    t54 = d * d
+    tilted = np.sqrt(t54 + t53 * t53)
+    t55 = t53 / tilted
+    del t53
     c_phi = d / tilted
-    base = np.sqrt(t57 + gap)
-    del gap, t57
-    t59 = (t22 * stheta23A - t36 * ctheta23A) / base
-    del t22, t36
-    t60 = base - (gs - al)
-    t61 = gs + al
-    t62 = t61 - base
-    wrist = np.sqrt(np.maximum(t60, 0.0)) * np.sqrt(np.maximum(t62, 0.0))
-    t63 = loff + lp * c + wrist
+    base = np.sqrt(t54 + gap)
+    del gap, t54
+    t56 = (t22 * stheta23A - t35 * ctheta23A) / base
+    del t22, t35
+    t57 = base - (gs - al)
+    t58 = gs + al
+    t59 = t58 - base
+    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
+    t60 = loff + lp * c + wrist
     del wrist
-    t64 = t59 * t63
-    t65 = t1 * t58 + c_phi * t64
-    t66 = a3 + t1 * c_phi - t58 * t64
-    del t1, t64
+    t61 = t56 * t60
+    t62 = t1 * t55 + c_phi * t61
+    t63 = a3 + t1 * c_phi - t55 * t61
+    del t1, t61
     c_psi = tilted / base
     del base, tilted
-    t67 = L2 + t63 * c_psi
-    del t63
-    t68 = L1 * ctheta2A + ctheta23A * t66 + stheta23A * t67
+    t64 = L2 + t60 * c_psi
+    del t60
+    t65 = L1 * ctheta2A + ctheta23A * t63 + stheta23A * t64
     del ctheta2A
-    t69 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t70 = t69 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t69
-    t71 = t70 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t70
-    t72 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    invalid = np.logical_not(t71 & (0.0 <= loff) & (0.0 <= lp) & t72)
-    del t71, t72
-    t73 = -(_runtime.FEASIBILITY * (d * t23))
+    t66 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t67 = t66 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t66
+    t68 = t67 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t67
+    t69 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    invalid = np.logical_not(t68 & (0.0 <= loff) & (0.0 <= lp) & t69)
+    del t68, t69
+    t70 = -(_runtime.FEASIBILITY * (d * t23))
     del t23
-    t74 = -(_runtime.FEASIBILITY * t61)
-    del t61
-    t75 = (t73 <= t45) & (t73 <= t43) & (t74 <= t62) & (t74 <= t60)
-    del t43, t45, t60, t62, t73, t74
-    t76 = _runtime.poison(invalid | np.logical_not(t75))
-    del invalid, t75
-    t77 = d1 + L1 * stheta2A - ctheta23A * t67 + stheta23A * t66
-    del ctheta23A, stheta23A, stheta2A, t66, t67
-    t78 = _runtime.wrap_cut(np.arctan2(-t59, c_psi)) + t76
-    del c_psi, t59
-    t79 = _runtime.wrap_cut(-np.arctan2(-t58, c_phi)) + t76
-    del c_phi, t58
+    t71 = -(_runtime.FEASIBILITY * t58)
+    del t58
+    t72 = (t70 <= t43) & (t70 <= t41) & (t71 <= t59) & (t71 <= t57)
+    del t41, t43, t57, t59, t70, t71
+    t73 = _runtime.poison(invalid | np.logical_not(t72))
+    del invalid, t72
+    t74 = d1 + L1 * stheta2A - ctheta23A * t64 + stheta23A * t63
+    del ctheta23A, stheta23A, stheta2A, t63, t64
+    t75 = _runtime.wrap_cut(np.arctan2(-t56, c_psi)) + t73
+    del c_psi, t56
+    t76 = _runtime.wrap_cut(-np.arctan2(-t55, c_phi)) + t73
+    del c_phi, t55
     return (
-        s1 * t65 + c1 * t68 + t76,
-        s1 * t68 - c1 * t65 + t76,
-        t77 + t76,
-        t78,
-        t79,
-        _runtime.wrap_cut(np.arctan2(s, c)) + t76,
+        s1 * t62 + c1 * t65 + t73,
+        s1 * t65 - c1 * t62 + t73,
+        t74 + t73,
+        t75,
+        t76,
+        _runtime.wrap_cut(np.arctan2(s, c)) + t73,
     )
 
 
@@ -367,65 +361,59 @@ def _pose(
     del c3R_half, s3R_half
     straight_right = L2 * t29 + a3 * t30
     t31 = 0.0 <= straight_right
-    t32 = _runtime.select(t31, straight_right, -straight_right)
+    large_right = fore + np.abs(straight_right)
     del straight_right
-    large_right = fore + t32
-    del t32
-    t33 = L2 * t30 - a3 * t29
+    t32 = L2 * t30 - a3 * t29
     del t29, t30
-    small_right = t33 * t33 / large_right
-    t34 = _runtime.select(t31, large_right, small_right)
-    t35 = L1 * 2.0
-    t36 = s2L_half * t7 - c2L_half * t8
+    small_right = t32 * t32 / large_right
+    t33 = _runtime.select(t31, large_right, small_right)
+    t34 = L1 * 2.0
+    t35 = s2L_half * t7 - c2L_half * t8
     del c2L_half, s2L_half, t7, t8
-    t37 = L1 * (t17 - t18)
+    t36 = L1 * (t17 - t18)
     del t17, t18
-    t38 = t36 * t16 - t19 * t37
+    t37 = t35 * t16 - t19 * t36
     del t16, t19
-    t39 = t24 * t36 + t25 * t37
-    del t24, t25, t36, t37
-    gap = t38 * t38 + t39 * t39
-    t40 = s3L_half * c3L_half
-    t41 = t40 + t40
-    del t40
-    t42 = c3L_half * c3L_half - s3L_half * s3L_half
+    t38 = t24 * t35 + t25 * t36
+    del t24, t25, t35, t36
+    gap = t37 * t37 + t38 * t38
+    t39 = s3L_half * c3L_half
+    t40 = t39 + t39
+    del t39
+    t41 = c3L_half * c3L_half - s3L_half * s3L_half
     del c3L_half, s3L_half
-    straight_left = L2 * t41 + a3 * t42
-    t43 = 0.0 <= straight_left
-    t44 = _runtime.select(t43, straight_left, -straight_left)
+    straight_left = L2 * t40 + a3 * t41
+    t42 = 0.0 <= straight_left
+    large_left = fore + np.abs(straight_left)
     del straight_left
-    large_left = fore + t44
-    del t44
-    t45 = L2 * t42 - a3 * t41
-    del t41, t42
-    small_left = t45 * t45 / large_left
-    del t45
-    M_left = _runtime.select(t43, large_left, small_left) * t35
-    t46 = t34 * t35 / 2.0 - (gap - M_left / 2.0)
-    del M_left, t34
-    M_virtual = np.maximum(t46, 0.0)
-    N_left = _runtime.select(t43, small_left, large_left) * t35
-    del large_left, small_left, t43
-    t47 = _runtime.select(t31, small_right, large_right)
+    t43 = L2 * t41 - a3 * t40
+    del t40, t41
+    small_left = t43 * t43 / large_left
+    del t43
+    M_left = _runtime.select(t42, large_left, small_left) * t34
+    t44 = t33 * t34 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t33
+    M_virtual = np.maximum(t44, 0.0)
+    N_left = _runtime.select(t42, small_left, large_left) * t34
+    del large_left, small_left, t42
+    t45 = _runtime.select(t31, small_right, large_right)
     del large_right, small_right, t31
-    t48 = gap + N_left / 2.0 + t47 * t35 / 2.0
-    del N_left, t35, t47
-    N_virtual = np.maximum(t48, 0.0)
+    t46 = gap + N_left / 2.0 + t45 * t34 / 2.0
+    del N_left, t34, t45
+    N_virtual = np.maximum(t46, 0.0)
     whole_virtual = M_virtual + N_virtual
-    t49 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
-    ahead_1_virtual = _runtime.select(short_virtual, t27, t49)
-    del t49
-    t50 = 2.0 * _runtime.select(0.0 <= -t33, 1.0, -1.0)
-    del t33
-    t51 = t50 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    del t50
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t51 / whole_virtual)
-    del t51
-    t52 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t23 * t52
-    t53 = t23 * ahead_1_virtual + r_I * t52
-    del ahead_1_virtual, r_I, t23, t52
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t53 * t53)
+    t47 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t27, t47)
+    del t47
+    t48 = 2.0 * _runtime.sign(-t32) * np.sqrt(N_virtual)
+    del t32
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t48 * np.sqrt(M_virtual) / whole_virtual)
+    del t48
+    t49 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t23 * t49
+    t50 = t23 * ahead_1_virtual + r_I * t49
+    del ahead_1_virtual, r_I, t23, t49
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t50 * t50)
     ctheta2A = _runtime.select(folded_virtual, c2R_half * c2R_half - s2R_half * s2R_half, out_virtual / norm_virtual)
     del out_virtual
     bare_virtual = fore <= t27 * _runtime.VANISHING
@@ -435,107 +423,107 @@ def _pose(
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     del bare_virtual, fore
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t54 = s2R_half * c2R_half
+    t51 = s2R_half * c2R_half
     del c2R_half, s2R_half
-    stheta2A = _runtime.select(folded_virtual, t54 + t54, -(t53 / norm_virtual))
-    del folded_virtual, norm_virtual, t53, t54
+    stheta2A = _runtime.select(folded_virtual, t51 + t51, -(t50 / norm_virtual))
+    del folded_virtual, norm_virtual, t50, t51
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t55 = c1 * ctheta23A
-    t56 = d * d
+    t52 = c1 * ctheta23A
+    t53 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
     del c_relative_virtual, s_relative_virtual
-    t57 = t38 * ctheta23A + t39 * stheta23A
-    tilted = np.sqrt(t56 + t57 * t57)
+    t54 = t37 * ctheta23A + t38 * stheta23A
+    tilted = np.sqrt(t53 + t54 * t54)
     c_phi = d / tilted
-    t58 = t57 / tilted
-    del t57
-    base = np.sqrt(t56 + gap)
-    del gap, t56
-    t59 = (t38 * stheta23A - t39 * ctheta23A) / base
-    del t38, t39
-    t60 = t58 * t59
-    hand_11 = c * c_phi + s * t60
-    t61 = c_phi * t59
-    hand_21 = c * t58 - s * t61
-    t62 = c1 * stheta23A
+    t55 = t54 / tilted
+    del t54
+    base = np.sqrt(t53 + gap)
+    del gap, t53
+    t56 = (t37 * stheta23A - t38 * ctheta23A) / base
+    del t37, t38
+    t57 = t55 * t56
+    hand_11 = c * c_phi + s * t57
+    t58 = c_phi * t56
+    hand_21 = c * t55 - s * t58
+    t59 = c1 * stheta23A
     c_psi = tilted / base
     del tilted
-    t63 = s * c_psi
-    t64 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t65 = t64 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t64
-    t66 = t65 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t65
-    t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    invalid = np.logical_not(t66 & (0.0 <= loff) & (0.0 <= lp) & t67)
-    del t66, t67
-    t68 = -(_runtime.FEASIBILITY * (d * t27))
+    t60 = s * c_psi
+    t61 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t62 = t61 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t61
+    t63 = t62 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t62
+    t64 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    invalid = np.logical_not(t63 & (0.0 <= loff) & (0.0 <= lp) & t64)
+    del t63, t64
+    t65 = -(_runtime.FEASIBILITY * (d * t27))
     del t27
-    t69 = gs + al
-    t70 = -(_runtime.FEASIBILITY * t69)
-    t71 = t69 - base
-    del t69
-    t72 = base - (gs - al)
+    t66 = gs + al
+    t67 = -(_runtime.FEASIBILITY * t66)
+    t68 = t66 - base
+    del t66
+    t69 = base - (gs - al)
     del base
-    t73 = (t68 <= t48) & (t68 <= t46) & (t70 <= t71) & (t70 <= t72)
-    del t46, t48, t68, t70
-    t74 = _runtime.poison(invalid | np.logical_not(t73))
-    del invalid, t73
-    t75 = t55 * hand_11 + s1 * hand_21 - t62 * t63 + t74
-    t76 = t58 * c_psi
+    t70 = (t65 <= t46) & (t65 <= t44) & (t67 <= t68) & (t67 <= t69)
+    del t44, t46, t65, t67
+    t71 = _runtime.poison(invalid | np.logical_not(t70))
+    del invalid, t70
+    t72 = t52 * hand_11 + s1 * hand_21 - t59 * t60 + t71
+    t73 = t55 * c_psi
     hand_22 = c_phi * c_psi
-    t77 = -(t55 * t76 - s1 * hand_22 + t62 * t59) + t74
-    hand_13 = s * c_phi - c * t60
-    t78 = s * t58 + c * t61
+    t74 = -(t52 * t73 - s1 * hand_22 + t59 * t56) + t71
+    hand_13 = s * c_phi - c * t57
+    t75 = s * t55 + c * t58
     hand_33 = c * c_psi
-    t79 = t55 * hand_13 + s1 * t78 + t62 * hand_33 + t74
-    del t55, t62
-    t80 = lp * s
+    t76 = t52 * hand_13 + s1 * t75 + t59 * hand_33 + t71
+    del t52, t59
+    t77 = lp * s
     del s
-    wrist = np.sqrt(np.maximum(t72, 0.0)) * np.sqrt(np.maximum(t71, 0.0))
-    del t71, t72
-    t81 = loff + lp * c + wrist
+    wrist = np.sqrt(np.maximum(t69, 0.0)) * np.sqrt(np.maximum(t68, 0.0))
+    del t68, t69
+    t78 = loff + lp * c + wrist
     del c, wrist
-    t82 = t80 * t58 + t61 * t81
-    del t58, t61
-    t83 = a3 + t80 * c_phi - t60 * t81
-    del c_phi, t60, t80
-    t84 = L2 + c_psi * t81
-    del c_psi, t81
-    t85 = L1 * ctheta2A + ctheta23A * t83 + stheta23A * t84
+    t79 = t77 * t55 + t58 * t78
+    del t55, t58
+    t80 = a3 + t77 * c_phi - t57 * t78
+    del c_phi, t57, t77
+    t81 = L2 + c_psi * t78
+    del c_psi, t78
+    t82 = L1 * ctheta2A + ctheta23A * t80 + stheta23A * t81
     del ctheta2A
-    t86 = s1 * ctheta23A
-    t87 = s1 * stheta23A
-    t88 = t86 * hand_11 - c1 * hand_21 - t87 * t63 + t74
+    t83 = s1 * ctheta23A
+    t84 = s1 * stheta23A
+    t85 = t83 * hand_11 - c1 * hand_21 - t84 * t60 + t71
     del hand_21
-    t89 = -(t86 * t76 + c1 * hand_22 + t87 * t59) + t74
+    t86 = -(t83 * t73 + c1 * hand_22 + t84 * t56) + t71
     del hand_22
-    t90 = t86 * hand_13 - c1 * t78 + t87 * hand_33 + t74
-    del t78, t86, t87
-    t91 = stheta23A * hand_13 - ctheta23A * hand_33 + t74
+    t87 = t83 * hand_13 - c1 * t75 + t84 * hand_33 + t71
+    del t75, t83, t84
+    t88 = stheta23A * hand_13 - ctheta23A * hand_33 + t71
     del hand_13, hand_33
-    t92 = d1 + L1 * stheta2A - ctheta23A * t84 + stheta23A * t83
-    del stheta2A, t83, t84
-    t93 = 0.0 + t74
+    t89 = d1 + L1 * stheta2A - ctheta23A * t81 + stheta23A * t80
+    del stheta2A, t80, t81
+    t90 = 0.0 + t71
     return (
-        t75,
-        t77,
-        t79,
-        s1 * t82 + c1 * t85 + t74,
+        t72,
+        t74,
+        t76,
+        s1 * t79 + c1 * t82 + t71,
+        t85,
+        t86,
+        t87,
+        s1 * t82 - c1 * t79 + t71,
+        ctheta23A * t60 + stheta23A * hand_11 + t71,
+        ctheta23A * t56 - stheta23A * t73 + t71,
         t88,
-        t89,
+        t89 + t71,
         t90,
-        s1 * t85 - c1 * t82 + t74,
-        ctheta23A * t63 + stheta23A * hand_11 + t74,
-        ctheta23A * t59 - stheta23A * t76 + t74,
-        t91,
-        t92 + t74,
-        t93,
-        t93,
-        t93,
-        1.0 + t74,
+        t90,
+        t90,
+        1.0 + t71,
     )
 
 
@@ -724,324 +712,318 @@ def _jacobian(
     del c3R_half, s3R_half
     straight_right = L2 * t25 + a3 * t26
     t27 = 0.0 <= straight_right
-    t28 = _runtime.select(t27, straight_right, -straight_right)
+    large_right = fore + np.abs(straight_right)
     del straight_right
-    large_right = fore + t28
-    del t28
-    t29 = L2 * t26 - a3 * t25
-    small_right = t29 * t29 / large_right
-    t30 = _runtime.select(t27, large_right, small_right)
-    t31 = L1 * 2.0
-    t32 = L2 * t16 + a3 * t15
+    t28 = L2 * t26 - a3 * t25
+    small_right = t28 * t28 / large_right
+    t29 = _runtime.select(t27, large_right, small_right)
+    t30 = L1 * 2.0
+    t31 = L2 * t16 + a3 * t15
     del t15, t16
-    t33 = c2L_half * c2R_half
-    t34 = s2L_half * s2R_half
-    t35 = t33 - t34
-    t36 = t32 * t10 + t35 * t21
+    t32 = c2L_half * c2R_half
+    t33 = s2L_half * s2R_half
+    t34 = t32 - t33
+    t35 = t31 * t10 + t34 * t21
     del t10, t21
-    gap = t22 * t22 + t36 * t36
-    t37 = s3L_half * c3L_half
-    t38 = t37 + t37
-    del t37
-    t39 = c3L_half * c3L_half - s3L_half * s3L_half
+    gap = t22 * t22 + t35 * t35
+    t36 = s3L_half * c3L_half
+    t37 = t36 + t36
+    del t36
+    t38 = c3L_half * c3L_half - s3L_half * s3L_half
     del c3L_half, s3L_half
-    straight_left = L2 * t38 + a3 * t39
-    t40 = 0.0 <= straight_left
-    t41 = _runtime.select(t40, straight_left, -straight_left)
+    straight_left = L2 * t37 + a3 * t38
+    t39 = 0.0 <= straight_left
+    large_left = fore + np.abs(straight_left)
     del straight_left
-    large_left = fore + t41
-    del t41
-    t42 = L2 * t39 - a3 * t38
-    small_left = t42 * t42 / large_left
-    del t42
-    M_left = _runtime.select(t40, large_left, small_left) * t31
-    t43 = t30 * t31 / 2.0 - (gap - M_left / 2.0)
-    del M_left, t30
-    M_virtual = np.maximum(t43, 0.0)
-    N_left = _runtime.select(t40, small_left, large_left) * t31
-    del large_left, small_left, t40
-    t44 = _runtime.select(t27, small_right, large_right)
+    t40 = L2 * t38 - a3 * t37
+    small_left = t40 * t40 / large_left
+    del t40
+    M_left = _runtime.select(t39, large_left, small_left) * t30
+    t41 = t29 * t30 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t29
+    M_virtual = np.maximum(t41, 0.0)
+    N_left = _runtime.select(t39, small_left, large_left) * t30
+    del large_left, small_left, t39
+    t42 = _runtime.select(t27, small_right, large_right)
     del large_right, small_right, t27
-    t45 = gap + N_left / 2.0 + t44 * t31 / 2.0
-    del N_left, t31, t44
-    N_virtual = np.maximum(t45, 0.0)
+    t43 = gap + N_left / 2.0 + t42 * t30 / 2.0
+    del N_left, t30, t42
+    N_virtual = np.maximum(t43, 0.0)
     whole_virtual = M_virtual + N_virtual
     c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     del bare_virtual
-    t46 = 2.0 * _runtime.select(0.0 <= -t29, 1.0, -1.0)
-    del t29
-    t47 = t46 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    del N_virtual, t46
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t47 / whole_virtual)
-    del t47
+    t44 = 2.0 * _runtime.sign(-t28) * np.sqrt(N_virtual)
+    del N_virtual, t28
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t44 * np.sqrt(M_virtual) / whole_virtual)
+    del t44
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t48 = c2L_half * t8 + s2L_half * t9
+    t45 = c2L_half * t8 + s2L_half * t9
     del t8, t9
-    t49 = L1 * (t33 + t34)
-    del t33, t34
-    t50 = t48 * t17 - t20 * t49
+    t46 = L1 * (t32 + t33)
+    del t32, t33
+    t47 = t45 * t17 - t20 * t46
     del t17, t20
-    r_I = t32 * t48 + t35 * t49
-    del t32, t35, t48, t49
-    t51 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
-    folded_virtual = np.abs(-t50) + np.abs(r_I) <= t51
-    del t51
-    t52 = c2R_half * c2R_half - s2R_half * s2R_half
-    t53 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    r_I = t31 * t45 + t34 * t46
+    del t31, t34, t45, t46
+    t48 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.abs(-t47) + np.abs(r_I) <= t48
+    del t48
+    t49 = c2R_half * c2R_half - s2R_half * s2R_half
+    t50 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     del M_virtual, whole_virtual
-    ahead_1_virtual = _runtime.select(short_virtual, t23, t53)
-    del short_virtual, t53
-    t54 = fore * s_bend_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t23, t50)
+    del short_virtual, t50
+    t51 = fore * s_bend_virtual
     del fore
-    out_virtual = r_I * ahead_1_virtual - t50 * t54
-    t55 = t50 * ahead_1_virtual + r_I * t54
-    del ahead_1_virtual, r_I, t50, t54
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t55 * t55)
-    ctheta2A = _runtime.select(folded_virtual, t52, out_virtual / norm_virtual)
+    out_virtual = r_I * ahead_1_virtual - t47 * t51
+    t52 = t47 * ahead_1_virtual + r_I * t51
+    del ahead_1_virtual, r_I, t47, t51
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t52 * t52)
+    ctheta2A = _runtime.select(folded_virtual, t49, out_virtual / norm_virtual)
     del out_virtual
-    t56 = s2R_half * c2R_half
+    t53 = s2R_half * c2R_half
     del c2R_half, s2R_half
-    t57 = t56 + t56
-    del t56
-    stheta2A = _runtime.select(folded_virtual, t57, -(t55 / norm_virtual))
-    del folded_virtual, norm_virtual, t55
+    t54 = t53 + t53
+    del t53
+    stheta2A = _runtime.select(folded_virtual, t54, -(t52 / norm_virtual))
+    del folded_virtual, norm_virtual, t52
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = c_relative_virtual * ctheta2A - stheta2A * s_relative_virtual
     stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
     del c_relative_virtual, s_relative_virtual
-    t58 = t22 * ctheta23A + t36 * stheta23A
-    t59 = d * d
-    t60 = t58 * t58
-    tilted = np.sqrt(t59 + t60)
-    t61 = t58 / tilted
+    t55 = t22 * ctheta23A + t35 * stheta23A
+    t56 = d * d
+    t57 = t55 * t55
+    tilted = np.sqrt(t56 + t57)
+    t58 = t55 / tilted
     c_phi = d / tilted
-    t62 = t22 * stheta23A - t36 * ctheta23A
-    del t22, t36
-    base = np.sqrt(t59 + gap)
+    t59 = t22 * stheta23A - t35 * ctheta23A
+    del t22, t35
+    base = np.sqrt(t56 + gap)
     del gap
-    t63 = t62 / base
-    t64 = c_phi * t63
-    t65 = lp * c
+    t60 = t59 / base
+    t61 = c_phi * t60
+    t62 = lp * c
     del c
-    t66 = base - (gs - al)
-    t67 = gs + al
-    t68 = t67 - base
-    wrist = np.sqrt(np.maximum(t66, 0.0)) * np.sqrt(np.maximum(t68, 0.0))
-    t69 = loff + t65 + wrist
-    t70 = t1 * t61 + t64 * t69
+    t63 = base - (gs - al)
+    t64 = gs + al
+    t65 = t64 - base
+    wrist = np.sqrt(np.maximum(t63, 0.0)) * np.sqrt(np.maximum(t65, 0.0))
+    t66 = loff + t62 + wrist
+    t67 = t1 * t58 + t61 * t66
     outer_32 = L1 * ctheta2A
-    t71 = t61 * t63
-    t72 = t1 * c_phi - t69 * t71
-    t73 = a3 + t72
+    t68 = t58 * t60
+    t69 = t1 * c_phi - t66 * t68
+    t70 = a3 + t69
     c_psi = tilted / base
     del base
-    t74 = t69 * c_psi
-    t75 = L2 + t74
-    outer_33 = ctheta23A * t73 + stheta23A * t75
-    t76 = outer_32 + outer_33
-    t77 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t78 = t77 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t77
-    t79 = t78 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    del t78
-    t80 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t81 = -(_runtime.FEASIBILITY * (d * t23))
-    del t23
-    t82 = -(_runtime.FEASIBILITY * t67)
-    del t67
-    t83 = (t81 <= t45) & (t81 <= t43) & (t82 <= t68) & (t82 <= t66)
-    del t43, t45, t66, t68, t81, t82
-    failed = np.logical_not(t79 & (0.0 <= lp) & t80) | np.logical_not(t83)
-    del t79, t80, t83
-    t84 = _runtime.poison(failed)
-    del failed
-    t85 = c_phi * t74
-    t86 = t61 * t74
+    t71 = t66 * c_psi
+    t72 = L2 + t71
+    outer_33 = ctheta23A * t70 + stheta23A * t72
+    t73 = outer_32 + outer_33
+    t74 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t75 = t74 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
     del t74
-    t87 = t63 * t69
-    del t69
-    t88 = ctheta23A * t86 + stheta23A * t87
-    t89 = d * (gs - d / (c_phi * c_psi))
-    t90 = t63 * t89
-    del t63
-    t91 = stheta23A * c_psi
-    t92 = t91 - ctheta23A * t71
-    t93 = s1 * t64 + c1 * t92
-    t94 = c_phi * wrist * (c_psi * c_psi)
-    t95 = s1 * t85 - c1 * t88 + t90 * t93 / t94
-    t96 = tilted * tilted
-    t97 = 1.0 + t62 * t62 / t96
-    t98 = t62 * t58 / (tilted * t96 * t97)
-    del t96
-    c2R3R = t26 * t52 - t25 * t57
-    s2R3R = t26 * t57 + t25 * t52
+    t76 = t75 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t75
+    t77 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t78 = -(_runtime.FEASIBILITY * (d * t23))
+    del t23
+    t79 = -(_runtime.FEASIBILITY * t64)
+    del t64
+    t80 = (t78 <= t43) & (t78 <= t41) & (t79 <= t65) & (t79 <= t63)
+    del t41, t43, t63, t65, t78, t79
+    failed = np.logical_not(t76 & (0.0 <= lp) & t77) | np.logical_not(t80)
+    del t76, t77, t80
+    t81 = _runtime.poison(failed)
+    del failed
+    t82 = c_phi * t71
+    t83 = t58 * t71
+    del t71
+    t84 = t60 * t66
+    del t66
+    t85 = ctheta23A * t83 + stheta23A * t84
+    t86 = d * (gs - d / (c_phi * c_psi))
+    t87 = t60 * t86
+    del t60
+    t88 = stheta23A * c_psi
+    t89 = t88 - ctheta23A * t68
+    t90 = s1 * t61 + c1 * t89
+    t91 = c_phi * wrist * (c_psi * c_psi)
+    t92 = s1 * t82 - c1 * t85 + t87 * t90 / t91
+    t93 = tilted * tilted
+    t94 = 1.0 + t59 * t59 / t93
+    t95 = t59 * t55 / (tilted * t93 * t94)
+    del t93
+    c2R3R = t26 * t49 - t25 * t54
+    s2R3R = t26 * t54 + t25 * t49
     del t25, t26
     mid_13 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
-    t99 = L1 * t57 / 2.0 - mid_13
-    del t57
+    t96 = L1 * t54 / 2.0 - mid_13
+    del t54
     mid_23 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
     del c2R3R, s2R3R
-    mid_22 = L1 * t52 / 2.0 + mid_23
-    del t52
-    t100 = L1 * stheta2A
-    t101 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t102 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    mid_22 = L1 * t49 / 2.0 + mid_23
+    del t49
+    t97 = L1 * stheta2A
+    t98 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t99 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
     del ctheta2A, stheta2A
-    t103 = L1 * (t101 + t102)
-    del t101, t102
-    t104 = (outer_32 * t99 - t100 * mid_22) / t103
-    t105 = ctheta23A * t99 - stheta23A * mid_22 + t62 * t104
-    turn_12 = 1.0 / (tilted * t97)
-    del t97, tilted
-    t106 = ctheta23A * mid_22 + stheta23A * t99 - t58 * t104
-    inner_42 = t98 * t105 - turn_12 * t106
-    del t106
-    t107 = ctheta23A * t70
-    t108 = t61 * t89
-    del t89
-    t109 = c_phi * c_phi * wrist * c_psi
+    t100 = L1 * (t98 + t99)
+    del t98, t99
+    t101 = (outer_32 * t96 - t97 * mid_22) / t100
+    t102 = ctheta23A * t96 - stheta23A * mid_22 + t59 * t101
+    turn_12 = 1.0 / (tilted * t94)
+    del t94, tilted
+    t103 = ctheta23A * mid_22 + stheta23A * t96 - t55 * t101
+    inner_42 = t95 * t102 - turn_12 * t103
+    del t103
+    t104 = ctheta23A * t67
+    t105 = t58 * t86
+    del t86
+    t106 = c_phi * c_phi * wrist * c_psi
     del wrist
-    t110 = c1 * t107 - s1 * t72 - t93 * t108 / t109
-    del t93
-    t111 = 1.0 / (d * (1.0 + t60 / t59))
-    del t59, t60
-    inner_52 = t111 * t105
-    del t105
-    t112 = c1 * t100
+    t107 = c1 * t104 - s1 * t69 - t90 * t105 / t106
+    del t90
+    t108 = 1.0 / (d * (1.0 + t57 / t56))
+    del t56, t57
+    inner_52 = t108 * t102
+    del t102
+    t109 = c1 * t97
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
-    t113 = L2 * ctheta23A - a3 * stheta23A
-    rate_12 = (virtual_11 * t99 + t113 * mid_22) / t103
-    del mid_22, t99
-    t114 = t95 * inner_42 + t110 * inner_52 + t112 * rate_12
-    t115 = ctheta23A * t75 - stheta23A * t73
-    del t73, t75
-    outer_13 = c1 * t115
-    t116 = (mid_13 * virtual_11 - mid_23 * t113) / t103
-    rate_23 = (mid_13 * outer_32 + mid_23 * t100) / t103
-    line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t62 * rate_23
-    t117 = mid_23 * ctheta23A - mid_13 * stheta23A + t58 * rate_23
+    t110 = L2 * ctheta23A - a3 * stheta23A
+    rate_12 = (virtual_11 * t96 + t110 * mid_22) / t100
+    del mid_22, t96
+    t111 = t92 * inner_42 + t107 * inner_52 + t109 * rate_12
+    t112 = ctheta23A * t72 - stheta23A * t70
+    del t70, t72
+    outer_13 = c1 * t112
+    t113 = (mid_13 * virtual_11 - mid_23 * t110) / t100
+    rate_23 = (mid_13 * outer_32 + mid_23 * t97) / t100
+    line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t59 * rate_23
+    t114 = mid_23 * ctheta23A - mid_13 * stheta23A + t55 * rate_23
     del mid_13, mid_23
-    t118 = t98 * line_13 + turn_12 * t117
-    del t117
-    t119 = t111 * line_13
+    t115 = t95 * line_13 + turn_12 * t114
+    del t114
+    t116 = t108 * line_13
     del line_13
-    t120 = t112 * t116 + t118 * t95 + t119 * t110 + rate_23 * outer_13
-    t121 = s2L_half * c2L_half
-    t122 = t121 + t121
-    del t121
-    t123 = c2L_half * c2L_half - s2L_half * s2L_half
+    t117 = t109 * t113 + t115 * t92 + t116 * t107 + rate_23 * outer_13
+    t118 = s2L_half * c2L_half
+    t119 = t118 + t118
+    del t118
+    t120 = c2L_half * c2L_half - s2L_half * s2L_half
     del c2L_half, s2L_half
-    c2L3L = t39 * t123 - t38 * t122
-    s2L3L = t39 * t122 + t38 * t123
-    del t38, t39
+    c2L3L = t38 * t120 - t37 * t119
+    s2L3L = t38 * t119 + t37 * t120
+    del t37, t38
     mid_15 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
-    gap_14 = L1 * t122 / 2.0 - mid_15
-    del t122
+    gap_14 = L1 * t119 / 2.0 - mid_15
+    del t119
     mid_25 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
     del c2L3L, s2L3L
-    mid_24 = L1 * t123 / 2.0 + mid_25
-    del t123
-    t124 = (outer_32 * gap_14 - t100 * mid_24) / t103
-    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t62 * t124
-    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t58 * t124
-    t125 = t98 * line_14 - turn_12 * line_24
+    mid_24 = L1 * t120 / 2.0 + mid_25
+    del t120
+    t121 = (outer_32 * gap_14 - t97 * mid_24) / t100
+    line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t59 * t121
+    line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t55 * t121
+    t122 = t95 * line_14 - turn_12 * line_24
     del line_24
-    t126 = t111 * line_14
+    t123 = t108 * line_14
     del line_14
-    rate_14 = (virtual_11 * gap_14 + t113 * mid_24) / t103
+    rate_14 = (virtual_11 * gap_14 + t110 * mid_24) / t100
     del gap_14, mid_24
-    t127 = t95 * t125 + t110 * t126 - t112 * rate_14 - outer_13 * t124
-    t128 = (mid_15 * virtual_11 - mid_25 * t113) / t103
-    del t113, virtual_11
-    rate_25 = (mid_15 * outer_32 + mid_25 * t100) / t103
-    del t103
-    t129 = mid_15 * ctheta23A + mid_25 * stheta23A - t62 * rate_25
-    del t62
-    line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t58 * rate_25
-    del mid_15, mid_25, t58
-    inner_45 = t98 * t129 + turn_12 * line_25
-    del line_25, t98, turn_12
-    inner_55 = t111 * t129
-    del t111, t129
-    t130 = t112 * t128 - inner_45 * t95 - inner_55 * t110
-    del t110, t112, t95
-    t131 = t65 * t61 - t1 * t64
-    del t61
-    t132 = t65 * c_phi + t1 * t71
-    del c_phi, t65
-    t133 = t1 * t91 - ctheta23A * t132
-    del t91
-    t134 = c1 * t64 - s1 * t92
-    del t64, t92
-    outer_24 = c1 * t85 + s1 * t88 + t90 * t134 / t94
-    del t85, t88
-    t135 = s1 * t107 + c1 * t72 + t108 * t134 / t109
-    del t107, t134, t72
-    t136 = s1 * t100
+    t124 = t92 * t122 + t107 * t123 - t109 * rate_14 - outer_13 * t121
+    t125 = (mid_15 * virtual_11 - mid_25 * t110) / t100
+    del t110, virtual_11
+    rate_25 = (mid_15 * outer_32 + mid_25 * t97) / t100
     del t100
-    t137 = inner_42 * outer_24 - inner_52 * t135 - t136 * rate_12
-    outer_23 = s1 * t115
-    del t115
-    t138 = t116 * t136 - t118 * outer_24 + t119 * t135 + rate_23 * outer_23
-    t139 = t125 * outer_24 - t126 * t135 + t136 * rate_14
-    t140 = t128 * t136 + inner_45 * outer_24 - inner_55 * t135
-    del outer_24, t135, t136
-    t141 = 0.0 + t84
-    t142 = ctheta23A * c_psi
+    t126 = mid_15 * ctheta23A + mid_25 * stheta23A - t59 * rate_25
+    del t59
+    line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t55 * rate_25
+    del mid_15, mid_25, t55
+    inner_45 = t95 * t126 + turn_12 * line_25
+    del line_25, t95, turn_12
+    inner_55 = t108 * t126
+    del t108, t126
+    t127 = t109 * t125 - inner_45 * t92 - inner_55 * t107
+    del t107, t109, t92
+    t128 = t62 * t58 - t1 * t61
+    del t58
+    t129 = t62 * c_phi + t1 * t68
+    del c_phi, t62
+    t130 = t1 * t88 - ctheta23A * t129
+    del t88
+    t131 = c1 * t61 - s1 * t89
+    del t61, t89
+    outer_24 = c1 * t82 + s1 * t85 + t87 * t131 / t91
+    del t82, t85
+    t132 = s1 * t104 + c1 * t69 + t105 * t131 / t106
+    del t104, t131, t69
+    t133 = s1 * t97
+    del t97
+    t134 = inner_42 * outer_24 - inner_52 * t132 - t133 * rate_12
+    outer_23 = s1 * t112
+    del t112
+    t135 = t113 * t133 - t115 * outer_24 + t116 * t132 + rate_23 * outer_23
+    t136 = t122 * outer_24 - t123 * t132 + t133 * rate_14
+    t137 = t125 * t133 + inner_45 * outer_24 - inner_55 * t132
+    del outer_24, t132, t133
+    t138 = 0.0 + t81
+    t139 = ctheta23A * c_psi
     del c_psi
-    t143 = t142 + stheta23A * t71
-    del t71
-    t144 = stheta23A * t86 - ctheta23A * t87 + t90 * t143 / t94
-    del ctheta23A, t86, t87, t90, t94
-    t145 = stheta23A * t70 + t108 * t143 / t109
-    del t108, t109, t143
-    t146 = inner_42 * t144 - inner_52 * t145 + outer_32 * rate_12
+    t140 = t139 + stheta23A * t68
+    del t68
+    t141 = stheta23A * t83 - ctheta23A * t84 + t87 * t140 / t91
+    del ctheta23A, t83, t84, t87, t91
+    t142 = stheta23A * t67 + t105 * t140 / t106
+    del t105, t106, t140
+    t143 = inner_42 * t141 - inner_52 * t142 + outer_32 * rate_12
     del rate_12
-    t147 = rate_23 * outer_33 - (outer_32 * t116 + t118 * t144 - t119 * t145)
-    del rate_23, t116
-    t148 = t125 * t144 - t126 * t145 - outer_32 * rate_14
+    t144 = rate_23 * outer_33 - (outer_32 * t113 + t115 * t141 - t116 * t142)
+    del rate_23, t113
+    t145 = t122 * t141 - t123 * t142 - outer_32 * rate_14
     del rate_14
-    t149 = outer_32 * t128 - inner_45 * t144 + inner_55 * t145
-    del outer_32, t128, t144, t145
+    t146 = outer_32 * t125 - inner_45 * t141 + inner_55 * t142
+    del outer_32, t125, t141, t142
     return (
-        c1 * t70 - s1 * t76 + t84,
-        -(t114 + t104 * outer_13) + t84,
-        t120 + t84,
-        t127 + t84,
-        t130 + rate_25 * outer_13 + t84,
-        s1 * t131 - c1 * t133 + t84,
-        s1 * t70 + c1 * t76 + t84,
-        t137 - t104 * outer_23 + t84,
-        t138 + t84,
-        -(t139 + t124 * outer_23) + t84,
-        t140 + rate_25 * outer_23 + t84,
-        -(c1 * t131 + s1 * t133) + t84,
-        t141,
-        t146 - outer_33 * t104 + t84,
-        t147 + t84,
-        -(t148 + outer_33 * t124) + t84,
-        rate_25 * outer_33 - t149 + t84,
-        t1 * t142 + stheta23A * t132 + t84,
-        t141,
-        inner_42 + t84,
-        -t118 + t84,
-        -t125 + t84,
-        inner_45 + t84,
-        t141,
-        t141,
-        inner_52 + t84,
-        -t119 + t84,
-        -t126 + t84,
-        inner_55 + t84,
-        t141,
-        t141,
-        t141,
-        t141,
-        t141,
-        t141,
-        1.0 + t84,
+        c1 * t67 - s1 * t73 + t81,
+        -(t111 + t101 * outer_13) + t81,
+        t117 + t81,
+        t124 + t81,
+        t127 + rate_25 * outer_13 + t81,
+        s1 * t128 - c1 * t130 + t81,
+        s1 * t67 + c1 * t73 + t81,
+        t134 - t101 * outer_23 + t81,
+        t135 + t81,
+        -(t136 + t121 * outer_23) + t81,
+        t137 + rate_25 * outer_23 + t81,
+        -(c1 * t128 + s1 * t130) + t81,
+        t138,
+        t143 - outer_33 * t101 + t81,
+        t144 + t81,
+        -(t145 + outer_33 * t121) + t81,
+        rate_25 * outer_33 - t146 + t81,
+        t1 * t139 + stheta23A * t129 + t81,
+        t138,
+        inner_42 + t81,
+        -t115 + t81,
+        -t122 + t81,
+        inner_45 + t81,
+        t138,
+        t138,
+        inner_52 + t81,
+        -t116 + t81,
+        -t123 + t81,
+        inner_55 + t81,
+        t138,
+        t138,
+        t138,
+        t138,
+        t138,
+        t138,
+        1.0 + t81,
     )
 
 
@@ -1149,60 +1131,54 @@ def _determinant(
     short_virtual = L1 * fore <= _runtime.VANISHING * (t41 * t41)
     straight_right = L2 * t12 + a3 * t10
     t42 = 0.0 <= straight_right
-    t43 = _runtime.select(t42, straight_right, -straight_right)
+    large_right = fore + np.abs(straight_right)
     del straight_right
-    large_right = fore + t43
-    del t43
-    t44 = L2 * t10 - a3 * t12
+    t43 = L2 * t10 - a3 * t12
     del t10, t12
-    small_right = t44 * t44 / large_right
-    t45 = _runtime.select(t42, large_right, small_right)
-    t46 = L1 * 2.0
-    t47 = s2L_half * t21 - c2L_half * t22
+    small_right = t43 * t43 / large_right
+    t44 = _runtime.select(t42, large_right, small_right)
+    t45 = L1 * 2.0
+    t46 = s2L_half * t21 - c2L_half * t22
     del c2L_half, s2L_half, t21, t22
-    t48 = L1 * (t31 - t32)
+    t47 = L1 * (t31 - t32)
     del t31, t32
-    t49 = t47 * t30 - t33 * t48
+    t48 = t46 * t30 - t33 * t47
     del t30, t33
-    t50 = t38 * t47 + t39 * t48
-    del t38, t39, t47, t48
-    gap = t49 * t49 + t50 * t50
+    t49 = t38 * t46 + t39 * t47
+    del t38, t39, t46, t47
+    gap = t48 * t48 + t49 * t49
     straight_left = L2 * t5 + a3 * t3
-    t51 = 0.0 <= straight_left
-    t52 = _runtime.select(t51, straight_left, -straight_left)
+    t50 = 0.0 <= straight_left
+    large_left = fore + np.abs(straight_left)
     del straight_left
-    large_left = fore + t52
-    del t52
-    t53 = L2 * t3 - a3 * t5
+    t51 = L2 * t3 - a3 * t5
     del t3, t5
-    small_left = t53 * t53 / large_left
-    del t53
-    M_left = _runtime.select(t51, large_left, small_left) * t46
-    t54 = t45 * t46 / 2.0 - (gap - M_left / 2.0)
-    del M_left, t45
-    M_virtual = np.maximum(t54, 0.0)
-    N_left = _runtime.select(t51, small_left, large_left) * t46
-    del large_left, small_left, t51
-    t55 = _runtime.select(t42, small_right, large_right)
+    small_left = t51 * t51 / large_left
+    del t51
+    M_left = _runtime.select(t50, large_left, small_left) * t45
+    t52 = t44 * t45 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t44
+    M_virtual = np.maximum(t52, 0.0)
+    N_left = _runtime.select(t50, small_left, large_left) * t45
+    del large_left, small_left, t50
+    t53 = _runtime.select(t42, small_right, large_right)
     del large_right, small_right, t42
-    t56 = gap + N_left / 2.0 + t55 * t46 / 2.0
-    del N_left, t46, t55
-    N_virtual = np.maximum(t56, 0.0)
+    t54 = gap + N_left / 2.0 + t53 * t45 / 2.0
+    del N_left, t45, t53
+    N_virtual = np.maximum(t54, 0.0)
     whole_virtual = M_virtual + N_virtual
-    t57 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
-    ahead_1_virtual = _runtime.select(short_virtual, t41, t57)
-    del t57
-    t58 = 2.0 * _runtime.select(0.0 <= -t44, 1.0, -1.0)
-    del t44
-    t59 = t58 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    del t58
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t59 / whole_virtual)
-    del t59
-    t60 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t37 * t60
-    t61 = t37 * ahead_1_virtual + r_I * t60
-    del ahead_1_virtual, r_I, t37, t60
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t61 * t61)
+    t55 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t41, t55)
+    del t55
+    t56 = 2.0 * _runtime.sign(-t43) * np.sqrt(N_virtual)
+    del t43
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t56 * np.sqrt(M_virtual) / whole_virtual)
+    del t56
+    t57 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t37 * t57
+    t58 = t37 * ahead_1_virtual + r_I * t57
+    del ahead_1_virtual, r_I, t37, t57
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t58 * t58)
     ctheta2A = _runtime.select(folded_virtual, t13, out_virtual / norm_virtual)
     del out_virtual, t13
     bare_virtual = fore <= t41 * _runtime.VANISHING
@@ -1212,54 +1188,54 @@ def _determinant(
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     del bare_virtual, fore
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    stheta2A = _runtime.select(folded_virtual, t9, -(t61 / norm_virtual))
-    del folded_virtual, norm_virtual, t61, t9
+    stheta2A = _runtime.select(folded_virtual, t9, -(t58 / norm_virtual))
+    del folded_virtual, norm_virtual, t58, t9
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
     del c_relative_virtual, s_relative_virtual
-    t62 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t63 = d * d
-    t64 = t49 * ctheta23A + t50 * stheta23A
-    tilted = np.sqrt(t63 + t64 * t64)
-    base = np.sqrt(t63 + gap)
-    del gap, t63
-    t65 = base - (gs - al)
-    t66 = gs + al
-    t67 = t66 - base
-    wrist = np.sqrt(np.maximum(t65, 0.0)) * np.sqrt(np.maximum(t67, 0.0))
-    t68 = loff + lp * c + wrist
+    t59 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t60 = d * d
+    t61 = t48 * ctheta23A + t49 * stheta23A
+    tilted = np.sqrt(t60 + t61 * t61)
+    base = np.sqrt(t60 + gap)
+    del gap, t60
+    t62 = base - (gs - al)
+    t63 = gs + al
+    t64 = t63 - base
+    wrist = np.sqrt(np.maximum(t62, 0.0)) * np.sqrt(np.maximum(t64, 0.0))
+    t65 = loff + lp * c + wrist
     del c, wrist
-    t69 = L2 + tilted / base * t68
-    t70 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t66 = L2 + tilted / base * t65
+    t67 = stheta2A * ctheta23A - ctheta2A * stheta23A
     del stheta2A
-    t71 = t64 / tilted * t68 * ((t49 * stheta23A - t50 * ctheta23A) / base)
-    del t49, t50, t64, t68
-    t72 = a3 + lp * s * (d / tilted) - t71
-    del s, t71
-    t73 = d * (L1 * L1) * t7 * t14 * (t62 * t69 + t70 * t72)
+    t68 = t61 / tilted * t65 * ((t48 * stheta23A - t49 * ctheta23A) / base)
+    del t48, t49, t61, t65
+    t69 = a3 + lp * s * (d / tilted) - t68
+    del s, t68
+    t70 = d * (L1 * L1) * t7 * t14 * (t59 * t66 + t67 * t69)
     del t14, t7
-    t74 = L1 * ctheta2A + ctheta23A * t72 + stheta23A * t69
-    del ctheta23A, ctheta2A, stheta23A, t69, t72
-    t75 = 4.0 * tilted * (L2 * t62 + a3 * t70) * (base * base)
-    del base, t62, t70, tilted
-    t76 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t77 = t76 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t76
-    t78 = t77 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    del t77
-    t79 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t80 = -(_runtime.FEASIBILITY * (d * t41))
+    t71 = L1 * ctheta2A + ctheta23A * t69 + stheta23A * t66
+    del ctheta23A, ctheta2A, stheta23A, t66, t69
+    t72 = 4.0 * tilted * (L2 * t59 + a3 * t67) * (base * base)
+    del base, t59, t67, tilted
+    t73 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t74 = t73 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t73
+    t75 = t74 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t74
+    t76 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t77 = -(_runtime.FEASIBILITY * (d * t41))
     del t41
-    t81 = -(_runtime.FEASIBILITY * t66)
-    del t66
-    t82 = (t80 <= t56) & (t80 <= t54) & (t81 <= t67) & (t81 <= t65)
-    del t54, t56, t65, t67, t80, t81
-    failed = np.logical_not(t78 & (0.0 <= lp) & t79) | np.logical_not(t82)
-    del t78, t79, t82
+    t78 = -(_runtime.FEASIBILITY * t63)
+    del t63
+    t79 = (t77 <= t54) & (t77 <= t52) & (t78 <= t64) & (t78 <= t62)
+    del t52, t54, t62, t64, t77, t78
+    failed = np.logical_not(t75 & (0.0 <= lp) & t76) | np.logical_not(t79)
+    del t75, t76, t79
     return (
-        t73 * t74 / t75 + _runtime.poison(failed),
+        t70 * t71 / t72 + _runtime.poison(failed),
     )
 
 
@@ -1343,63 +1319,57 @@ def _singularities(
     del c3R_half, s3R_half
     straight_right = L2 * t30 + a3 * t31
     t32 = 0.0 <= straight_right
-    t33 = _runtime.select(t32, straight_right, -straight_right)
+    large_right = fore + np.abs(straight_right)
     del straight_right
-    large_right = fore + t33
-    del t33
-    t34 = L2 * t31 - a3 * t30
-    small_right = t34 * t34 / large_right
-    t35 = _runtime.select(t32, large_right, small_right)
-    t36 = L1 * 2.0
-    t37 = s2L_half * t7 - c2L_half * t8
+    t33 = L2 * t31 - a3 * t30
+    small_right = t33 * t33 / large_right
+    t34 = _runtime.select(t32, large_right, small_right)
+    t35 = L1 * 2.0
+    t36 = s2L_half * t7 - c2L_half * t8
     del t7, t8
-    t38 = L1 * (t17 - t18)
+    t37 = L1 * (t17 - t18)
     del t17, t18
-    t39 = t37 * t16 - t19 * t38
+    t38 = t36 * t16 - t19 * t37
     del t16, t19
-    t40 = t24 * t37 + t25 * t38
-    del t24, t25, t37, t38
-    gap = t39 * t39 + t40 * t40
-    t41 = s3L_half * c3L_half
-    t42 = t41 + t41
-    del t41
-    t43 = c3L_half * c3L_half - s3L_half * s3L_half
+    t39 = t24 * t36 + t25 * t37
+    del t24, t25, t36, t37
+    gap = t38 * t38 + t39 * t39
+    t40 = s3L_half * c3L_half
+    t41 = t40 + t40
+    del t40
+    t42 = c3L_half * c3L_half - s3L_half * s3L_half
     del c3L_half, s3L_half
-    straight_left = L2 * t42 + a3 * t43
-    t44 = 0.0 <= straight_left
-    t45 = _runtime.select(t44, straight_left, -straight_left)
+    straight_left = L2 * t41 + a3 * t42
+    t43 = 0.0 <= straight_left
+    large_left = fore + np.abs(straight_left)
     del straight_left
-    large_left = fore + t45
-    del t45
-    t46 = L2 * t43 - a3 * t42
-    small_left = t46 * t46 / large_left
-    del t46
-    M_left = _runtime.select(t44, large_left, small_left) * t36
-    t47 = t35 * t36 / 2.0 - (gap - M_left / 2.0)
-    del M_left, t35
-    M_virtual = np.maximum(t47, 0.0)
-    N_left = _runtime.select(t44, small_left, large_left) * t36
-    del large_left, small_left, t44
-    t48 = _runtime.select(t32, small_right, large_right)
+    t44 = L2 * t42 - a3 * t41
+    small_left = t44 * t44 / large_left
+    del t44
+    M_left = _runtime.select(t43, large_left, small_left) * t35
+    t45 = t34 * t35 / 2.0 - (gap - M_left / 2.0)
+    del M_left, t34
+    M_virtual = np.maximum(t45, 0.0)
+    N_left = _runtime.select(t43, small_left, large_left) * t35
+    del large_left, small_left, t43
+    t46 = _runtime.select(t32, small_right, large_right)
     del large_right, small_right, t32
-    t49 = gap + N_left / 2.0 + t48 * t36 / 2.0
-    del N_left, t36, t48
-    N_virtual = np.maximum(t49, 0.0)
+    t47 = gap + N_left / 2.0 + t46 * t35 / 2.0
+    del N_left, t35, t46
+    N_virtual = np.maximum(t47, 0.0)
     whole_virtual = M_virtual + N_virtual
-    t50 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
-    ahead_1_virtual = _runtime.select(short_virtual, t28, t50)
-    del t50
-    t51 = 2.0 * _runtime.select(0.0 <= -t34, 1.0, -1.0)
-    del t34
-    t52 = t51 * np.sqrt(N_virtual) * np.sqrt(M_virtual)
-    del t51
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t52 / whole_virtual)
-    del t52
-    t53 = fore * s_bend_virtual
-    out_virtual = r_I * ahead_1_virtual - t23 * t53
-    t54 = t23 * ahead_1_virtual + r_I * t53
-    del ahead_1_virtual, r_I, t23, t53
-    norm_virtual = np.sqrt(out_virtual * out_virtual + t54 * t54)
+    t48 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t28, t48)
+    del t48
+    t49 = 2.0 * _runtime.sign(-t33) * np.sqrt(N_virtual)
+    del t33
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t49 * np.sqrt(M_virtual) / whole_virtual)
+    del t49
+    t50 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t23 * t50
+    t51 = t23 * ahead_1_virtual + r_I * t50
+    del ahead_1_virtual, r_I, t23, t50
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t51 * t51)
     ctheta2A = _runtime.select(folded_virtual, t27, out_virtual / norm_virtual)
     del out_virtual
     bare_virtual = fore <= t28 * _runtime.VANISHING
@@ -1409,76 +1379,76 @@ def _singularities(
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     del bare_virtual, fore
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
-    t55 = s2R_half * c2R_half
+    t52 = s2R_half * c2R_half
     del c2R_half, s2R_half
-    t56 = t55 + t55
-    del t55
-    stheta2A = _runtime.select(folded_virtual, t56, -(t54 / norm_virtual))
-    del folded_virtual, norm_virtual, t54
+    t53 = t52 + t52
+    del t52
+    stheta2A = _runtime.select(folded_virtual, t53, -(t51 / norm_virtual))
+    del folded_virtual, norm_virtual, t51
     s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
     del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
     ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
-    t57 = d * d
+    t54 = d * d
     stheta23A = c_relative_virtual * stheta2A + ctheta2A * s_relative_virtual
     del c_relative_virtual, s_relative_virtual
-    t58 = t39 * ctheta23A + t40 * stheta23A
-    tilted = np.sqrt(t57 + t58 * t58)
-    base = np.sqrt(t57 + gap)
-    del gap, t57
-    t59 = t58 / tilted * ((t39 * stheta23A - t40 * ctheta23A) / base)
-    del t39, t40, t58
-    t60 = base - (gs - al)
-    t61 = gs + al
-    t62 = t61 - base
-    wrist = np.sqrt(np.maximum(t60, 0.0)) * np.sqrt(np.maximum(t62, 0.0))
-    t63 = loff + lp * c + wrist
+    t55 = t38 * ctheta23A + t39 * stheta23A
+    tilted = np.sqrt(t54 + t55 * t55)
+    base = np.sqrt(t54 + gap)
+    del gap, t54
+    t56 = t55 / tilted * ((t38 * stheta23A - t39 * ctheta23A) / base)
+    del t38, t39, t55
+    t57 = base - (gs - al)
+    t58 = gs + al
+    t59 = t58 - base
+    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
+    t60 = loff + lp * c + wrist
     del c
-    t64 = a3 + lp * s * (d / tilted) - t59 * t63
-    del s, t59
-    t65 = L2 + t63 * (tilted / base)
-    del base, t63, tilted
-    t66 = L1 * ctheta2A + ctheta23A * t64 + stheta23A * t65
-    t67 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t68 = t67 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t67
-    t69 = t68 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
-    del t68
-    t70 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t71 = -(_runtime.FEASIBILITY * (d * t28))
+    t61 = a3 + lp * s * (d / tilted) - t56 * t60
+    del s, t56
+    t62 = L2 + t60 * (tilted / base)
+    del base, t60, tilted
+    t63 = L1 * ctheta2A + ctheta23A * t61 + stheta23A * t62
+    t64 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t65 = t64 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t64
+    t66 = t65 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t65
+    t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t68 = -(_runtime.FEASIBILITY * (d * t28))
     del t28
-    t72 = -(_runtime.FEASIBILITY * t61)
-    del t61
-    t73 = (t71 <= t49) & (t71 <= t47) & (t72 <= t62) & (t72 <= t60)
-    del t47, t49, t60, t62, t71, t72
-    failed = np.logical_not(t69 & (0.0 <= lp) & t70) | np.logical_not(t73)
-    del t69, t70, t73
-    t74 = _runtime.poison(failed)
+    t69 = -(_runtime.FEASIBILITY * t58)
+    del t58
+    t70 = (t68 <= t47) & (t68 <= t45) & (t69 <= t59) & (t69 <= t57)
+    del t45, t47, t57, t59, t68, t69
+    failed = np.logical_not(t66 & (0.0 <= lp) & t67) | np.logical_not(t70)
+    del t66, t67, t70
+    t71 = _runtime.poison(failed)
     del failed
-    t75 = ctheta2A * ctheta23A + stheta2A * stheta23A
-    t76 = stheta2A * ctheta23A - ctheta2A * stheta23A
+    t72 = ctheta2A * ctheta23A + stheta2A * stheta23A
+    t73 = stheta2A * ctheta23A - ctheta2A * stheta23A
     del ctheta23A, ctheta2A, stheta23A, stheta2A
-    s2R3R = t31 * t56 + t30 * t27
-    c2R3R = t31 * t27 - t30 * t56
+    s2R3R = t31 * t53 + t30 * t27
+    c2R3R = t31 * t27 - t30 * t53
     del t30, t31
-    t77 = L2 * (t56 * s2R3R + t27 * c2R3R) + a3 * (t56 * c2R3R - t27 * s2R3R)
-    del c2R3R, s2R3R, t27, t56
-    t78 = s2L_half * c2L_half
-    t79 = t78 + t78
-    del t78
-    t80 = c2L_half * c2L_half - s2L_half * s2L_half
+    t74 = L2 * (t53 * s2R3R + t27 * c2R3R) + a3 * (t53 * c2R3R - t27 * s2R3R)
+    del c2R3R, s2R3R, t27, t53
+    t75 = s2L_half * c2L_half
+    t76 = t75 + t75
+    del t75
+    t77 = c2L_half * c2L_half - s2L_half * s2L_half
     del c2L_half, s2L_half
-    s2L3L = t43 * t79 + t42 * t80
-    c2L3L = t43 * t80 - t42 * t79
-    del t42, t43
-    t81 = L2 * (t79 * s2L3L + t80 * c2L3L) + a3 * (t79 * c2L3L - t80 * s2L3L)
-    del c2L3L, s2L3L, t79, t80
+    s2L3L = t42 * t76 + t41 * t77
+    c2L3L = t42 * t77 - t41 * t76
+    del t41, t42
+    t78 = L2 * (t76 * s2L3L + t77 * c2L3L) + a3 * (t76 * c2L3L - t77 * s2L3L)
+    del c2L3L, s2L3L, t76, t77
     return (
-        t66 + t74,
-        t75 * t65 + t76 * t64 + t74,
-        t77 + t74,
-        t81 + t74,
-        L2 * t75 + a3 * t76 + t74,
-        wrist + t74,
+        t63 + t71,
+        t72 * t62 + t73 * t61 + t71,
+        t74 + t71,
+        t78 + t71,
+        L2 * t72 + a3 * t73 + t71,
+        wrist + t71,
     )
 
 
@@ -1619,400 +1589,396 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     straight_mid = L2 * s_relative + a3 * c_relative
     t57 = 0.0 <= straight_mid
     t58 = L2 * c_relative - a3 * s_relative
-    t59 = _runtime.select(t57, straight_mid, -straight_mid)
+    large_mid = fore_arm + np.abs(straight_mid)
     del straight_mid
-    large_mid = fore_arm + t59
-    del t59
     small_mid = t58 * t58 / large_mid
     N_mid = t29 * _runtime.select(t57, small_mid, large_mid)
-    t60 = 1.0 / c_phi
+    t59 = 1.0 / c_phi
     del c_phi
-    t61 = np.abs(t33)
-    folded = t61 + np.abs(outward) <= t51
-    t62 = t33 * fore
-    t63 = s_bend_front_elbow_down_alike * t62
+    t60 = np.abs(t33)
+    folded = t60 + np.abs(outward) <= t51
+    t61 = t33 * fore
+    t62 = s_bend_front_elbow_down_alike * t61
     ahead_1 = _runtime.select(short, t28, t44 + t50 * (t30 * M))
     del M, t50
-    t64 = outward * ahead_1
-    t65 = t63 - t64
-    t66 = fore * outward * s_bend_front_elbow_down_alike
+    t63 = outward * ahead_1
+    t64 = t62 - t63
+    t65 = fore * outward * s_bend_front_elbow_down_alike
     del outward, s_bend_front_elbow_down_alike
-    t67 = t33 * ahead_1
+    t66 = t33 * ahead_1
     del ahead_1
-    up = t66 + t67
-    t68 = 1.0 / np.sqrt(t65 * t65 + up * up)
-    ctheta2A = _runtime.select(folded, 1.0, -(t65 * t68))
-    del t65
-    stheta2A = _runtime.select(folded, 0.0, up * t68)
-    del t68, up
+    up = t65 + t66
+    t67 = 1.0 / np.sqrt(t64 * t64 + up * up)
+    ctheta2A = _runtime.select(folded, 1.0, -(t64 * t67))
+    del t64
+    stheta2A = _runtime.select(folded, 0.0, up * t67)
+    del t67, up
     ctheta23A = c_relative * ctheta2A - s_relative * stheta2A
     stheta23A = c_relative * stheta2A + s_relative * ctheta2A
-    t69 = t60 * (s_phi * ctheta23A) - t5 * (s_psi * stheta23A)
-    t70 = d * t69
-    del t69
-    t71 = t5 * (s_psi * ctheta23A) + t60 * (s_phi * stheta23A)
-    t72 = d * t71
-    del t71
-    gap = t70 * t70 + t72 * t72
-    t73 = N_mid - gap
+    t68 = t59 * (s_phi * ctheta23A) - t5 * (s_psi * stheta23A)
+    t69 = d * t68
+    del t68
+    t70 = t5 * (s_psi * ctheta23A) + t59 * (s_phi * stheta23A)
+    t71 = d * t70
+    del t70
+    gap = t69 * t69 + t71 * t71
+    t72 = N_mid - gap
     del N_mid
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
     point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
     del ctheta23A, stheta23A
-    t74 = 2.0 * t70 * point_11 + 2.0 * t72 * point_21
-    room_right = t73 + t74
-    t75 = _runtime.VANISHING * t49
-    spent_right = room_right <= t75
-    t76 = size / 100000.0
-    t77 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t78 = 1.0 / (t76 + t77)
-    del t77
+    t73 = 2.0 * t69 * point_11 + 2.0 * t71 * point_21
+    room_right = t72 + t73
+    t74 = _runtime.VANISHING * t49
+    spent_right = room_right <= t74
+    t75 = size / 100000.0
+    t76 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t77 = 1.0 / (t75 + t76)
+    del t76
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
     del c_relative, s_relative
-    t79 = 2.0 * drawn
-    t80 = t72 - point_21
-    t81 = t70 - point_11
-    t82 = t79 * (ctheta2A * t80 - stheta2A * t81)
-    t83 = _runtime.select(spent_right, t78 * (size * np.abs(-t82)), 0.0)
-    t84 = -(_runtime.FEASIBILITY * (t49 + t83)) <= room_right
-    del t83
-    room_left = t73 - t74
-    del t73
-    spent_left = room_left <= t75
-    h_left_0 = t72 + point_21
-    del point_21, t72
-    r_left_0 = t70 + point_11
-    del point_11, t70
-    slope_left = t79 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
-    del t79
-    t85 = _runtime.select(spent_left, t78 * (size * np.abs(slope_left)), 0.0)
-    del t78
-    t86 = -(_runtime.FEASIBILITY * (t49 + t85)) <= room_left
-    del t85
-    t87 = -(_runtime.FEASIBILITY * t49)
-    t88 = size * size
-    t89 = t88 * t88 / 10000000000.0
-    t90 = t82 * (room_right - np.abs(room_right)) / (2.0 * (t89 + t82 * t82))
-    t91 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t89 + slope_left * slope_left))
-    turn = _runtime.select(spent_right, t90, 0.0) + _runtime.select(spent_left, -t91, 0.0)
-    del spent_left, spent_right, t90, t91
-    t92 = t82 * turn
+    t78 = 2.0 * drawn
+    t79 = t71 - point_21
+    t80 = t69 - point_11
+    t81 = t78 * (ctheta2A * t79 - stheta2A * t80)
+    t82 = _runtime.select(spent_right, t77 * (size * np.abs(-t81)), 0.0)
+    t83 = -(_runtime.FEASIBILITY * (t49 + t82)) <= room_right
     del t82
-    t93 = room_right - t92
+    room_left = t72 - t73
+    del t72
+    spent_left = room_left <= t74
+    h_left_0 = t71 + point_21
+    del point_21, t71
+    r_left_0 = t69 + point_11
+    del point_11, t69
+    slope_left = t78 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    del t78
+    t84 = _runtime.select(spent_left, t77 * (size * np.abs(slope_left)), 0.0)
+    del t77
+    t85 = -(_runtime.FEASIBILITY * (t49 + t84)) <= room_left
+    del t84
+    t86 = -(_runtime.FEASIBILITY * t49)
+    t87 = size * size
+    t88 = t87 * t87 / 10000000000.0
+    t89 = t81 * (room_right - np.abs(room_right)) / (2.0 * (t88 + t81 * t81))
+    t90 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t88 + slope_left * slope_left))
+    turn = _runtime.select(spent_right, t89, 0.0) + _runtime.select(spent_left, -t90, 0.0)
+    del spent_left, spent_right, t89, t90
+    t91 = t81 * turn
+    del t81
+    t92 = room_right - t91
     del room_right
-    t94 = drawn * turn
+    t93 = drawn * turn
     del drawn
-    t95 = ctheta2A * t94
-    t96 = t80 + t95 + t81 * turn
-    t97 = stheta2A * t94
-    del t94
-    t98 = t81 - t80 * turn - t97
-    del t80, t81
-    t99 = t96 * t96 + t98 * t98
-    t100 = gap * gap
-    t101 = L1 - fore_arm
-    t102 = t101 * t101
+    t94 = ctheta2A * t93
+    t95 = t79 + t94 + t80 * turn
+    t96 = stheta2A * t93
+    del t93
+    t97 = t80 - t79 * turn - t96
+    del t79, t80
+    t98 = t95 * t95 + t97 * t97
+    t99 = gap * gap
+    t100 = L1 - fore_arm
+    t101 = t100 * t100
     M_mid = t29 * _runtime.select(t57, large_mid, small_mid)
     del large_mid, small_mid, t57
-    t103 = M_mid + gap
-    t104 = _runtime.select(t88 * t99 < t100, t102 - t99, t74 - t92 - t103)
-    del t92, t99
-    t105 = t48 & t84 & t86 & (t87 <= t93) & (t87 <= -t104)
-    del t84, t86
-    t106 = slope_left * turn
+    t102 = M_mid + gap
+    t103 = _runtime.select(t87 * t98 < t99, t101 - t98, t73 - t91 - t102)
+    del t91, t98
+    t104 = t48 & t83 & t85 & (t86 <= t92) & (t86 <= -t103)
+    del t83, t85
+    t105 = slope_left * turn
     del slope_left
-    t107 = room_left + t106
+    t106 = room_left + t105
     del room_left
-    h_left = h_left_0 - t95 + r_left_0 * turn
-    del t95
-    r_left = r_left_0 + t97 - h_left_0 * turn
-    del h_left_0, r_left_0, t97, turn
-    t108 = h_left * h_left + r_left * r_left
-    t109 = _runtime.select(t88 * t108 < t100, t108 - t102, t74 + t103 - t106)
-    del t100, t103, t106, t108, t74
-    unreachable = np.logical_not(t105 & (t87 <= t107) & (t87 <= t109))
-    del t105
-    t110 = _runtime.poison(invalid | unreachable)
-    t111 = t17 + t110
-    t112 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.abs(-t96) + np.abs(-t98) <= t112
-    t113 = np.arctan2(stheta2A, ctheta2A)
-    del ctheta2A, stheta2A
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t88
-    t114 = _runtime.VANISHING * (_runtime.VANISHING * (t49 * 16.0))
-    M_right = np.maximum(-t104, t114)
+    h_left = h_left_0 - t94 + r_left_0 * turn
+    del t94
+    r_left = r_left_0 + t96 - h_left_0 * turn
+    del h_left_0, r_left_0, t96, turn
+    t107 = h_left * h_left + r_left * r_left
+    t108 = _runtime.select(t87 * t107 < t99, t107 - t101, t73 + t102 - t105)
+    del t102, t105, t107, t73, t99
+    unreachable = np.logical_not(t104 & (t86 <= t106) & (t86 <= t108))
     del t104
-    N_right = np.maximum(t93, t114)
-    del t93
-    t115 = 1.0 / (M_right + N_right)
-    t116 = 2.0 * _runtime.select(0.0 <= -t58, 1.0, -1.0)
+    t109 = _runtime.poison(invalid | unreachable)
+    t110 = t17 + t109
+    t111 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.abs(-t95) + np.abs(-t97) <= t111
+    t112 = np.arctan2(stheta2A, ctheta2A)
+    del ctheta2A, stheta2A
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t87
+    t113 = _runtime.VANISHING * (_runtime.VANISHING * (t49 * 16.0))
+    M_right = np.maximum(-t103, t113)
+    del t103
+    N_right = np.maximum(t92, t113)
+    del t92
+    t114 = 1.0 / (M_right + N_right)
+    t115 = 2.0 * _runtime.sign(-t58)
     del t58
     rN_right = np.sqrt(N_right)
     del N_right
     rM_right = np.sqrt(M_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t115 * (t116 * rN_right * rM_right))
-    t117 = fore_arm * s_bend_right
+    s_bend_right = _runtime.select(short_right, 0.0, t114 * (t115 * rN_right * rM_right))
+    t116 = fore_arm * s_bend_right
     del s_bend_right
-    t118 = 2.0 * fore_arm
-    ahead_1_right = _runtime.select(short_right, size, t101 + t118 * M_right * t115)
-    del M_right, t115
-    t119 = np.arctan2(t98 * t117 - t96 * ahead_1_right, -(t98 * ahead_1_right + t96 * t117))
-    del ahead_1_right, t117, t96, t98
-    t120 = _runtime.wrap_cut(_runtime.select(folded_right, t113, t119))
+    t117 = 2.0 * fore_arm
+    ahead_1_right = _runtime.select(short_right, size, t100 + t117 * M_right * t114)
+    del M_right, t114
+    t118 = np.arctan2(t97 * t116 - t95 * ahead_1_right, -(t97 * ahead_1_right + t95 * t116))
+    del ahead_1_right, t116, t95, t97
+    t119 = _runtime.wrap_cut(_runtime.select(folded_right, t112, t118))
+    del t118
+    t120 = t119 + t109
     del t119
-    t121 = t120 + t110
-    del t120
     bare_right = fore_arm <= _runtime.VANISHING * size
-    t122 = 1.0 / fore_arm
-    t123 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t122), _runtime.select(bare_right, 1.0, a3 * t122))
-    del bare_right, t122
-    t124 = _runtime.select(short_right, 0.0, t116 * np.arctan2(rN_right, rM_right))
+    t121 = 1.0 / fore_arm
+    t122 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t121), _runtime.select(bare_right, 1.0, a3 * t121))
+    del bare_right, t121
+    t123 = _runtime.select(short_right, 0.0, t115 * np.arctan2(rN_right, rM_right))
     del rM_right, rN_right
-    t125 = _runtime.wrap(t123 + t124) + t110
-    del t124
-    folded_left = np.abs(h_left) + np.abs(r_left) <= t112
-    M_left = np.maximum(t109, 0.0)
-    del t109
-    N_left = np.maximum(t107, 0.0)
-    del t107
-    t126 = 1.0 / (M_left + N_left)
-    ahead_1_left = _runtime.select(short_right, size, t101 + t118 * M_left * t126)
-    t127 = h_left * ahead_1_left
+    t124 = _runtime.wrap(t122 + t123) + t109
+    del t123
+    folded_left = np.abs(h_left) + np.abs(r_left) <= t111
+    M_left = np.maximum(t108, 0.0)
+    del t108
+    N_left = np.maximum(t106, 0.0)
+    del t106
+    t125 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t100 + t117 * M_left * t125)
+    t126 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     del N_left
     rM_left = np.sqrt(M_left)
     del M_left
-    s_bend_left = _runtime.select(short_right, 0.0, t126 * (t116 * rN_left * rM_left))
-    del t126
-    t128 = fore_arm * s_bend_left
+    s_bend_left = _runtime.select(short_right, 0.0, t125 * (t115 * rN_left * rM_left))
+    del t125
+    t127 = fore_arm * s_bend_left
     del s_bend_left
-    t129 = r_left * t128
-    t130 = r_left * ahead_1_left
+    t128 = r_left * t127
+    t129 = r_left * ahead_1_left
     del ahead_1_left, r_left
-    t131 = h_left * t128
-    del h_left, t128
-    t132 = _runtime.select(folded_left, t113, np.arctan2(t127 - t129, t130 + t131))
-    t133 = _runtime.select(short_right, 0.0, t116 * np.arctan2(rN_left, rM_left))
-    del rM_left, rN_left, t116
-    t134 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t130 = h_left * t127
+    del h_left, t127
+    t131 = _runtime.select(folded_left, t112, np.arctan2(t126 - t128, t129 + t130))
+    t132 = _runtime.select(short_right, 0.0, t115 * np.arctan2(rN_left, rM_left))
+    del rM_left, rN_left, t115
+    t133 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
     del c_pitch, s_pitch
-    t135 = t134 + t110
-    t136 = _runtime.select(folded_left, t113, np.arctan2(t127 + t129, t130 - t131))
-    del t113, t127, t129, t130, t131
+    t134 = t133 + t109
+    t135 = _runtime.select(folded_left, t112, np.arctan2(t126 + t128, t129 - t130))
+    del t112, t126, t128, t129, t130
     s_relative_front_elbow_down_alike = t53 + t54
     del t53, t54
     c_relative_front_elbow_down_alike = t55 - t56
     del t55, t56
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t137 = 0.0 <= straight_mid_front_elbow_down_alike
-    t138 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    t139 = _runtime.select(t137, straight_mid_front_elbow_down_alike, -straight_mid_front_elbow_down_alike)
+    t136 = 0.0 <= straight_mid_front_elbow_down_alike
+    t137 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
     del straight_mid_front_elbow_down_alike
-    large_mid_front_elbow_down_alike = fore_arm + t139
+    small_mid_front_elbow_down_alike = t137 * t137 / large_mid_front_elbow_down_alike
+    t138 = _runtime.select(t136, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    out_front_elbow_down_alike = t62 + t63
+    del t62, t63
+    t139 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t140 = t65 - t66
+    del t65, t66
+    t141 = 1.0 / np.sqrt(t139 + t140 * t140)
     del t139
-    small_mid_front_elbow_down_alike = t138 * t138 / large_mid_front_elbow_down_alike
-    t140 = _runtime.select(t137, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    out_front_elbow_down_alike = t63 + t64
-    del t63, t64
-    t141 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t142 = t66 - t67
-    del t66, t67
-    t143 = 1.0 / np.sqrt(t141 + t142 * t142)
-    del t141
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, out_front_elbow_down_alike * t143)
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, out_front_elbow_down_alike * t141)
     del out_front_elbow_down_alike
-    t144 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t145 = _runtime.select(folded, 0.0, t142 * t143)
-    del t142, t143
-    ctheta23A_front_elbow_down_alike = t144 + s_relative_front_elbow_down_alike * t145
+    t142 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t143 = _runtime.select(folded, 0.0, t140 * t141)
+    del t140, t141
+    ctheta23A_front_elbow_down_alike = t142 + s_relative_front_elbow_down_alike * t143
+    del t142
+    t144 = t59 * (s_phi * ctheta23A_front_elbow_down_alike)
+    t145 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t146 = c_relative_front_elbow_down_alike * t143 - t145
+    del t145
+    t147 = d * (t144 + t5 * (s_psi * t146))
     del t144
-    t146 = t60 * (s_phi * ctheta23A_front_elbow_down_alike)
-    t147 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t148 = c_relative_front_elbow_down_alike * t145 - t147
-    del t147
-    t149 = d * (t146 + t5 * (s_psi * t148))
-    del t146
-    t150 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
-    t151 = d * (t150 - t60 * (s_phi * t148))
-    del t150
-    gap_front_elbow_down_alike = t149 * t149 + t151 * t151
-    t152 = t29 * t140 - gap_front_elbow_down_alike
-    del t140
-    t153 = L1 * ctheta2A_front_elbow_down_alike - L2 * t148
-    point_11_front_elbow_down_alike = t153 + a3 * ctheta23A_front_elbow_down_alike
-    del t153
-    t154 = L1 * t145 + L2 * ctheta23A_front_elbow_down_alike
+    t148 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
+    t149 = d * (t148 - t59 * (s_phi * t146))
+    del t148
+    gap_front_elbow_down_alike = t147 * t147 + t149 * t149
+    t150 = t29 * t138 - gap_front_elbow_down_alike
+    del t138
+    t151 = L1 * ctheta2A_front_elbow_down_alike - L2 * t146
+    point_11_front_elbow_down_alike = t151 + a3 * ctheta23A_front_elbow_down_alike
+    del t151
+    t152 = L1 * t143 + L2 * ctheta23A_front_elbow_down_alike
     del ctheta23A_front_elbow_down_alike
-    t155 = t154 + a3 * t148
-    del t148, t154
-    t156 = 2.0 * t149 * point_11_front_elbow_down_alike - 2.0 * t151 * t155
-    room_right_front_elbow_down_alike = t152 + t156
-    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t75
+    t153 = t152 + a3 * t146
+    del t146, t152
+    t154 = 2.0 * t147 * point_11_front_elbow_down_alike - 2.0 * t149 * t153
+    room_right_front_elbow_down_alike = t150 + t154
+    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t74
     tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t157 = 1.0 / (t76 + np.abs(tilt_front_elbow_down_alike))
+    t155 = 1.0 / (t75 + np.abs(tilt_front_elbow_down_alike))
     del tilt_front_elbow_down_alike
-    t158 = L1 + L_2W * s_relative_front_elbow_down_alike
+    t156 = L1 + L_2W * s_relative_front_elbow_down_alike
     del s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t158 + a_3W * c_relative_front_elbow_down_alike
-    del c_relative_front_elbow_down_alike, t158
-    t159 = 2.0 * drawn_front_elbow_down_alike
-    t160 = t151 + t155
-    t161 = t149 - point_11_front_elbow_down_alike
-    t162 = ctheta2A_front_elbow_down_alike * t160 + t145 * t161
-    t163 = t159 * t162
+    drawn_front_elbow_down_alike = t156 + a_3W * c_relative_front_elbow_down_alike
+    del c_relative_front_elbow_down_alike, t156
+    t157 = 2.0 * drawn_front_elbow_down_alike
+    t158 = t149 + t153
+    t159 = t147 - point_11_front_elbow_down_alike
+    t160 = ctheta2A_front_elbow_down_alike * t158 + t143 * t159
+    t161 = t157 * t160
+    del t160
+    t162 = _runtime.select(spent_right_front_elbow_down_alike, t155 * (size * np.abs(-t161)), 0.0)
+    t163 = -(_runtime.FEASIBILITY * (t49 + t162)) <= room_right_front_elbow_down_alike
     del t162
-    t164 = _runtime.select(spent_right_front_elbow_down_alike, t157 * (size * np.abs(-t163)), 0.0)
-    t165 = -(_runtime.FEASIBILITY * (t49 + t164)) <= room_right_front_elbow_down_alike
+    room_left_front_elbow_down_alike = t150 - t154
+    del t150
+    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t74
+    h_left_0_front_elbow_down_alike = t149 - t153
+    del t149, t153
+    t164 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = t147 + point_11_front_elbow_down_alike
+    del point_11_front_elbow_down_alike, t147
+    t165 = t164 + t143 * r_left_0_front_elbow_down_alike
     del t164
-    room_left_front_elbow_down_alike = t152 - t156
-    del t152
-    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t75
-    h_left_0_front_elbow_down_alike = t151 - t155
-    del t151, t155
-    t166 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = t149 + point_11_front_elbow_down_alike
-    del point_11_front_elbow_down_alike, t149
-    t167 = t166 + t145 * r_left_0_front_elbow_down_alike
-    del t166
-    slope_left_front_elbow_down_alike = t159 * t167
-    del t159, t167
-    t168 = size * np.abs(slope_left_front_elbow_down_alike)
-    t169 = _runtime.select(spent_left_front_elbow_down_alike, t157 * t168, 0.0)
-    del t157, t168
-    t170 = -(_runtime.FEASIBILITY * (t49 + t169)) <= room_left_front_elbow_down_alike
-    del t169
-    t171 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
-    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t163 * t171 / (2.0 * (t89 + t163 * t163)), 0.0)
-    del spent_right_front_elbow_down_alike, t171
-    t172 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
-    t173 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t174 = slope_left_front_elbow_down_alike * t172 / (2.0 * (t89 + t173))
-    del t172, t173
-    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t174, 0.0)
-    del spent_left_front_elbow_down_alike, t174
+    slope_left_front_elbow_down_alike = t157 * t165
+    del t157, t165
+    t166 = size * np.abs(slope_left_front_elbow_down_alike)
+    t167 = _runtime.select(spent_left_front_elbow_down_alike, t155 * t166, 0.0)
+    del t155, t166
+    t168 = -(_runtime.FEASIBILITY * (t49 + t167)) <= room_left_front_elbow_down_alike
+    del t167
+    t169 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
+    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t161 * t169 / (2.0 * (t88 + t161 * t161)), 0.0)
+    del spent_right_front_elbow_down_alike, t169
+    t170 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
+    t171 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t172 = slope_left_front_elbow_down_alike * t170 / (2.0 * (t88 + t171))
+    del t170, t171
+    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t172, 0.0)
+    del spent_left_front_elbow_down_alike, t172
     turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
     del turn_left_front_elbow_down_alike, turn_right_front_elbow_down_alike
-    t175 = t163 * turn_front_elbow_down_alike
-    del t163
-    t176 = room_right_front_elbow_down_alike - t175
+    t173 = t161 * turn_front_elbow_down_alike
+    del t161
+    t174 = room_right_front_elbow_down_alike - t173
     del room_right_front_elbow_down_alike
-    t177 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    t175 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
     del drawn_front_elbow_down_alike
-    t178 = ctheta2A_front_elbow_down_alike * t177
-    t179 = t160 + t178 + t161 * turn_front_elbow_down_alike
-    t180 = t145 * t177
-    del t177
-    t181 = t161 - t160 * turn_front_elbow_down_alike + t180
-    del t160, t161
-    t182 = t179 * t179 + t181 * t181
-    t183 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t184 = _runtime.select(t137, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t137
-    M_mid_front_elbow_down_alike = t29 * t184
-    del t184
-    t185 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t186 = _runtime.select(t88 * t182 < t183, t102 - t182, t156 - t175 - t185)
-    del t175, t182
-    t187 = t48 & t165 & t170 & (t87 <= t176) & (t87 <= -t186)
-    del t165, t170, t48
-    t188 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
+    t176 = ctheta2A_front_elbow_down_alike * t175
+    t177 = t158 + t176 + t159 * turn_front_elbow_down_alike
+    t178 = t143 * t175
+    del t175
+    t179 = t159 - t158 * turn_front_elbow_down_alike + t178
+    del t158, t159
+    t180 = t177 * t177 + t179 * t179
+    t181 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t182 = _runtime.select(t136, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t136
+    M_mid_front_elbow_down_alike = t29 * t182
+    del t182
+    t183 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t184 = _runtime.select(t87 * t180 < t181, t101 - t180, t154 - t173 - t183)
+    del t173, t180
+    t185 = t48 & t163 & t168 & (t86 <= t174) & (t86 <= -t184)
+    del t163, t168, t48
+    t186 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
     del slope_left_front_elbow_down_alike
-    t189 = room_left_front_elbow_down_alike + t188
+    t187 = room_left_front_elbow_down_alike + t186
     del room_left_front_elbow_down_alike
-    t190 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t178 + t190
-    del t178, t190
-    t191 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    t192 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    t188 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t176 + t188
+    del t176, t188
+    t189 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    t190 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
     del h_left_0_front_elbow_down_alike, turn_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t180 - t192
-    del r_left_0_front_elbow_down_alike, t180, t192
-    t193 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t194 = t191 + t193
-    del t191, t193
-    t195 = _runtime.select(t88 * t194 < t183, t194 - t102, t156 + t185 - t188)
-    del t156, t183, t185, t188, t194
-    unreachable_2 = np.logical_not(t187 & (t87 <= t189) & (t87 <= t195))
-    del t187
-    t196 = _runtime.poison(invalid | unreachable_2)
-    t197 = t17 + t196
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t178 - t190
+    del r_left_0_front_elbow_down_alike, t178, t190
+    t191 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t192 = t189 + t191
+    del t189, t191
+    t193 = _runtime.select(t87 * t192 < t181, t192 - t101, t154 + t183 - t186)
+    del t154, t181, t183, t186, t192
+    unreachable_2 = np.logical_not(t185 & (t86 <= t187) & (t86 <= t193))
+    del t185
+    t194 = _runtime.poison(invalid | unreachable_2)
+    t195 = t17 + t194
     del t17
-    folded_right_front_elbow_down_alike = np.abs(-t179) + np.abs(-t181) <= t112
-    t198 = np.arctan2(-t145, ctheta2A_front_elbow_down_alike)
-    del ctheta2A_front_elbow_down_alike, t145
-    M_right_front_elbow_down_alike = np.maximum(-t186, t114)
-    del t186
-    N_right_front_elbow_down_alike = np.maximum(t176, t114)
-    del t176
+    folded_right_front_elbow_down_alike = np.abs(-t177) + np.abs(-t179) <= t111
+    t196 = np.arctan2(-t143, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike, t143
+    M_right_front_elbow_down_alike = np.maximum(-t184, t113)
+    del t184
+    N_right_front_elbow_down_alike = np.maximum(t174, t113)
+    del t174
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t199 = 1.0 / whole_right_front_elbow_down_alike
+    t197 = 1.0 / whole_right_front_elbow_down_alike
     del whole_right_front_elbow_down_alike
-    t200 = 2.0 * _runtime.select(0.0 <= -t138, 1.0, -1.0)
-    del t138
+    t198 = 2.0 * _runtime.sign(-t137)
+    del t137
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
     del N_right_front_elbow_down_alike
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t201 = t200 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t199 * t201)
-    del t201
-    t202 = fore_arm * s_bend_right_front_elbow_down_alike
+    t199 = t198 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t197 * t199)
+    del t199
+    t200 = fore_arm * s_bend_right_front_elbow_down_alike
     del s_bend_right_front_elbow_down_alike
-    t203 = t101 + t118 * M_right_front_elbow_down_alike * t199
-    del M_right_front_elbow_down_alike, t199
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t203)
+    t201 = t100 + t117 * M_right_front_elbow_down_alike * t197
+    del M_right_front_elbow_down_alike, t197
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t201)
+    del t201
+    up_right_front_elbow_down_alike = t179 * t200 - t177 * ahead_1_right_front_elbow_down_alike
+    t202 = t179 * ahead_1_right_front_elbow_down_alike + t177 * t200
+    del ahead_1_right_front_elbow_down_alike, t177, t179, t200
+    t203 = np.arctan2(up_right_front_elbow_down_alike, -t202)
+    del t202, up_right_front_elbow_down_alike
+    t204 = _runtime.select(folded_right_front_elbow_down_alike, t196, t203)
     del t203
-    up_right_front_elbow_down_alike = t181 * t202 - t179 * ahead_1_right_front_elbow_down_alike
-    t204 = t181 * ahead_1_right_front_elbow_down_alike + t179 * t202
-    del ahead_1_right_front_elbow_down_alike, t179, t181, t202
-    t205 = np.arctan2(up_right_front_elbow_down_alike, -t204)
-    del t204, up_right_front_elbow_down_alike
-    t206 = _runtime.select(folded_right_front_elbow_down_alike, t198, t205)
-    del t205
-    t207 = _runtime.wrap_cut(t206) + t196
-    del t206
-    t208 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    t205 = _runtime.wrap_cut(t204) + t194
+    del t204
+    t206 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
     del rM_right_front_elbow_down_alike, rN_right_front_elbow_down_alike
-    t209 = _runtime.select(short_right, 0.0, t200 * t208)
-    del t208
-    t210 = _runtime.wrap(t123 + t209) + t196
+    t207 = _runtime.select(short_right, 0.0, t198 * t206)
+    del t206
+    t208 = _runtime.wrap(t122 + t207) + t194
+    del t207
+    t209 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t209 <= t111
     del t209
-    t211 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t211 <= t112
-    del t211
-    M_left_front_elbow_down_alike = np.maximum(t195, 0.0)
-    del t195
-    N_left_front_elbow_down_alike = np.maximum(t189, 0.0)
-    del t189
+    M_left_front_elbow_down_alike = np.maximum(t193, 0.0)
+    del t193
+    N_left_front_elbow_down_alike = np.maximum(t187, 0.0)
+    del t187
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t212 = 1.0 / whole_left_front_elbow_down_alike
+    t210 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    t213 = t101 + t118 * M_left_front_elbow_down_alike * t212
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t213)
-    del t213
-    t214 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t211 = t100 + t117 * M_left_front_elbow_down_alike * t210
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t211)
+    del t211
+    t212 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     del N_left_front_elbow_down_alike
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
     del M_left_front_elbow_down_alike
-    t215 = t200 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t212 * t215)
-    del t212, t215
-    t216 = fore_arm * s_bend_left_front_elbow_down_alike
+    t213 = t198 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t210 * t213)
+    del t210, t213
+    t214 = fore_arm * s_bend_left_front_elbow_down_alike
     del s_bend_left_front_elbow_down_alike
-    t217 = r_left_front_elbow_down_alike * t216
-    t218 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t215 = r_left_front_elbow_down_alike * t214
+    t216 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
-    t219 = h_left_front_elbow_down_alike * t216
-    del h_left_front_elbow_down_alike, t216
-    t220 = _runtime.select(folded_left_front_elbow_down_alike, t198, np.arctan2(t214 - t217, t218 + t219))
-    t221 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t217 = h_left_front_elbow_down_alike * t214
+    del h_left_front_elbow_down_alike, t214
+    t218 = _runtime.select(folded_left_front_elbow_down_alike, t196, np.arctan2(t212 - t215, t216 + t217))
+    t219 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
     del rM_left_front_elbow_down_alike, rN_left_front_elbow_down_alike
-    t222 = _runtime.select(short_right, 0.0, t200 * t221)
-    del t200, t221
-    t223 = t134 + t196
-    t224 = _runtime.select(folded_left_front_elbow_down_alike, t198, np.arctan2(t214 + t217, t218 - t219))
-    del t198, t214, t217, t218, t219
-    t225 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t16))
+    t220 = _runtime.select(short_right, 0.0, t198 * t219)
+    del t198, t219
+    t221 = t133 + t194
+    t222 = _runtime.select(folded_left_front_elbow_down_alike, t196, np.arctan2(t212 + t215, t216 - t217))
+    del t196, t212, t215, t216, t217
+    t223 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t16))
     del t16, t2
     c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -(t35 * (t38 + t39)))
     del t38, t39
@@ -2020,574 +1986,570 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t35, t40, t41
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
     del c1_rear_elbow_up_alike, s1_rear_elbow_up_alike
-    t226 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    square_rear_elbow_up_alike = t34 + t226
-    del t226, t34
-    t227 = t32 - square_rear_elbow_up_alike
+    t224 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    square_rear_elbow_up_alike = t34 + t224
+    del t224, t34
+    t225 = t32 - square_rear_elbow_up_alike
     del t32
-    t228 = square_rear_elbow_up_alike - t46
+    t226 = square_rear_elbow_up_alike - t46
     del square_rear_elbow_up_alike, t46
-    t229 = t27 & (t31 <= t227) & (-t45 <= t228)
+    t227 = t27 & (t31 <= t225) & (-t45 <= t226)
     del t27, t31, t45
-    N_rear_elbow_up_alike = np.maximum(t227, 0.0)
-    del t227
-    M_rear_elbow_up_alike = np.maximum(t228, 0.0)
-    del t228
-    t230 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
+    N_rear_elbow_up_alike = np.maximum(t225, 0.0)
+    del t225
+    M_rear_elbow_up_alike = np.maximum(t226, 0.0)
+    del t226
+    t228 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
     whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
-    t231 = 1.0 / whole_rear_elbow_up_alike
+    t229 = 1.0 / whole_rear_elbow_up_alike
     del whole_rear_elbow_up_alike
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t230 * t231))
-    del t230
-    t232 = s_lag * c_bend_rear_elbow_up_alike
-    t233 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t228 * t229))
+    del t228
+    t230 = s_lag * c_bend_rear_elbow_up_alike
+    t231 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
     del N_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t231 * t233)
-    del t233
-    t234 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t232 + t234
-    t235 = c_lag * c_bend_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t229 * t231)
+    del t231
+    t232 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t230 + t232
+    t233 = c_lag * c_bend_rear_elbow_up_alike
     del c_bend_rear_elbow_up_alike, c_lag
-    t236 = s_lag * s_bend_rear_elbow_up_alike
+    t234 = s_lag * s_bend_rear_elbow_up_alike
     del s_lag
-    c_relative_rear_elbow_up_alike = t235 - t236
+    c_relative_rear_elbow_up_alike = t233 - t234
     straight_mid_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
-    t237 = 0.0 <= straight_mid_rear_elbow_up_alike
-    t238 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
-    t239 = _runtime.select(t237, straight_mid_rear_elbow_up_alike, -straight_mid_rear_elbow_up_alike)
+    t235 = 0.0 <= straight_mid_rear_elbow_up_alike
+    t236 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
+    large_mid_rear_elbow_up_alike = fore_arm + np.abs(straight_mid_rear_elbow_up_alike)
     del straight_mid_rear_elbow_up_alike
-    large_mid_rear_elbow_up_alike = fore_arm + t239
-    del t239
-    small_mid_rear_elbow_up_alike = t238 * t238 / large_mid_rear_elbow_up_alike
-    t240 = _runtime.select(t237, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
-    folded_rear_elbow_up_alike = t61 + np.abs(outward_rear_elbow_up_alike) <= t51
-    del t51, t61
-    t241 = t62 * s_bend_rear_elbow_up_alike
-    del t62
-    ahead_1_rear_elbow_up_alike = _runtime.select(short, t28, t44 + t231 * (t30 * M_rear_elbow_up_alike))
-    del M_rear_elbow_up_alike, t231, t28, t30, t44
-    t242 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
-    out_rear_elbow_up_alike = t241 + t242
-    t243 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
-    t244 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
+    small_mid_rear_elbow_up_alike = t236 * t236 / large_mid_rear_elbow_up_alike
+    t237 = _runtime.select(t235, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
+    folded_rear_elbow_up_alike = t60 + np.abs(outward_rear_elbow_up_alike) <= t51
+    del t51, t60
+    t238 = t61 * s_bend_rear_elbow_up_alike
+    del t61
+    ahead_1_rear_elbow_up_alike = _runtime.select(short, t28, t44 + t229 * (t30 * M_rear_elbow_up_alike))
+    del M_rear_elbow_up_alike, t229, t28, t30, t44
+    t239 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
+    out_rear_elbow_up_alike = t238 + t239
+    t240 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
+    t241 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
     del fore, outward_rear_elbow_up_alike, s_bend_rear_elbow_up_alike
-    t245 = t33 * ahead_1_rear_elbow_up_alike
+    t242 = t33 * ahead_1_rear_elbow_up_alike
     del ahead_1_rear_elbow_up_alike, t33
-    t246 = t244 - t245
-    t247 = 1.0 / np.sqrt(t243 + t246 * t246)
-    del t243
-    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, out_rear_elbow_up_alike * t247)
-    del out_rear_elbow_up_alike
-    t248 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t249 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t246 * t247)
-    del t246, t247
-    ctheta23A_rear_elbow_up_alike = t248 + s_relative_rear_elbow_up_alike * t249
-    del t248
-    t250 = t60 * (s_phi * ctheta23A_rear_elbow_up_alike)
-    t251 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t252 = c_relative_rear_elbow_up_alike * t249 - t251
-    del t251
-    t253 = d * (t250 + t5 * (s_psi * t252))
-    del t250
-    t254 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) - t60 * (s_phi * t252)
-    t255 = d * t254
-    del t254
-    gap_rear_elbow_up_alike = t253 * t253 + t255 * t255
-    t256 = t29 * t240 - gap_rear_elbow_up_alike
+    t243 = t241 - t242
+    t244 = 1.0 / np.sqrt(t240 + t243 * t243)
     del t240
-    t257 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t252
-    point_11_rear_elbow_up_alike = t257 + a3 * ctheta23A_rear_elbow_up_alike
-    del t257
-    t258 = L1 * t249 + L2 * ctheta23A_rear_elbow_up_alike
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, out_rear_elbow_up_alike * t244)
+    del out_rear_elbow_up_alike
+    t245 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t246 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t243 * t244)
+    del t243, t244
+    ctheta23A_rear_elbow_up_alike = t245 + s_relative_rear_elbow_up_alike * t246
+    del t245
+    t247 = t59 * (s_phi * ctheta23A_rear_elbow_up_alike)
+    t248 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t249 = c_relative_rear_elbow_up_alike * t246 - t248
+    del t248
+    t250 = d * (t247 + t5 * (s_psi * t249))
+    del t247
+    t251 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) - t59 * (s_phi * t249)
+    t252 = d * t251
+    del t251
+    gap_rear_elbow_up_alike = t250 * t250 + t252 * t252
+    t253 = t29 * t237 - gap_rear_elbow_up_alike
+    del t237
+    t254 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t249
+    point_11_rear_elbow_up_alike = t254 + a3 * ctheta23A_rear_elbow_up_alike
+    del t254
+    t255 = L1 * t246 + L2 * ctheta23A_rear_elbow_up_alike
     del ctheta23A_rear_elbow_up_alike
-    t259 = t258 + a3 * t252
-    del t252, t258
-    t260 = 2.0 * t253 * point_11_rear_elbow_up_alike - 2.0 * t255 * t259
-    room_right_rear_elbow_up_alike = t256 + t260
-    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t75
+    t256 = t255 + a3 * t249
+    del t249, t255
+    t257 = 2.0 * t250 * point_11_rear_elbow_up_alike - 2.0 * t252 * t256
+    room_right_rear_elbow_up_alike = t253 + t257
+    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t74
     tilt_rear_elbow_up_alike = L_2W * c_relative_rear_elbow_up_alike - a_3W * s_relative_rear_elbow_up_alike
-    t261 = 1.0 / (t76 + np.abs(tilt_rear_elbow_up_alike))
+    t258 = 1.0 / (t75 + np.abs(tilt_rear_elbow_up_alike))
     del tilt_rear_elbow_up_alike
     drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
     del c_relative_rear_elbow_up_alike, s_relative_rear_elbow_up_alike
-    t262 = 2.0 * drawn_rear_elbow_up_alike
-    t263 = t255 + t259
-    t264 = t253 - point_11_rear_elbow_up_alike
-    t265 = ctheta2A_rear_elbow_up_alike * t263 + t249 * t264
-    t266 = t262 * t265
-    del t265
-    t267 = _runtime.select(spent_right_rear_elbow_up_alike, t261 * (size * np.abs(-t266)), 0.0)
-    t268 = -(_runtime.FEASIBILITY * (t49 + t267)) <= room_right_rear_elbow_up_alike
-    del t267
-    room_left_rear_elbow_up_alike = t256 - t260
-    del t256
-    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t75
-    h_left_0_rear_elbow_up_alike = t255 - t259
-    del t255, t259
-    t269 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t253 + point_11_rear_elbow_up_alike
-    del point_11_rear_elbow_up_alike, t253
-    slope_left_rear_elbow_up_alike = t262 * (t269 + t249 * r_left_0_rear_elbow_up_alike)
-    del t262, t269
-    t270 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t271 = _runtime.select(spent_left_rear_elbow_up_alike, t261 * t270, 0.0)
-    del t261, t270
-    t272 = -(_runtime.FEASIBILITY * (t49 + t271)) <= room_left_rear_elbow_up_alike
-    del t271
-    t273 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
-    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t266 * t273 / (2.0 * (t89 + t266 * t266)), 0.0)
-    del spent_right_rear_elbow_up_alike, t273
-    t274 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
-    t275 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t276 = slope_left_rear_elbow_up_alike * t274 / (2.0 * (t89 + t275))
-    del t274, t275
-    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t276, 0.0)
-    del spent_left_rear_elbow_up_alike, t276
+    t259 = 2.0 * drawn_rear_elbow_up_alike
+    t260 = t252 + t256
+    t261 = t250 - point_11_rear_elbow_up_alike
+    t262 = ctheta2A_rear_elbow_up_alike * t260 + t246 * t261
+    t263 = t259 * t262
+    del t262
+    t264 = _runtime.select(spent_right_rear_elbow_up_alike, t258 * (size * np.abs(-t263)), 0.0)
+    t265 = -(_runtime.FEASIBILITY * (t49 + t264)) <= room_right_rear_elbow_up_alike
+    del t264
+    room_left_rear_elbow_up_alike = t253 - t257
+    del t253
+    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t74
+    h_left_0_rear_elbow_up_alike = t252 - t256
+    del t252, t256
+    t266 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t250 + point_11_rear_elbow_up_alike
+    del point_11_rear_elbow_up_alike, t250
+    slope_left_rear_elbow_up_alike = t259 * (t266 + t246 * r_left_0_rear_elbow_up_alike)
+    del t259, t266
+    t267 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t268 = _runtime.select(spent_left_rear_elbow_up_alike, t258 * t267, 0.0)
+    del t258, t267
+    t269 = -(_runtime.FEASIBILITY * (t49 + t268)) <= room_left_rear_elbow_up_alike
+    del t268
+    t270 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
+    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t263 * t270 / (2.0 * (t88 + t263 * t263)), 0.0)
+    del spent_right_rear_elbow_up_alike, t270
+    t271 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
+    t272 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t273 = slope_left_rear_elbow_up_alike * t271 / (2.0 * (t88 + t272))
+    del t271, t272
+    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t273, 0.0)
+    del spent_left_rear_elbow_up_alike, t273
     turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
     del turn_left_rear_elbow_up_alike, turn_right_rear_elbow_up_alike
-    t277 = t266 * turn_rear_elbow_up_alike
-    del t266
-    t278 = room_right_rear_elbow_up_alike - t277
+    t274 = t263 * turn_rear_elbow_up_alike
+    del t263
+    t275 = room_right_rear_elbow_up_alike - t274
     del room_right_rear_elbow_up_alike
-    t279 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t276 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
     del drawn_rear_elbow_up_alike
-    t280 = ctheta2A_rear_elbow_up_alike * t279
-    t281 = t263 + t280 + t264 * turn_rear_elbow_up_alike
-    t282 = t249 * t279
-    del t279
-    t283 = t264 - t263 * turn_rear_elbow_up_alike + t282
-    del t263, t264
-    t284 = t281 * t281 + t283 * t283
-    t285 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t286 = _runtime.select(t237, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
-    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t237
-    M_mid_rear_elbow_up_alike = t29 * t286
-    del t286
-    t287 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
-    t288 = _runtime.select(t88 * t284 < t285, t102 - t284, t260 - t277 - t287)
-    del t277, t284
-    t289 = t229 & t268 & t272 & (t87 <= t278) & (t87 <= -t288)
-    del t268, t272
-    t290 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t277 = ctheta2A_rear_elbow_up_alike * t276
+    t278 = t260 + t277 + t261 * turn_rear_elbow_up_alike
+    t279 = t246 * t276
+    del t276
+    t280 = t261 - t260 * turn_rear_elbow_up_alike + t279
+    del t260, t261
+    t281 = t278 * t278 + t280 * t280
+    t282 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t283 = _runtime.select(t235, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
+    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t235
+    M_mid_rear_elbow_up_alike = t29 * t283
+    del t283
+    t284 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
+    t285 = _runtime.select(t87 * t281 < t282, t101 - t281, t257 - t274 - t284)
+    del t274, t281
+    t286 = t227 & t265 & t269 & (t86 <= t275) & (t86 <= -t285)
+    del t265, t269
+    t287 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
     del slope_left_rear_elbow_up_alike
-    t291 = room_left_rear_elbow_up_alike + t290
+    t288 = room_left_rear_elbow_up_alike + t287
     del room_left_rear_elbow_up_alike
-    t292 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t280 + t292
-    del t280, t292
-    t293 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    t294 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t289 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t277 + t289
+    del t277, t289
+    t290 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    t291 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
     del h_left_0_rear_elbow_up_alike, turn_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t282 - t294
-    del r_left_0_rear_elbow_up_alike, t282, t294
-    t295 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t296 = t293 + t295
-    del t293, t295
-    t297 = _runtime.select(t88 * t296 < t285, t296 - t102, t260 + t287 - t290)
-    del t260, t285, t287, t290, t296
-    unreachable_3 = np.logical_not(t289 & (t87 <= t291) & (t87 <= t297))
-    del t289
-    t298 = _runtime.poison(invalid | unreachable_3)
-    t299 = t225 + t298
-    folded_right_rear_elbow_up_alike = np.abs(-t281) + np.abs(-t283) <= t112
-    t300 = np.arctan2(-t249, ctheta2A_rear_elbow_up_alike)
-    del ctheta2A_rear_elbow_up_alike, t249
-    M_right_rear_elbow_up_alike = np.maximum(-t288, t114)
-    del t288
-    N_right_rear_elbow_up_alike = np.maximum(t278, t114)
-    del t278
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t279 - t291
+    del r_left_0_rear_elbow_up_alike, t279, t291
+    t292 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t293 = t290 + t292
+    del t290, t292
+    t294 = _runtime.select(t87 * t293 < t282, t293 - t101, t257 + t284 - t287)
+    del t257, t282, t284, t287, t293
+    unreachable_3 = np.logical_not(t286 & (t86 <= t288) & (t86 <= t294))
+    del t286
+    t295 = _runtime.poison(invalid | unreachable_3)
+    t296 = t223 + t295
+    folded_right_rear_elbow_up_alike = np.abs(-t278) + np.abs(-t280) <= t111
+    t297 = np.arctan2(-t246, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, t246
+    M_right_rear_elbow_up_alike = np.maximum(-t285, t113)
+    del t285
+    N_right_rear_elbow_up_alike = np.maximum(t275, t113)
+    del t275
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t301 = 1.0 / whole_right_rear_elbow_up_alike
+    t298 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    t302 = 2.0 * _runtime.select(0.0 <= -t238, 1.0, -1.0)
-    del t238
+    t299 = 2.0 * _runtime.sign(-t236)
+    del t236
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
     del N_right_rear_elbow_up_alike
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t303 = t302 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t301 * t303)
-    del t303
-    t304 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t300 = t299 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t298 * t300)
+    del t300
+    t301 = fore_arm * s_bend_right_rear_elbow_up_alike
     del s_bend_right_rear_elbow_up_alike
-    t305 = t101 + t118 * M_right_rear_elbow_up_alike * t301
-    del M_right_rear_elbow_up_alike, t301
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t305)
+    t302 = t100 + t117 * M_right_rear_elbow_up_alike * t298
+    del M_right_rear_elbow_up_alike, t298
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t302)
+    del t302
+    up_right_rear_elbow_up_alike = t280 * t301 - t278 * ahead_1_right_rear_elbow_up_alike
+    t303 = t280 * ahead_1_right_rear_elbow_up_alike + t278 * t301
+    del ahead_1_right_rear_elbow_up_alike, t278, t280, t301
+    t304 = np.arctan2(up_right_rear_elbow_up_alike, -t303)
+    del t303, up_right_rear_elbow_up_alike
+    t305 = _runtime.select(folded_right_rear_elbow_up_alike, t297, t304)
+    del t304
+    t306 = _runtime.wrap_cut(t305) + t295
     del t305
-    up_right_rear_elbow_up_alike = t283 * t304 - t281 * ahead_1_right_rear_elbow_up_alike
-    t306 = t283 * ahead_1_right_rear_elbow_up_alike + t281 * t304
-    del ahead_1_right_rear_elbow_up_alike, t281, t283, t304
-    t307 = np.arctan2(up_right_rear_elbow_up_alike, -t306)
-    del t306, up_right_rear_elbow_up_alike
-    t308 = _runtime.select(folded_right_rear_elbow_up_alike, t300, t307)
-    del t307
-    t309 = _runtime.wrap_cut(t308) + t298
-    del t308
-    t310 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    t307 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
     del rM_right_rear_elbow_up_alike, rN_right_rear_elbow_up_alike
-    t311 = _runtime.select(short_right, 0.0, t302 * t310)
+    t308 = _runtime.select(short_right, 0.0, t299 * t307)
+    del t307
+    t309 = _runtime.wrap(t122 + t308) + t295
+    del t308
+    t310 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t310 <= t111
     del t310
-    t312 = _runtime.wrap(t123 + t311) + t298
-    del t311
-    t313 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t313 <= t112
-    del t313
-    M_left_rear_elbow_up_alike = np.maximum(t297, 0.0)
-    del t297
-    N_left_rear_elbow_up_alike = np.maximum(t291, 0.0)
-    del t291
+    M_left_rear_elbow_up_alike = np.maximum(t294, 0.0)
+    del t294
+    N_left_rear_elbow_up_alike = np.maximum(t288, 0.0)
+    del t288
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t314 = 1.0 / whole_left_rear_elbow_up_alike
+    t311 = 1.0 / whole_left_rear_elbow_up_alike
     del whole_left_rear_elbow_up_alike
-    t315 = t101 + t118 * M_left_rear_elbow_up_alike * t314
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t315)
-    del t315
-    t316 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t312 = t100 + t117 * M_left_rear_elbow_up_alike * t311
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t312)
+    del t312
+    t313 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     del N_left_rear_elbow_up_alike
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
     del M_left_rear_elbow_up_alike
-    t317 = t302 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t314 * t317)
-    del t314, t317
-    t318 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t314 = t299 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t311 * t314)
+    del t311, t314
+    t315 = fore_arm * s_bend_left_rear_elbow_up_alike
     del s_bend_left_rear_elbow_up_alike
-    t319 = r_left_rear_elbow_up_alike * t318
-    t320 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t316 = r_left_rear_elbow_up_alike * t315
+    t317 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
-    t321 = h_left_rear_elbow_up_alike * t318
-    del h_left_rear_elbow_up_alike, t318
-    t322 = _runtime.select(folded_left_rear_elbow_up_alike, t300, np.arctan2(t316 - t319, t320 + t321))
-    t323 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t318 = h_left_rear_elbow_up_alike * t315
+    del h_left_rear_elbow_up_alike, t315
+    t319 = _runtime.select(folded_left_rear_elbow_up_alike, t297, np.arctan2(t313 - t316, t317 + t318))
+    t320 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
     del rM_left_rear_elbow_up_alike, rN_left_rear_elbow_up_alike
-    t324 = _runtime.select(short_right, 0.0, t302 * t323)
-    del t302, t323
-    t325 = t134 + t298
-    t326 = _runtime.select(folded_left_rear_elbow_up_alike, t300, np.arctan2(t316 + t319, t320 - t321))
-    del t300, t316, t319, t320, t321
-    s_relative_rear_elbow_down_alike = t232 - t234
-    del t232, t234
-    c_relative_rear_elbow_down_alike = t235 + t236
-    del t235, t236
+    t321 = _runtime.select(short_right, 0.0, t299 * t320)
+    del t299, t320
+    t322 = t133 + t295
+    t323 = _runtime.select(folded_left_rear_elbow_up_alike, t297, np.arctan2(t313 + t316, t317 - t318))
+    del t297, t313, t316, t317, t318
+    s_relative_rear_elbow_down_alike = t230 - t232
+    del t230, t232
+    c_relative_rear_elbow_down_alike = t233 + t234
+    del t233, t234
     straight_mid_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
-    t327 = 0.0 <= straight_mid_rear_elbow_down_alike
-    t328 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
-    t329 = _runtime.select(t327, straight_mid_rear_elbow_down_alike, -straight_mid_rear_elbow_down_alike)
+    t324 = 0.0 <= straight_mid_rear_elbow_down_alike
+    t325 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
+    large_mid_rear_elbow_down_alike = fore_arm + np.abs(straight_mid_rear_elbow_down_alike)
     del straight_mid_rear_elbow_down_alike
-    large_mid_rear_elbow_down_alike = fore_arm + t329
-    del t329
-    small_mid_rear_elbow_down_alike = t328 * t328 / large_mid_rear_elbow_down_alike
-    t330 = _runtime.select(t327, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
-    t331 = t241 - t242
+    small_mid_rear_elbow_down_alike = t325 * t325 / large_mid_rear_elbow_down_alike
+    t326 = _runtime.select(t324, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
+    t327 = t238 - t239
+    del t238, t239
+    up_rear_elbow_down_alike = t241 + t242
     del t241, t242
-    up_rear_elbow_down_alike = t244 + t245
-    del t244, t245
-    t332 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
-    t333 = 1.0 / np.sqrt(t331 * t331 + t332)
-    del t332
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t331 * t333))
-    del t331
-    t334 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, up_rear_elbow_down_alike * t333)
-    del t333, up_rear_elbow_down_alike
-    t335 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t334 - t335
-    del t334, t335
-    t336 = t60 * (s_phi * ctheta23A_rear_elbow_down_alike)
-    t337 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    t338 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t337 + t338
-    del t337, t338
-    t339 = t5 * (s_psi * stheta23A_rear_elbow_down_alike)
-    t340 = d * (t336 - t339)
-    del t336, t339
-    t341 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
+    t328 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
+    t329 = 1.0 / np.sqrt(t327 * t327 + t328)
+    del t328
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t327 * t329))
+    del t327
+    t330 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, up_rear_elbow_down_alike * t329)
+    del t329, up_rear_elbow_down_alike
+    t331 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t330 - t331
+    del t330, t331
+    t332 = t59 * (s_phi * ctheta23A_rear_elbow_down_alike)
+    t333 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t334 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t333 + t334
+    del t333, t334
+    t335 = t5 * (s_psi * stheta23A_rear_elbow_down_alike)
+    t336 = d * (t332 - t335)
+    del t332, t335
+    t337 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
     del s_psi, t5
-    t342 = t60 * (s_phi * stheta23A_rear_elbow_down_alike)
-    del s_phi, t60
-    t343 = d * (t341 + t342)
-    del t341, t342
-    gap_rear_elbow_down_alike = t340 * t340 + t343 * t343
-    t344 = t29 * t330 - gap_rear_elbow_down_alike
-    del t330
-    t345 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t345 + a3 * ctheta23A_rear_elbow_down_alike
-    del t345
-    t346 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    t338 = t59 * (s_phi * stheta23A_rear_elbow_down_alike)
+    del s_phi, t59
+    t339 = d * (t337 + t338)
+    del t337, t338
+    gap_rear_elbow_down_alike = t336 * t336 + t339 * t339
+    t340 = t29 * t326 - gap_rear_elbow_down_alike
+    del t326
+    t341 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t341 + a3 * ctheta23A_rear_elbow_down_alike
+    del t341
+    t342 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
     del ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t346 + a3 * stheta23A_rear_elbow_down_alike
-    del stheta23A_rear_elbow_down_alike, t346
-    t347 = 2.0 * t340 * point_11_rear_elbow_down_alike + 2.0 * t343 * point_21_rear_elbow_down_alike
-    room_right_rear_elbow_down_alike = t344 + t347
-    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t75
+    point_21_rear_elbow_down_alike = t342 + a3 * stheta23A_rear_elbow_down_alike
+    del stheta23A_rear_elbow_down_alike, t342
+    t343 = 2.0 * t336 * point_11_rear_elbow_down_alike + 2.0 * t339 * point_21_rear_elbow_down_alike
+    room_right_rear_elbow_down_alike = t340 + t343
+    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t74
     tilt_rear_elbow_down_alike = L_2W * c_relative_rear_elbow_down_alike - a_3W * s_relative_rear_elbow_down_alike
-    t348 = 1.0 / (t76 + np.abs(tilt_rear_elbow_down_alike))
-    del t76, tilt_rear_elbow_down_alike
+    t344 = 1.0 / (t75 + np.abs(tilt_rear_elbow_down_alike))
+    del t75, tilt_rear_elbow_down_alike
     drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
     del L_2W, a_3W, c_relative_rear_elbow_down_alike, s_relative_rear_elbow_down_alike
-    t349 = 2.0 * drawn_rear_elbow_down_alike
-    t350 = t343 - point_21_rear_elbow_down_alike
-    t351 = t340 - point_11_rear_elbow_down_alike
-    t352 = ctheta2A_rear_elbow_down_alike * t350 - stheta2A_rear_elbow_down_alike * t351
-    t353 = t349 * t352
-    del t352
-    t354 = _runtime.select(spent_right_rear_elbow_down_alike, t348 * (size * np.abs(-t353)), 0.0)
-    t355 = -(_runtime.FEASIBILITY * (t49 + t354)) <= room_right_rear_elbow_down_alike
-    del t354
-    room_left_rear_elbow_down_alike = t344 - t347
-    del t344
-    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t75
-    del t75
-    h_left_0_rear_elbow_down_alike = t343 + point_21_rear_elbow_down_alike
-    del point_21_rear_elbow_down_alike, t343
-    t356 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t340 + point_11_rear_elbow_down_alike
-    del point_11_rear_elbow_down_alike, t340
-    t357 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t349 * (t356 - t357)
-    del t349, t356, t357
-    t358 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t359 = _runtime.select(spent_left_rear_elbow_down_alike, t348 * t358, 0.0)
-    del t348, t358
-    t360 = -(_runtime.FEASIBILITY * (t49 + t359)) <= room_left_rear_elbow_down_alike
-    del t359, t49
-    t361 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
-    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t353 * t361 / (2.0 * (t89 + t353 * t353)), 0.0)
-    del spent_right_rear_elbow_down_alike, t361
-    t362 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
-    t363 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t364 = slope_left_rear_elbow_down_alike * t362 / (2.0 * (t89 + t363))
-    del t362, t363, t89
-    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t364, 0.0)
-    del spent_left_rear_elbow_down_alike, t364
+    t345 = 2.0 * drawn_rear_elbow_down_alike
+    t346 = t339 - point_21_rear_elbow_down_alike
+    t347 = t336 - point_11_rear_elbow_down_alike
+    t348 = ctheta2A_rear_elbow_down_alike * t346 - stheta2A_rear_elbow_down_alike * t347
+    t349 = t345 * t348
+    del t348
+    t350 = _runtime.select(spent_right_rear_elbow_down_alike, t344 * (size * np.abs(-t349)), 0.0)
+    t351 = -(_runtime.FEASIBILITY * (t49 + t350)) <= room_right_rear_elbow_down_alike
+    del t350
+    room_left_rear_elbow_down_alike = t340 - t343
+    del t340
+    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t74
+    del t74
+    h_left_0_rear_elbow_down_alike = t339 + point_21_rear_elbow_down_alike
+    del point_21_rear_elbow_down_alike, t339
+    t352 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t336 + point_11_rear_elbow_down_alike
+    del point_11_rear_elbow_down_alike, t336
+    t353 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t345 * (t352 - t353)
+    del t345, t352, t353
+    t354 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t355 = _runtime.select(spent_left_rear_elbow_down_alike, t344 * t354, 0.0)
+    del t344, t354
+    t356 = -(_runtime.FEASIBILITY * (t49 + t355)) <= room_left_rear_elbow_down_alike
+    del t355, t49
+    t357 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
+    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t349 * t357 / (2.0 * (t88 + t349 * t349)), 0.0)
+    del spent_right_rear_elbow_down_alike, t357
+    t358 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
+    t359 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t360 = slope_left_rear_elbow_down_alike * t358 / (2.0 * (t88 + t359))
+    del t358, t359, t88
+    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t360, 0.0)
+    del spent_left_rear_elbow_down_alike, t360
     turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
     del turn_left_rear_elbow_down_alike, turn_right_rear_elbow_down_alike
-    t365 = t353 * turn_rear_elbow_down_alike
-    del t353
-    t366 = room_right_rear_elbow_down_alike - t365
+    t361 = t349 * turn_rear_elbow_down_alike
+    del t349
+    t362 = room_right_rear_elbow_down_alike - t361
     del room_right_rear_elbow_down_alike
-    t367 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t363 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del drawn_rear_elbow_down_alike
-    t368 = ctheta2A_rear_elbow_down_alike * t367
-    t369 = t350 + t368 + t351 * turn_rear_elbow_down_alike
-    t370 = stheta2A_rear_elbow_down_alike * t367
-    del t367
-    t371 = t351 - t350 * turn_rear_elbow_down_alike - t370
-    del t350, t351
-    t372 = t369 * t369 + t371 * t371
-    t373 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t374 = _runtime.select(t327, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
-    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t327
-    M_mid_rear_elbow_down_alike = t29 * t374
-    del t29, t374
-    t375 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
-    t376 = _runtime.select(t88 * t372 < t373, t102 - t372, t347 - t365 - t375)
-    del t365, t372
-    t377 = t229 & t355 & t360 & (t87 <= t366) & (t87 <= -t376)
-    del t229, t355, t360
-    t378 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t364 = ctheta2A_rear_elbow_down_alike * t363
+    t365 = t346 + t364 + t347 * turn_rear_elbow_down_alike
+    t366 = stheta2A_rear_elbow_down_alike * t363
+    del t363
+    t367 = t347 - t346 * turn_rear_elbow_down_alike - t366
+    del t346, t347
+    t368 = t365 * t365 + t367 * t367
+    t369 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t370 = _runtime.select(t324, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
+    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t324
+    M_mid_rear_elbow_down_alike = t29 * t370
+    del t29, t370
+    t371 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
+    t372 = _runtime.select(t87 * t368 < t369, t101 - t368, t343 - t361 - t371)
+    del t361, t368
+    t373 = t227 & t351 & t356 & (t86 <= t362) & (t86 <= -t372)
+    del t227, t351, t356
+    t374 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del slope_left_rear_elbow_down_alike
-    t379 = room_left_rear_elbow_down_alike + t378
+    t375 = room_left_rear_elbow_down_alike + t374
     del room_left_rear_elbow_down_alike
-    t380 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t368 + t380
-    del t368, t380
-    t381 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    t382 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t376 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t364 + t376
+    del t364, t376
+    t377 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    t378 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del h_left_0_rear_elbow_down_alike, turn_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t370 - t382
-    del r_left_0_rear_elbow_down_alike, t370, t382
-    t383 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t384 = t381 + t383
-    del t381, t383
-    t385 = _runtime.select(t88 * t384 < t373, t384 - t102, t347 + t375 - t378)
-    del t347, t373, t375, t378, t384
-    unreachable_4 = np.logical_not(t377 & (t87 <= t379) & (t87 <= t385))
-    del t377, t87
-    t386 = _runtime.poison(invalid | unreachable_4)
-    t387 = t225 + t386
-    del t225
-    folded_right_rear_elbow_down_alike = np.abs(-t369) + np.abs(-t371) <= t112
-    t388 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t366 - t378
+    del r_left_0_rear_elbow_down_alike, t366, t378
+    t379 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t380 = t377 + t379
+    del t377, t379
+    t381 = _runtime.select(t87 * t380 < t369, t380 - t101, t343 + t371 - t374)
+    del t343, t369, t371, t374, t380
+    unreachable_4 = np.logical_not(t373 & (t86 <= t375) & (t86 <= t381))
+    del t373, t86
+    t382 = _runtime.poison(invalid | unreachable_4)
+    t383 = t223 + t382
+    del t223
+    folded_right_rear_elbow_down_alike = np.abs(-t365) + np.abs(-t367) <= t111
+    t384 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
     del ctheta2A_rear_elbow_down_alike, stheta2A_rear_elbow_down_alike
-    M_right_rear_elbow_down_alike = np.maximum(-t376, t114)
-    del t376
-    N_right_rear_elbow_down_alike = np.maximum(t366, t114)
-    del t114, t366
+    M_right_rear_elbow_down_alike = np.maximum(-t372, t113)
+    del t372
+    N_right_rear_elbow_down_alike = np.maximum(t362, t113)
+    del t113, t362
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t389 = 1.0 / whole_right_rear_elbow_down_alike
+    t385 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t390 = 2.0 * _runtime.select(0.0 <= -t328, 1.0, -1.0)
-    del t328
+    t386 = 2.0 * _runtime.sign(-t325)
+    del t325
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
     del N_right_rear_elbow_down_alike
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t391 = t390 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t389 * t391)
-    del t391
-    t392 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t387 = t386 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t385 * t387)
+    del t387
+    t388 = fore_arm * s_bend_right_rear_elbow_down_alike
     del s_bend_right_rear_elbow_down_alike
-    t393 = t101 + t118 * M_right_rear_elbow_down_alike * t389
-    del M_right_rear_elbow_down_alike, t389
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t393)
-    del t393
-    up_right_rear_elbow_down_alike = t371 * t392 - t369 * ahead_1_right_rear_elbow_down_alike
-    t394 = t371 * ahead_1_right_rear_elbow_down_alike + t369 * t392
-    del ahead_1_right_rear_elbow_down_alike, t369, t371, t392
-    t395 = np.arctan2(up_right_rear_elbow_down_alike, -t394)
-    del t394, up_right_rear_elbow_down_alike
-    t396 = _runtime.select(folded_right_rear_elbow_down_alike, t388, t395)
-    del t395
-    t397 = _runtime.wrap_cut(t396) + t386
-    del t396
-    t398 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t389 = t100 + t117 * M_right_rear_elbow_down_alike * t385
+    del M_right_rear_elbow_down_alike, t385
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t389)
+    del t389
+    up_right_rear_elbow_down_alike = t367 * t388 - t365 * ahead_1_right_rear_elbow_down_alike
+    t390 = t367 * ahead_1_right_rear_elbow_down_alike + t365 * t388
+    del ahead_1_right_rear_elbow_down_alike, t365, t367, t388
+    t391 = np.arctan2(up_right_rear_elbow_down_alike, -t390)
+    del t390, up_right_rear_elbow_down_alike
+    t392 = _runtime.select(folded_right_rear_elbow_down_alike, t384, t391)
+    del t391
+    t393 = _runtime.wrap_cut(t392) + t382
+    del t392
+    t394 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
     del rM_right_rear_elbow_down_alike, rN_right_rear_elbow_down_alike
-    t399 = _runtime.select(short_right, 0.0, t390 * t398)
-    del t398
-    t400 = _runtime.wrap(t123 + t399) + t386
-    del t399
-    t401 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t401 <= t112
-    del t112, t401
-    M_left_rear_elbow_down_alike = np.maximum(t385, 0.0)
-    del t385
-    N_left_rear_elbow_down_alike = np.maximum(t379, 0.0)
-    del t379
+    t395 = _runtime.select(short_right, 0.0, t386 * t394)
+    del t394
+    t396 = _runtime.wrap(t122 + t395) + t382
+    del t395
+    t397 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t397 <= t111
+    del t111, t397
+    M_left_rear_elbow_down_alike = np.maximum(t381, 0.0)
+    del t381
+    N_left_rear_elbow_down_alike = np.maximum(t375, 0.0)
+    del t375
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t402 = 1.0 / whole_left_rear_elbow_down_alike
+    t398 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t403 = t101 + t118 * M_left_rear_elbow_down_alike * t402
-    del t101, t118
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t403)
-    del size, t403
-    t404 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t399 = t100 + t117 * M_left_rear_elbow_down_alike * t398
+    del t100, t117
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t399)
+    del size, t399
+    t400 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     del N_left_rear_elbow_down_alike
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
     del M_left_rear_elbow_down_alike
-    t405 = t390 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t402 * t405)
-    del t402, t405
-    t406 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t401 = t386 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t398 * t401)
+    del t398, t401
+    t402 = fore_arm * s_bend_left_rear_elbow_down_alike
     del fore_arm, s_bend_left_rear_elbow_down_alike
-    t407 = r_left_rear_elbow_down_alike * t406
-    t408 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t403 = r_left_rear_elbow_down_alike * t402
+    t404 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
-    t409 = h_left_rear_elbow_down_alike * t406
-    del h_left_rear_elbow_down_alike, t406
-    t410 = _runtime.select(folded_left_rear_elbow_down_alike, t388, np.arctan2(t404 - t407, t408 + t409))
-    t411 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t405 = h_left_rear_elbow_down_alike * t402
+    del h_left_rear_elbow_down_alike, t402
+    t406 = _runtime.select(folded_left_rear_elbow_down_alike, t384, np.arctan2(t400 - t403, t404 + t405))
+    t407 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
     del rM_left_rear_elbow_down_alike, rN_left_rear_elbow_down_alike
-    t412 = _runtime.select(short_right, 0.0, t390 * t411)
-    del t390, t411
-    t413 = t134 + t386
-    del t134
-    t414 = _runtime.select(folded_left_rear_elbow_down_alike, t388, np.arctan2(t404 + t407, t408 - t409))
-    del t388, t404, t407, t408, t409
-    t415 = nowhere | folded | short
+    t408 = _runtime.select(short_right, 0.0, t386 * t407)
+    del t386, t407
+    t409 = t133 + t382
+    del t133
+    t410 = _runtime.select(folded_left_rear_elbow_down_alike, t384, np.arctan2(t400 + t403, t404 - t405))
+    del t384, t400, t403, t404, t405
+    t411 = nowhere | folded | short
     del folded
-    square_mid = t102 + M_mid
-    t416 = 10000.0 * t88
-    del t88
-    pole = M_mid * square_mid <= _runtime.VANISHING * (t416 * gap)
+    square_mid = t101 + M_mid
+    t412 = 10000.0 * t87
+    del t87
+    pole = M_mid * square_mid <= _runtime.VANISHING * (t412 * gap)
     del M_mid, gap
-    t417 = _runtime.VANISHING * t416
-    t418 = t415 | pole | (square_mid <= t417) | folded_right
+    t413 = _runtime.VANISHING * t412
+    t414 = t411 | pole | (square_mid <= t413) | folded_right
     del folded_right, pole, square_mid
-    t419 = _runtime.status(invalid, unreachable, t418 | short_right | folded_left)
-    del folded_left, t418, unreachable
-    square_mid_front_elbow_down_alike = t102 + M_mid_front_elbow_down_alike
-    t420 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t415 = _runtime.status(invalid, unreachable, t414 | short_right | folded_left)
+    del folded_left, t414, unreachable
+    square_mid_front_elbow_down_alike = t101 + M_mid_front_elbow_down_alike
+    t416 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t421 = _runtime.VANISHING * (t416 * gap_front_elbow_down_alike)
+    t417 = _runtime.VANISHING * (t412 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t422 = t415 | (t420 <= t421) | (square_mid_front_elbow_down_alike <= t417)
-    del square_mid_front_elbow_down_alike, t415, t420, t421
-    t423 = t422 | folded_right_front_elbow_down_alike | short_right
-    del folded_right_front_elbow_down_alike, t422
-    t424 = _runtime.status(invalid, unreachable_2, t423 | folded_left_front_elbow_down_alike)
-    del folded_left_front_elbow_down_alike, t423, unreachable_2
-    t425 = nowhere | folded_rear_elbow_up_alike | short
+    t418 = t411 | (t416 <= t417) | (square_mid_front_elbow_down_alike <= t413)
+    del square_mid_front_elbow_down_alike, t411, t416, t417
+    t419 = t418 | folded_right_front_elbow_down_alike | short_right
+    del folded_right_front_elbow_down_alike, t418
+    t420 = _runtime.status(invalid, unreachable_2, t419 | folded_left_front_elbow_down_alike)
+    del folded_left_front_elbow_down_alike, t419, unreachable_2
+    t421 = nowhere | folded_rear_elbow_up_alike | short
     del folded_rear_elbow_up_alike, nowhere, short
-    square_mid_rear_elbow_up_alike = t102 + M_mid_rear_elbow_up_alike
-    t426 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
+    square_mid_rear_elbow_up_alike = t101 + M_mid_rear_elbow_up_alike
+    t422 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
     del M_mid_rear_elbow_up_alike
-    t427 = _runtime.VANISHING * (t416 * gap_rear_elbow_up_alike)
+    t423 = _runtime.VANISHING * (t412 * gap_rear_elbow_up_alike)
     del gap_rear_elbow_up_alike
-    t428 = t425 | (t426 <= t427) | (square_mid_rear_elbow_up_alike <= t417)
-    del square_mid_rear_elbow_up_alike, t426, t427
-    t429 = t428 | folded_right_rear_elbow_up_alike | short_right
-    del folded_right_rear_elbow_up_alike, t428
-    t430 = _runtime.status(invalid, unreachable_3, t429 | folded_left_rear_elbow_up_alike)
-    del folded_left_rear_elbow_up_alike, t429, unreachable_3
-    square_mid_rear_elbow_down_alike = t102 + M_mid_rear_elbow_down_alike
-    del t102
-    t431 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
+    t424 = t421 | (t422 <= t423) | (square_mid_rear_elbow_up_alike <= t413)
+    del square_mid_rear_elbow_up_alike, t422, t423
+    t425 = t424 | folded_right_rear_elbow_up_alike | short_right
+    del folded_right_rear_elbow_up_alike, t424
+    t426 = _runtime.status(invalid, unreachable_3, t425 | folded_left_rear_elbow_up_alike)
+    del folded_left_rear_elbow_up_alike, t425, unreachable_3
+    square_mid_rear_elbow_down_alike = t101 + M_mid_rear_elbow_down_alike
+    del t101
+    t427 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
     del M_mid_rear_elbow_down_alike
-    t432 = _runtime.VANISHING * (t416 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t416
-    t433 = t425 | (t431 <= t432) | (square_mid_rear_elbow_down_alike <= t417)
-    del square_mid_rear_elbow_down_alike, t417, t425, t431, t432
-    t434 = t433 | folded_right_rear_elbow_down_alike | short_right
-    del folded_right_rear_elbow_down_alike, short_right, t433
-    t435 = _runtime.status(invalid, unreachable_4, t434 | folded_left_rear_elbow_down_alike)
-    del folded_left_rear_elbow_down_alike, invalid, t434, unreachable_4
+    t428 = _runtime.VANISHING * (t412 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t412
+    t429 = t421 | (t427 <= t428) | (square_mid_rear_elbow_down_alike <= t413)
+    del square_mid_rear_elbow_down_alike, t413, t421, t427, t428
+    t430 = t429 | folded_right_rear_elbow_down_alike | short_right
+    del folded_right_rear_elbow_down_alike, short_right, t429
+    t431 = _runtime.status(invalid, unreachable_4, t430 | folded_left_rear_elbow_down_alike)
+    del folded_left_rear_elbow_down_alike, invalid, t430, unreachable_4
     return (
-        t111,
-        t121,
-        t125,
-        _runtime.wrap_cut(t132) + t110,
-        _runtime.wrap(t123 + t133) + t110,
-        t135,
-        t111,
-        t121,
-        t125,
-        _runtime.wrap_cut(t136) + t110,
-        _runtime.wrap(t123 - t133) + t110,
-        t135,
-        t197,
-        t207,
-        t210,
-        _runtime.wrap_cut(t220) + t196,
-        _runtime.wrap(t123 + t222) + t196,
-        t223,
-        t197,
-        t207,
-        t210,
-        _runtime.wrap_cut(t224) + t196,
-        _runtime.wrap(t123 - t222) + t196,
-        t223,
-        t299,
+        t110,
+        t120,
+        t124,
+        _runtime.wrap_cut(t131) + t109,
+        _runtime.wrap(t122 + t132) + t109,
+        t134,
+        t110,
+        t120,
+        t124,
+        _runtime.wrap_cut(t135) + t109,
+        _runtime.wrap(t122 - t132) + t109,
+        t134,
+        t195,
+        t205,
+        t208,
+        _runtime.wrap_cut(t218) + t194,
+        _runtime.wrap(t122 + t220) + t194,
+        t221,
+        t195,
+        t205,
+        t208,
+        _runtime.wrap_cut(t222) + t194,
+        _runtime.wrap(t122 - t220) + t194,
+        t221,
+        t296,
+        t306,
         t309,
-        t312,
-        _runtime.wrap_cut(t322) + t298,
-        _runtime.wrap(t123 + t324) + t298,
-        t325,
-        t299,
+        _runtime.wrap_cut(t319) + t295,
+        _runtime.wrap(t122 + t321) + t295,
+        t322,
+        t296,
+        t306,
         t309,
-        t312,
-        _runtime.wrap_cut(t326) + t298,
-        _runtime.wrap(t123 - t324) + t298,
-        t325,
-        t387,
-        t397,
-        t400,
-        _runtime.wrap_cut(t410) + t386,
-        _runtime.wrap(t123 + t412) + t386,
-        t413,
-        t387,
-        t397,
-        t400,
-        _runtime.wrap_cut(t414) + t386,
-        _runtime.wrap(t123 - t412) + t386,
-        t413,
-        t419,
-        t419,
-        t424,
-        t424,
-        t430,
-        t430,
-        t435,
-        t435,
+        _runtime.wrap_cut(t323) + t295,
+        _runtime.wrap(t122 - t321) + t295,
+        t322,
+        t383,
+        t393,
+        t396,
+        _runtime.wrap_cut(t406) + t382,
+        _runtime.wrap(t122 + t408) + t382,
+        t409,
+        t383,
+        t393,
+        t396,
+        _runtime.wrap_cut(t410) + t382,
+        _runtime.wrap(t122 - t408) + t382,
+        t409,
+        t415,
+        t415,
+        t420,
+        t420,
+        t426,
+        t426,
+        t431,
+        t431,
     )
 
 

@@ -360,8 +360,8 @@ class Program:
         return named
 
 
-def choose(flag: sp.Symbol, when_true: Number, otherwise: Number) -> sp.Expr:
-    """``when_true`` where ``flag`` holds, else ``otherwise``."""
+def choose(flag: sp.Basic, when_true: Number, otherwise: Number) -> sp.Expr:
+    """``when_true`` where a flag, or a condition of flags, holds; else ``otherwise``."""
     return sp.Piecewise((when_true, flag), (otherwise, True))
 
 

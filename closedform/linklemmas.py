@@ -270,11 +270,12 @@ def zyz(
             p.let(f"c_{first}", choose(aligned, 1, raw.c)),
         )
         start = reaching.middle() + Pair(-reaching.ahead.s, reaching.ahead.c)
-        near, moved = reaching.moved(raw + reaching.ahead, h)
+        near, inside, moved = reaching.moved(raw + reaching.ahead, h)
         off = moved + Pair(-reaching.ahead.s, reaching.ahead.c)
         start = Pair(p.let("s_start", start.s), p.let("c_start", start.c))
         off = Pair(p.let("s_off", off.s), p.let("c_off", off.c))
-        raw = Pair(choose(near, off.s, raw.s), choose(near, off.c, raw.c))
+        brought = sp.And(near, sp.Not(inside))
+        raw = Pair(choose(brought, off.s, raw.s), choose(brought, off.c, raw.c))
         t = real("t")
         unit = {start.s: sp.sin(t), start.c: sp.cos(t), off.s: sp.sin(t), off.c: sp.cos(t)}
     pair, means = named(
@@ -374,8 +375,8 @@ class Reaching:
         farthest = p.let("farthest", sp.Min(self.l1 + self.l2, r + self.offset))
         return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
 
-    def moved(self, u: Pair, play: sp.Expr) -> tuple[sp.Symbol, Pair]:
-        """The nearest direction in reach, and a flag: it differs by less than rounding makes.
+    def moved(self, u: Pair, play: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, Pair]:
+        """The nearest direction in reach, and two flags: u is the same within rounding, is in reach.
 
         ``play`` is what multiplies an error of u in the target.
         """
@@ -392,6 +393,4 @@ class Reaching:
         inside = p.vanishes("inside", sp.Abs(reach - there), self.chain.size, "it is in reach")
         change = sp.sqrt((v.c - u.c) ** 2 + (v.s - u.s) ** 2)
         near = p.vanishes("within_rounding", play * change, 4, "the turn is free within rounding")
-        return near, Pair(
-            p.let("s_moved", choose(inside, u.s, v.s)), p.let("c_moved", choose(inside, u.c, v.c))
-        )
+        return near, inside, v

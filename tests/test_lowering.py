@@ -107,7 +107,7 @@ def test_only_flags_are_rare() -> None:
     p = Program()
     flag = p.vanishes("flag", y**2, x**2, "y is zero")
     turned = p.let("turned", choose(flag, 0, z / y))
-    sign = sp.Piecewise((1, turned >= 0), (-1, True))
+    sign = sp.Piecewise((2, turned >= 0), (-1, True))
     d = Derivation("test", "", Paper("", "", ()), "")
     f = d.function("f", "", {"x": SYMBOLS}, {"q": [turned, sign * x]}, program=p)
     selects = [n for n in reachable(lower(f, d).roots) if n.op == "select"]

@@ -29,6 +29,7 @@ CALLS = {
     "poison": "_runtime.poison",
     "status": "_runtime.status",
 }
+COMMON = "Where nothing vanishes; last, whether something does."
 DTYPES = {"real": "np.float64", "status": "np.uint8", "bool": "np.bool_"}
 
 
@@ -52,6 +53,17 @@ class NumpyPrinter(Printer):
 
 
 @dataclass(frozen=True)
+class NumpyKernel:
+    """The plain strings of one program."""
+
+    name: str
+    comment: str
+    arguments: str
+    lines: tuple[str, ...]
+    values: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class NumpyFunction:
     """The plain strings of one function, for the template."""
 
@@ -61,12 +73,11 @@ class NumpyFunction:
     returns: str
     wrap: str
     docstring: str
-    kernel_arguments: str
-    lines: tuple[str, ...]
-    values: tuple[str, ...]
+    kernels: tuple[NumpyKernel, ...]
     inputs: str
     outputs: str
     used: str
+    common: str
 
 
 def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, Any]:
@@ -84,9 +95,28 @@ def runtime() -> dict[str, Any]:
 
 
 def _function(derivation: Derivation, function: Function, program: Lowered) -> NumpyFunction:
+    kernels = [_kernel(f"_{function.name}", "", program)]
+    if program.common is not None:
+        kernels.append(_kernel(f"_{function.name}_common", COMMON, program.common))
+    returns = f"_runtime.{function.result}" if function.result else "Any"
+    return NumpyFunction(
+        function.name,
+        call_signature(function),
+        tuple_code(a.name for a in function.inputs),
+        returns,
+        f"_runtime.{function.result}(*result)" if function.result else "result",
+        docstring(derivation, function),
+        tuple(kernels),
+        _arrays((a.name, a.shape, "real") for a in function.inputs),
+        _arrays((r.name, r.shape, r.kind) for r in program.results),
+        repr(program.parameters),
+        kernels[-1].name if program.common else "",
+    )
+
+
+def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:
     printer = NumpyPrinter(program, reserved=("np",))
     results = printer.run()
-    used = program.used_inputs()
     lines = []
     needed = {(n.op, n.args[0].id) for n in program.schedule() if n.op in ("sin", "cos")}
     for angle, sine, cosine in printer.trig:
@@ -99,23 +129,15 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
             lines.append(f"{cosine} = np.cos({code})")
     lines += [f"{line.name} = {line.code}" for line in printer.lines]
     values = [v for result in results for v in result]
-    entries = [str(e) for a in function.inputs for e in a.entries]
-    parameters = list(program.parameters)
-    names = [e if e in used else f"_{e}" for e in entries] + parameters
-    returns = f"_runtime.{function.result}" if function.result else "Any"
-    return NumpyFunction(
-        function.name,
-        call_signature(function),
-        tuple_code(a.name for a in function.inputs),
-        returns,
-        f"_runtime.{function.result}(*result)" if function.result else "result",
-        docstring(derivation, function),
-        _wrapped(", ".join(names), f"def _{function.name}():"),
+    used = program.used_inputs()
+    entries = [str(e) for a in program.inputs for e in a.entries] + list(program.parameters)
+    arguments = ", ".join(e if e in used else f"_{e}" for e in entries)
+    return NumpyKernel(
+        name,
+        comment,
+        _wrapped(arguments, f"def {name}():"),
         tuple(_until_last_use(lines, values)),
         tuple(values),
-        _arrays((a.name, a.shape, "real") for a in function.inputs),
-        _arrays((r.name, r.shape, r.kind) for r in program.results),
-        repr(program.parameters),
     )
 
 

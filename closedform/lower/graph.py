@@ -224,9 +224,11 @@ def reachable(
 
 
 def hardly_ever(condition: Node) -> bool:
-    """Whether a condition is made of flags alone: something is as good as zero."""
-    if condition.op in ("or", "and"):
+    """Whether a condition takes a flag to hold: something is as good as zero."""
+    if condition.op == "or":
         return all(map(hardly_ever, condition.args))
+    if condition.op == "and":
+        return any(map(hardly_ever, condition.args))
     if condition.op != "le":
         return False
     products = ("product", "mul", "neg")

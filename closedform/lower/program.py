@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import islice
 
 import sympy as sp
@@ -12,12 +13,15 @@ import sympy as sp
 from closedform.derivation import Derivation
 from closedform.functions import Array, Bound, Function, Let, Match, Require, Vanishes
 from closedform.lower.build import Builder, angle_divisors
+from closedform.lower.common import common_case
 from closedform.lower.graph import Graph, Node, reachable
 from closedform.lower.ranges import Ranges, UnboundedError
 from closedform.lower.share import share
 from closedform.lower.turns import Turns
 
 LEAVES = frozenset({"const", "input", "nan", "tolerance", "true", "false", "sin", "cos"})
+SPARED = 0.15
+"""Which part of the operations a common case must spare to be worth a program of its own."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,7 @@ class Lowered:
     angles: tuple[Node, ...]
     results: tuple[Result, ...]
     names: Mapping[int, str]
+    common: Lowered | None = None
 
     @property
     def roots(self) -> list[Node]:
@@ -59,7 +64,7 @@ class Lowered:
         return frozenset(str(n.payload) for n in nodes if n.op == "input")
 
     def operations(self) -> dict[str, int]:
-        """How many operators of each kind one evaluation costs (a sincos counts once)."""
+        """How many operators of each kind there are (a sincos counts once)."""
         counts: Counter[str] = Counter()
         for node in self.schedule():
             if node.op not in LEAVES and node.op != "neg":
@@ -90,24 +95,38 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
         lead = (len(rows),) if function.branches else ()
         results.append(Result("status", lead, "status", tuple(row[1] for row in rows)))
 
+    finish = partial(_finished, function, [p.name for p in parameters], graph)
+    whole = finish(results, names)
+    nodes, rare, kept = common_case(graph, [n for r in results for n in r.nodes], names)
+    flat = iter(nodes)
+    plain = [replace(r, nodes=tuple(islice(flat, len(r.nodes)))) for r in results]
+    common = finish([*plain, Result("rare", (), "bool", (rare,))], kept)
+    most = (1 - SPARED) * sum(whole.operations().values())
+    if sum(common.operations().values()) > most:
+        return whole
+    return replace(whole, common=replace(common, parameters=whole.parameters))
+
+
+def _finished(
+    function: Function,
+    parameters: Sequence[str],
+    graph: Graph,
+    results: Sequence[Result],
+    names: Mapping[int, str],
+) -> Lowered:
+    """The program of these results, with common parts shared."""
     flat = [n for r in results for n in r.nodes]
     # An inverse is judged by what its answers give, a forward map by the last digit of its values.
-    renamed, names = _share_named(graph, flat, names, by_reciprocals=function.has_status)
-    lowered_results = []
-    position = 0
-    for result in results:
-        part = tuple(renamed[position : position + len(result.nodes)])
-        lowered_results.append(Result(result.name, result.shape, result.kind, part))
-        position += len(result.nodes)
-    angles = tuple(dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op in ("sin", "cos")))
+    renamed, named = _share_named(graph, flat, names, by_reciprocals=function.has_status)
+    remaining = iter(renamed)
     used = {str(n.payload) for n in reachable(renamed) if n.op == "input"}
     return Lowered(
         function.name,
         function.inputs,
-        tuple(p.name for p in parameters if p.name in used),
-        angles,
-        tuple(lowered_results),
-        names,
+        tuple(name for name in parameters if name in used),
+        tuple(dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op in ("sin", "cos"))),
+        tuple(replace(r, nodes=tuple(islice(remaining, len(r.nodes)))) for r in results),
+        named,
     )
 
 

@@ -38,7 +38,7 @@ def _by_reciprocals(graph: Graph, roots: list[Node]) -> list[Node]:
 
     def change(node: Node, args: tuple[Node, ...]) -> Node:
         if node.op != "div" or node.args[1].op == "const" or divisors[node.args[1].id] < 2:
-            return _same(graph, node, args)
+            return same(graph, node, args)
         return graph.product([args[0], graph.div(graph.const(1), args[1])])
 
     return rebuild(roots, change)
@@ -53,7 +53,7 @@ def _turn_differences(graph: Graph, roots: list[Node]) -> list[Node]:
         below = node.args[0] if node.op == "neg" else None
         if below is not None and below.op == "sub" and uses[below.id] == 1:
             return graph.node("sub", args[0].args[1], args[0].args[0])
-        return _same(graph, node, args)
+        return same(graph, node, args)
 
     return rebuild(roots, change)
 
@@ -68,7 +68,7 @@ def _take_out(graph: Graph, roots: list[Node], op: str) -> list[Node]:
         table.replace(pair, part)
 
     def change(node: Node, args: tuple[Node, ...]) -> Node:
-        return _make(graph, op, args) if node.id in table.operands else _same(graph, node, args)
+        return _make(graph, op, args) if node.id in table.operands else same(graph, node, args)
 
     def operands(node: Node) -> tuple[Node, ...]:
         if node.id not in table.operands:
@@ -146,7 +146,7 @@ def _make(graph: Graph, op: str, args: Sequence[Node]) -> Node:
     return graph.product(args) if op == "product" else graph.sum(args)
 
 
-def _same(graph: Graph, node: Node, args: tuple[Node, ...]) -> Node:
+def same(graph: Graph, node: Node, args: tuple[Node, ...]) -> Node:
     """``node`` over new operands, with its local identities applied again."""
     if args == node.args:
         return node
@@ -158,6 +158,12 @@ def _same(graph: Graph, node: Node, args: tuple[Node, ...]) -> Node:
         return graph.div(*args)
     if node.op == "select":
         return graph.select(*args)
+    if node.op == "not":
+        return graph.negate(args[0])
+    if node.op == "and":
+        return graph.every(args)
+    if node.op == "or":
+        return graph.any(args)
     return graph.node(node.op, *args, payload=node.payload)
 
 
@@ -177,4 +183,4 @@ def _binary(graph: Graph, node: Node, args: tuple[Node, ...]) -> Node:
             else:
                 result = graph.node("add", result, term)
         return result
-    return _same(graph, node, args)
+    return same(graph, node, args)

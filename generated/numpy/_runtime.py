@@ -57,7 +57,11 @@ class Array(NamedTuple):
 
 
 class Kernel(NamedTuple):
-    """A function of planes (one array a coordinate), and what it takes and gives."""
+    """A function of planes (one array a coordinate), and what it takes and gives.
+
+    ``common``, if there is one, computes the same where nothing vanishes, and then whether
+    something does.
+    """
 
     name: str
     compute: Callable[..., tuple[Any, ...]]
@@ -65,6 +69,7 @@ class Kernel(NamedTuple):
     outputs: tuple[Array, ...]
     fields: tuple[str, ...]
     used: tuple[str, ...]
+    common: Callable[..., tuple[Any, ...]] | None = None
 
 
 def sincos(angle: Any) -> tuple[Any, Any]:
@@ -214,7 +219,7 @@ def _fill(
         total *= n
     if total <= BLOCK:
         planes = [a[..., k] for a in arrays for k in range(a.shape[-1])]
-        _store(kernel.outputs, results, kernel.compute(*planes, *(f[()] for f in used)))
+        _store(kernel.outputs, results, _values(kernel, [*planes, *(f[()] for f in used)]))
         return
     arrays = [a if a.ndim == 1 else _rows(a, lead) for a in arrays]
     used = [f if f.ndim == 0 else _rows(f[..., None], lead)[:, 0] for f in used]
@@ -228,10 +233,28 @@ def _fill(
         for a in arrays:
             planes += list(a) if a.ndim == 1 else list(np.ascontiguousarray(a[block].T))
         constants = [f[()] if f.ndim == 0 else f[block] for f in used]
-        _store(kernel.outputs, [r[block] for r in flat], kernel.compute(*planes, *constants))
+        _store(kernel.outputs, [r[block] for r in flat], _values(kernel, [*planes, *constants]))
     for result, rows in zip(results, flat, strict=True):
         if not np.may_share_memory(result, rows):
             result[...] = rows.reshape(result.shape)
+
+
+def _values(kernel: Kernel, planes: Sequence[Any]) -> Sequence[Any]:
+    """The planes of the results; where something vanishes, they are computed anew."""
+    if kernel.common is None:
+        return kernel.compute(*planes)
+    *values, rare = kernel.common(*planes)
+    if not np.any(rare):
+        return values
+    shape = np.broadcast_shapes(*map(np.shape, planes))
+    if not shape:
+        return kernel.compute(*planes)
+    where = np.nonzero(np.broadcast_to(rare, shape))
+    some = kernel.compute(*(np.broadcast_to(plane, shape)[where] for plane in planes))
+    for k, value in enumerate(values):
+        values[k] = np.array(np.broadcast_to(value, shape))
+        values[k][where] = some[k]
+    return values
 
 
 def _rows(array: NDArray[Any], lead: tuple[int, ...]) -> NDArray[Any]:
@@ -240,7 +263,7 @@ def _rows(array: NDArray[Any], lead: tuple[int, ...]) -> NDArray[Any]:
 
 
 def _store(
-    outputs: Sequence[Array], results: Sequence[NDArray[Any]], planes: tuple[Any, ...]
+    outputs: Sequence[Array], results: Sequence[NDArray[Any]], planes: Sequence[Any]
 ) -> None:
     """Write the planes of all results, in order, where they belong."""
     remaining = iter(planes)

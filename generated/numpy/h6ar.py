@@ -1883,6 +1883,550 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     )
 
 
+def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
+    # Where nothing vanishes; last, whether something does.
+    s_phi, c_phi = _runtime.sincos(phi)
+    s_pitch, c_pitch = _runtime.sincos(pitch)
+    s_psi, c_psi = _runtime.sincos(psi)
+    h = np.sqrt(x * x + y * y)
+    t1 = lp * s_pitch
+    t2 = d - c_psi * (gs - al)
+    t3 = (gs + al) * c_psi - d
+    t4 = np.sqrt(np.maximum(t2, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
+    t5 = 1.0 / c_psi
+    t6 = loff + lp * c_pitch + t4 * t5
+    del t4
+    t7 = s_psi * t6
+    t8 = s_phi * t1 - c_phi * t7
+    t9 = h + t8
+    below = np.maximum(t9, 0.0)
+    t10 = np.sqrt(below)
+    t11 = h - t8
+    del t8
+    above = np.maximum(t11, 0.0)
+    t12 = np.sqrt(above)
+    t13 = 2.0 * np.arctan2(t10, t12)
+    t14 = np.arctan2(x, y)
+    t15 = _runtime.wrap(t13 - t14)
+    t16 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t16
+    t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t17
+    t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t20 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t21 = t18 & (0.0 <= loff) & (0.0 <= lp) & t19 & (np.abs(t20) <= _runtime.ROTATION)
+    del t18, t19, t20
+    invalid = np.logical_not(t21)
+    del t21
+    t22 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t23 = (-_runtime.FEASIBILITY <= c_phi) & (t22 <= t3)
+    del t3
+    t24 = L1 + L2
+    t25 = -(_runtime.FEASIBILITY * t24)
+    t26 = t23 & (t22 <= t2) & (t25 <= t9) & (t25 <= t11)
+    del t11, t2, t22, t23, t25, t9
+    L_2W = L2 + c_psi * t6
+    del c_psi, t6
+    a_3W = a3 + c_phi * t1 + s_phi * t7
+    del t1, t7
+    fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
+    t27 = L1 + fore
+    t28 = 2.0 * fore
+    t29 = _runtime.FEASIBILITY * (t27 * (L1 * 2.0 + t28))
+    t30 = t27 * t27
+    t31 = z - d1
+    t32 = t31 * t31
+    t33 = 1.0 / h
+    t34 = 1.0 / (below + above)
+    t35 = (below - above) * t34
+    del above, below
+    t36 = y * t35
+    s_turn = t34 * (2.0 * t10 * t12)
+    del t10, t12, t34
+    t37 = x * s_turn
+    t38 = x * t35
+    del t35
+    t39 = y * s_turn
+    del s_turn
+    t40 = x * (t33 * (t36 - t37)) - y * (t33 * (t38 + t39))
+    square = t32 + t40 * t40
+    t41 = t30 - square
+    t42 = L1 / 8796093022208.0 + fore / 8796093022208.0
+    t43 = L1 - fore
+    t44 = _runtime.FEASIBILITY * (t27 * (t42 + 2.0 * np.abs(t43)))
+    del t42
+    t45 = t43 * t43
+    t46 = square - t45
+    del square
+    t47 = t26 & (-t29 <= t41) & (-t44 <= t46)
+    play_alpha = d * (L1 + np.sqrt(L2 * L2 + a3 * a3))
+    t48 = -(_runtime.FEASIBILITY * play_alpha)
+    t49 = 1.0 / fore
+    c_lag = a_3W * t49
+    del a_3W
+    M = np.maximum(t46, 0.0)
+    del t46
+    N = np.maximum(t41, 0.0)
+    del t41
+    t50 = 1.0 / (M + N)
+    c_bend = t50 * (M - N)
+    t51 = c_lag * c_bend
+    s_lag = L_2W * t49
+    del L_2W, t49
+    rN = np.sqrt(N)
+    del N
+    rM = np.sqrt(M)
+    s_bend_front_elbow_down = t50 * (2.0 * rN * rM)
+    t52 = s_lag * s_bend_front_elbow_down
+    c_relative = t51 + t52
+    t53 = s_lag * c_bend
+    del c_bend
+    t54 = c_lag * s_bend_front_elbow_down
+    s_relative = t53 - t54
+    v_1 = L2 * c_relative - a3 * s_relative
+    whole_alpha = L1 * v_1
+    t55 = np.abs(whole_alpha)
+    v_2 = L2 * s_relative + a3 * c_relative
+    del c_relative, s_relative
+    ahead = d * s_psi * t5
+    del s_psi, t5
+    t56 = t31 * fore
+    t57 = t56 * s_bend_front_elbow_down
+    ahead_1 = t43 + t28 * M * t50
+    del M, t50
+    t58 = t40 * ahead_1
+    t59 = t57 + t58
+    t60 = fore * t40 * s_bend_front_elbow_down
+    del s_bend_front_elbow_down
+    t61 = t31 * ahead_1
+    del ahead_1
+    t62 = t60 - t61
+    t63 = 1.0 / np.sqrt(t59 * t59 + t62 * t62)
+    t64 = t59 * t63
+    higher = d * s_phi / c_phi
+    del c_phi, s_phi
+    t65 = t62 * t63
+    del t63
+    t66 = ahead * t64 + higher * t65
+    t67 = ahead * t65 - higher * t64
+    del t64, t65
+    room_alpha = t55 - np.abs(-(v_2 * t66 + v_1 * t67))
+    room_beta = t55 - np.abs(-(L1 * t66))
+    del t55
+    t68 = t47 & (t48 <= room_alpha) & (t48 <= room_beta)
+    t69 = np.abs(higher)
+    t70 = np.abs(ahead)
+    play_along = d + t69 + t70
+    t71 = -(_runtime.FEASIBILITY * play_along)
+    sigma_uv = _runtime.sign(-whole_alpha)
+    del whole_alpha
+    t72 = v_1 * sigma_uv
+    del v_1
+    eased = sigma_uv * t66
+    del sigma_uv, t66
+    left_along = L1 - np.abs(-(t67 + v_2 * eased / t72))
+    t73 = t68 & (t71 <= -(t72 + np.abs(-eased))) & (t71 <= left_along)
+    del t68
+    t74 = -(t72 + eased)
+    t75 = eased - t72
+    del eased
+    t76 = _runtime.VANISHING * (d * 16.0 + t69 * 16.0 + 16.0 * t70)
+    del t69, t70
+    t77 = _runtime.VANISHING * t76
+    del t76
+    below_beta = np.maximum(t74, t77)
+    above_beta = np.maximum(t75, t77)
+    t78 = 1.0 / (below_beta + above_beta)
+    t79 = (below_beta - above_beta) * t78
+    along_u = t67 + v_2 * t79
+    del t67
+    t80 = L1 - along_u
+    t81 = t73 & (t71 <= t74) & (t71 <= t75) & (t71 <= t80)
+    del t73, t74, t75
+    t82 = L1 + along_u
+    del along_u
+    unreachable = np.logical_not(t81 & (t71 <= t82))
+    del t81
+    t83 = _runtime.poison(invalid | unreachable)
+    t84 = np.arctan2(0.0, 1.0)
+    t85 = t84 + np.arctan2(-t62, -t59)
+    del t59, t62
+    below_alpha = np.maximum(t80, t77)
+    del t80
+    above_alpha = np.maximum(t82, t77)
+    del t82
+    t86 = 1.0 / (below_alpha + above_alpha)
+    t87 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t88 = np.arctan2((below_alpha - above_alpha) * t86, t86 * t87)
+    del above_alpha, below_alpha, t86, t87
+    t89 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    del above_beta, below_beta
+    t90 = t88 - np.arctan2(t79, t78 * t89)
+    del t78, t79, t89
+    t91 = 2.0 * np.arctan2(rN, rM)
+    del rM, rN
+    t92 = np.arctan2(s_lag, c_lag)
+    t93 = t91 - t92
+    t94 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    del c_pitch, s_pitch
+    c_relative_front_elbow_down = t51 - t52
+    del t51, t52
+    s_relative_front_elbow_down = t53 + t54
+    del t53, t54
+    v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
+    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
+    t95 = np.abs(whole_alpha_front_elbow_down)
+    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
+    del c_relative_front_elbow_down, s_relative_front_elbow_down
+    out_front_elbow_down = t57 - t58
+    del t57, t58
+    up_front_elbow_down = t60 + t61
+    del t60, t61
+    t96 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t97 = 1.0 / np.sqrt(t96)
+    del t96
+    t98 = out_front_elbow_down * t97
+    stheta2A_front_elbow_down = up_front_elbow_down * t97
+    del t97
+    t99 = ahead * t98 + higher * stheta2A_front_elbow_down
+    t100 = ahead * stheta2A_front_elbow_down - higher * t98
+    del stheta2A_front_elbow_down, t98
+    t101 = v_2_front_elbow_down * t99 + v_1_front_elbow_down * t100
+    room_alpha_front_elbow_down = t95 - np.abs(t101)
+    del t101
+    room_beta_front_elbow_down = t95 - np.abs(L1 * t99)
+    del t95
+    t102 = t47 & (t48 <= room_alpha_front_elbow_down) & (t48 <= room_beta_front_elbow_down)
+    del t47
+    sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
+    del whole_alpha_front_elbow_down
+    t103 = v_1_front_elbow_down * sigma_uv_front_elbow_down
+    del v_1_front_elbow_down
+    t104 = sigma_uv_front_elbow_down * t99
+    del sigma_uv_front_elbow_down, t99
+    t105 = np.abs(t100 + v_2_front_elbow_down * t104 / t103)
+    left_along_front_elbow_down = L1 - t105
+    del t105
+    t106 = t102 & (t71 <= -(t103 + np.abs(t104))) & (t71 <= left_along_front_elbow_down)
+    del t102
+    t107 = t104 - t103
+    t108 = -(t103 + t104)
+    del t104
+    below_beta_front_elbow_down = np.maximum(t107, t77)
+    above_beta_front_elbow_down = np.maximum(t108, t77)
+    t109 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
+    t110 = 1.0 / total_beta_front_elbow_down
+    del total_beta_front_elbow_down
+    t111 = t109 * t110
+    del t109
+    t112 = t100 - v_2_front_elbow_down * t111
+    del t100
+    t113 = L1 + t112
+    t114 = t106 & (t71 <= t107) & (t71 <= t108) & (t71 <= t113)
+    del t106, t107, t108
+    t115 = L1 - t112
+    del t112
+    unreachable_2 = np.logical_not(t114 & (t71 <= t115))
+    del t114
+    t116 = _runtime.poison(invalid | unreachable_2)
+    t117 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    del out_front_elbow_down, up_front_elbow_down
+    t118 = t84 + t117
+    del t117
+    below_alpha_front_elbow_down = np.maximum(t113, t77)
+    del t113
+    above_alpha_front_elbow_down = np.maximum(t115, t77)
+    del t115
+    t119 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
+    t120 = 1.0 / total_alpha_front_elbow_down
+    del total_alpha_front_elbow_down
+    t121 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    del above_alpha_front_elbow_down, below_alpha_front_elbow_down
+    t122 = np.arctan2(t119 * t120, t120 * t121)
+    del t119, t120, t121
+    t123 = t91 + t92
+    del t91
+    t124 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    del above_beta_front_elbow_down, below_beta_front_elbow_down
+    t125 = t122 - np.arctan2(t111, t110 * t124)
+    del t110, t111, t124
+    t126 = _runtime.wrap(-(t14 + t13))
+    del t13, t14
+    t127 = x * (t33 * (t36 + t37)) - y * (t33 * (t38 - t39))
+    del t33, t36, t37, t38, t39
+    square_rear_elbow_up = t32 + t127 * t127
+    del t32
+    t128 = t30 - square_rear_elbow_up
+    t129 = square_rear_elbow_up - t45
+    del square_rear_elbow_up, t45
+    t130 = t26 & (-t29 <= t128) & (-t44 <= t129)
+    del t26, t29, t44
+    M_rear_elbow_up = np.maximum(t129, 0.0)
+    del t129
+    N_rear_elbow_up = np.maximum(t128, 0.0)
+    del t128
+    t131 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
+    c_bend_rear_elbow_up = t131 * (M_rear_elbow_up - N_rear_elbow_up)
+    t132 = c_lag * c_bend_rear_elbow_up
+    rN_rear_elbow_up = np.sqrt(N_rear_elbow_up)
+    del N_rear_elbow_up
+    rM_rear_elbow_up = np.sqrt(M_rear_elbow_up)
+    s_bend_rear_elbow_up = t131 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
+    t133 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t132 - t133
+    t134 = s_lag * c_bend_rear_elbow_up
+    del c_bend_rear_elbow_up, s_lag
+    t135 = c_lag * s_bend_rear_elbow_up
+    del c_lag
+    s_relative_rear_elbow_up = t134 + t135
+    v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
+    whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
+    t136 = np.abs(whole_alpha_rear_elbow_up)
+    v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
+    del c_relative_rear_elbow_up, s_relative_rear_elbow_up
+    t137 = t56 * s_bend_rear_elbow_up
+    del t56
+    ahead_1_rear_elbow_up = t43 + t28 * M_rear_elbow_up * t131
+    del M_rear_elbow_up, t131, t28, t43
+    t138 = t127 * ahead_1_rear_elbow_up
+    out_rear_elbow_up = t137 - t138
+    t139 = fore * t127 * s_bend_rear_elbow_up
+    del s_bend_rear_elbow_up
+    t140 = t31 * ahead_1_rear_elbow_up
+    del ahead_1_rear_elbow_up
+    up_rear_elbow_up = t139 + t140
+    t141 = out_rear_elbow_up * out_rear_elbow_up + up_rear_elbow_up * up_rear_elbow_up
+    t142 = 1.0 / np.sqrt(t141)
+    del t141
+    t143 = out_rear_elbow_up * t142
+    stheta2A_rear_elbow_up = up_rear_elbow_up * t142
+    del t142
+    t144 = ahead * t143 + higher * stheta2A_rear_elbow_up
+    t145 = ahead * stheta2A_rear_elbow_up - higher * t143
+    del stheta2A_rear_elbow_up, t143
+    t146 = v_2_rear_elbow_up * t144 + v_1_rear_elbow_up * t145
+    room_alpha_rear_elbow_up = t136 - np.abs(t146)
+    del t146
+    room_beta_rear_elbow_up = t136 - np.abs(L1 * t144)
+    del t136
+    t147 = t130 & (t48 <= room_alpha_rear_elbow_up) & (t48 <= room_beta_rear_elbow_up)
+    sigma_uv_rear_elbow_up = _runtime.sign(-whole_alpha_rear_elbow_up)
+    del whole_alpha_rear_elbow_up
+    t148 = v_1_rear_elbow_up * sigma_uv_rear_elbow_up
+    del v_1_rear_elbow_up
+    t149 = sigma_uv_rear_elbow_up * t144
+    del sigma_uv_rear_elbow_up, t144
+    t150 = np.abs(t145 + v_2_rear_elbow_up * t149 / t148)
+    left_along_rear_elbow_up = L1 - t150
+    del t150
+    t151 = t147 & (t71 <= -(t148 + np.abs(t149))) & (t71 <= left_along_rear_elbow_up)
+    del t147
+    t152 = t149 - t148
+    t153 = -(t148 + t149)
+    del t149
+    below_beta_rear_elbow_up = np.maximum(t152, t77)
+    above_beta_rear_elbow_up = np.maximum(t153, t77)
+    t154 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
+    t155 = 1.0 / total_beta_rear_elbow_up
+    del total_beta_rear_elbow_up
+    t156 = t154 * t155
+    del t154
+    t157 = t145 - v_2_rear_elbow_up * t156
+    del t145
+    t158 = L1 + t157
+    t159 = t151 & (t71 <= t152) & (t71 <= t153) & (t71 <= t158)
+    del t151, t152, t153
+    t160 = L1 - t157
+    del t157
+    unreachable_3 = np.logical_not(t159 & (t71 <= t160))
+    del t159
+    t161 = _runtime.poison(invalid | unreachable_3)
+    t162 = np.arctan2(up_rear_elbow_up, out_rear_elbow_up)
+    del out_rear_elbow_up, up_rear_elbow_up
+    t163 = t84 + t162
+    del t162
+    below_alpha_rear_elbow_up = np.maximum(t158, t77)
+    del t158
+    above_alpha_rear_elbow_up = np.maximum(t160, t77)
+    del t160
+    t164 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
+    t165 = 1.0 / total_alpha_rear_elbow_up
+    del total_alpha_rear_elbow_up
+    t166 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t167 = np.arctan2(t164 * t165, t165 * t166)
+    del t164, t165, t166
+    t168 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
+    del rM_rear_elbow_up, rN_rear_elbow_up
+    t169 = 2.0 * t168
+    del t168
+    t170 = t92 + t169
+    t171 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
+    t172 = t167 - np.arctan2(t156, t155 * t171)
+    del t155, t156, t171
+    c_relative_rear_elbow_down = t132 + t133
+    del t132, t133
+    s_relative_rear_elbow_down = t134 - t135
+    del t134, t135
+    v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
+    whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
+    t173 = np.abs(whole_alpha_rear_elbow_down)
+    v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
+    del c_relative_rear_elbow_down, s_relative_rear_elbow_down
+    t174 = t137 + t138
+    del t137, t138
+    t175 = t139 - t140
+    del t139, t140
+    t176 = 1.0 / np.sqrt(t174 * t174 + t175 * t175)
+    t177 = t174 * t176
+    t178 = t175 * t176
+    del t176
+    t179 = ahead * t177 + higher * t178
+    t180 = ahead * t178 - higher * t177
+    del ahead, higher, t177, t178
+    t181 = v_2_rear_elbow_down * t179 + v_1_rear_elbow_down * t180
+    room_alpha_rear_elbow_down = t173 - np.abs(-t181)
+    del t181
+    room_beta_rear_elbow_down = t173 - np.abs(-(L1 * t179))
+    del t173
+    t182 = t130 & (t48 <= room_alpha_rear_elbow_down) & (t48 <= room_beta_rear_elbow_down)
+    del t130, t48
+    sigma_uv_rear_elbow_down = _runtime.sign(-whole_alpha_rear_elbow_down)
+    del whole_alpha_rear_elbow_down
+    t183 = v_1_rear_elbow_down * sigma_uv_rear_elbow_down
+    del v_1_rear_elbow_down
+    eased_rear_elbow_down = sigma_uv_rear_elbow_down * t179
+    del sigma_uv_rear_elbow_down, t179
+    t184 = t71 <= -(t183 + np.abs(-eased_rear_elbow_down))
+    t185 = v_2_rear_elbow_down * eased_rear_elbow_down / t183
+    left_along_rear_elbow_down = L1 - np.abs(-(t180 + t185))
+    del t185
+    t186 = t182 & t184 & (t71 <= left_along_rear_elbow_down)
+    del t182, t184
+    t187 = -(t183 + eased_rear_elbow_down)
+    t188 = eased_rear_elbow_down - t183
+    del eased_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t187, t77)
+    above_beta_rear_elbow_down = np.maximum(t188, t77)
+    t189 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
+    t190 = 1.0 / total_beta_rear_elbow_down
+    del total_beta_rear_elbow_down
+    t191 = t189 * t190
+    del t189
+    along_u_rear_elbow_down = t180 + v_2_rear_elbow_down * t191
+    del t180
+    t192 = L1 - along_u_rear_elbow_down
+    t193 = t186 & (t71 <= t187) & (t71 <= t188) & (t71 <= t192)
+    del t186, t187, t188
+    t194 = L1 + along_u_rear_elbow_down
+    del along_u_rear_elbow_down
+    unreachable_4 = np.logical_not(t193 & (t71 <= t194))
+    del t193, t71
+    t195 = _runtime.poison(invalid | unreachable_4)
+    t196 = t84 + np.arctan2(-t175, -t174)
+    del t174, t175, t84
+    below_alpha_rear_elbow_down = np.maximum(t192, t77)
+    del t192
+    above_alpha_rear_elbow_down = np.maximum(t194, t77)
+    del t194, t77
+    t197 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
+    t198 = 1.0 / total_alpha_rear_elbow_down
+    del total_alpha_rear_elbow_down
+    t199 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
+    t200 = np.arctan2(t197 * t198, t198 * t199)
+    del t197, t198, t199
+    t201 = t92 - t169
+    del t169, t92
+    t202 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    del above_beta_rear_elbow_down, below_beta_rear_elbow_down
+    t203 = t200 - np.arctan2(t191, t190 * t202)
+    del t190, t191, t202
+    t204 = _runtime.status(invalid, unreachable, np.False_)
+    del unreachable
+    t205 = _runtime.status(invalid, unreachable_2, np.False_)
+    del unreachable_2
+    t206 = _runtime.status(invalid, unreachable_3, np.False_)
+    del unreachable_3
+    t207 = _runtime.status(invalid, unreachable_4, np.False_)
+    del invalid, unreachable_4
+    t208 = (h <= t24 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t30)
+    del h, t24, t30
+    t209 = np.abs(t31)
+    del t31
+    t210 = _runtime.VANISHING * t27
+    del t27
+    t211 = t208 | (t209 + np.abs(-t40) <= t210) | (fore <= t210)
+    del fore, t208, t40
+    t212 = _runtime.VANISHING * play_alpha
+    del play_alpha
+    t213 = t211 | (room_alpha <= t212) | (room_beta <= t212)
+    del room_alpha, room_beta, t211
+    parallel = -t72 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
+    del t72, v_2
+    t214 = _runtime.VANISHING * play_along
+    del play_along
+    t215 = t213 | parallel | (left_along <= t214) | (room_alpha_front_elbow_down <= t212)
+    del left_along, parallel, room_alpha_front_elbow_down, t213
+    t216 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    del v_2_front_elbow_down
+    t217 = t215 | (room_beta_front_elbow_down <= t212) | (-t103 <= t216)
+    del room_beta_front_elbow_down, t103, t215, t216
+    t218 = t217 | (left_along_front_elbow_down <= t214) | (t209 + np.abs(-t127) <= t210)
+    del left_along_front_elbow_down, t127, t209, t210, t217
+    t219 = t218 | (room_alpha_rear_elbow_up <= t212) | (room_beta_rear_elbow_up <= t212)
+    del room_alpha_rear_elbow_up, room_beta_rear_elbow_up, t218
+    t220 = _runtime.VANISHING * (64.0 * np.abs(v_2_rear_elbow_up))
+    del v_2_rear_elbow_up
+    t221 = t219 | (-t148 <= t220) | (left_along_rear_elbow_up <= t214)
+    del left_along_rear_elbow_up, t148, t219, t220
+    t222 = t221 | (room_alpha_rear_elbow_down <= t212) | (room_beta_rear_elbow_down <= t212)
+    del room_alpha_rear_elbow_down, room_beta_rear_elbow_down, t212, t221
+    t223 = _runtime.VANISHING * (64.0 * np.abs(v_2_rear_elbow_down))
+    del v_2_rear_elbow_down
+    t224 = t222 | (-t183 <= t223) | (left_along_rear_elbow_down <= t214)
+    del left_along_rear_elbow_down, t183, t214, t222, t223
+    return (
+        t15 + t83,
+        _runtime.wrap(t85 - t88) + t83,
+        _runtime.wrap(t90 - t93) + t83,
+        _runtime.wrap(t85 + t88) + t83,
+        _runtime.wrap(-(t93 + t90)) + t83,
+        t94 + t83,
+        t15 + t116,
+        _runtime.wrap(t118 - t122) + t116,
+        _runtime.wrap(t123 + t125) + t116,
+        _runtime.wrap(t118 + t122) + t116,
+        _runtime.wrap(t123 - t125) + t116,
+        t94 + t116,
+        t126 + t161,
+        _runtime.wrap(t163 - t167) + t161,
+        _runtime.wrap(t170 + t172) + t161,
+        _runtime.wrap(t163 + t167) + t161,
+        _runtime.wrap(t170 - t172) + t161,
+        t94 + t161,
+        t126 + t195,
+        _runtime.wrap(t196 - t200) + t195,
+        _runtime.wrap(t201 + t203) + t195,
+        _runtime.wrap(t196 + t200) + t195,
+        _runtime.wrap(t201 - t203) + t195,
+        t94 + t195,
+        t204,
+        t205,
+        t206,
+        t207,
+        t224,
+    )
+
+
 _IK = _runtime.Kernel(
     "h6ar.ik",
     _ik,
@@ -1890,6 +2434,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (4, 6)), _runtime.Array("status", (4,), np.uint8)),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    _ik_common,
 )
 
 

@@ -2553,6 +2553,804 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     )
 
 
+def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
+    # Where nothing vanishes; last, whether something does.
+    s_phi, c_phi = _runtime.sincos(phi)
+    s_pitch, c_pitch = _runtime.sincos(pitch)
+    s_psi, c_psi = _runtime.sincos(psi)
+    h = np.sqrt(x * x + y * y)
+    t1 = lp * s_pitch
+    t2 = c_phi * c_psi
+    t3 = 1.0 / t2
+    t4 = d - (gs - al) * t2
+    t5 = (gs + al) * t2 - d
+    del t2
+    t6 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t5, 0.0))
+    t7 = loff + lp * c_pitch + t3 * t6
+    del t6
+    t8 = s_psi * t7
+    t9 = s_phi * t1 - c_phi * t8
+    t10 = h + t9
+    below = np.maximum(t10, 0.0)
+    t11 = np.sqrt(below)
+    t12 = h - t9
+    del t9
+    above = np.maximum(t12, 0.0)
+    t13 = np.sqrt(above)
+    t14 = 2.0 * np.arctan2(t11, t13)
+    t15 = np.arctan2(x, y)
+    t16 = _runtime.wrap(t14 - t15)
+    t17 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t17
+    t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t18
+    t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t21 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t22 = t19 & (0.0 <= loff) & (0.0 <= lp) & t20 & (np.abs(t21) <= _runtime.ROTATION)
+    del t19, t20, t21
+    invalid = np.logical_not(t22)
+    del t22
+    t23 = -(_runtime.FEASIBILITY * (d / 2.0))
+    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t5)
+    del t5
+    t25 = L1 + L2
+    t26 = -(_runtime.FEASIBILITY * t25)
+    t27 = t24 & (t23 <= t4) & (t26 <= t10) & (t26 <= t12)
+    del t10, t12, t23, t24, t26, t4
+    L_2W = L2 + c_psi * t7
+    del c_psi, t7
+    a_3W = a3 + c_phi * t1 + s_phi * t8
+    del t1, t8
+    fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
+    t28 = L1 + fore
+    t29 = L1 * 2.0
+    t30 = 2.0 * fore
+    t31 = -(_runtime.FEASIBILITY * (t28 * (t29 + t30)))
+    t32 = t28 * t28
+    t33 = z - d1
+    t34 = t33 * t33
+    t35 = 1.0 / h
+    t36 = 1.0 / (below + above)
+    t37 = (below - above) * t36
+    del above, below
+    t38 = y * t37
+    s_turn = t36 * (2.0 * t11 * t13)
+    del t11, t13, t36
+    t39 = x * s_turn
+    t40 = x * t37
+    del t37
+    t41 = y * s_turn
+    del s_turn
+    t42 = x * (t35 * (t38 - t39)) - y * (t35 * (t40 + t41))
+    square = t34 + t42 * t42
+    t43 = t32 - square
+    t44 = L1 / 8796093022208.0 + fore / 8796093022208.0
+    t45 = L1 - fore
+    t46 = _runtime.FEASIBILITY * (t28 * (t44 + 2.0 * np.abs(t45)))
+    del t44
+    t47 = t45 * t45
+    t48 = square - t47
+    del square
+    t49 = t27 & (t31 <= t43) & (-t46 <= t48)
+    fore_arm = np.sqrt(L2 * L2 + a3 * a3)
+    size = L1 + fore_arm
+    play_right = d * size
+    t50 = -(_runtime.FEASIBILITY * play_right)
+    t51 = 1.0 / fore
+    s_lag = L_2W * t51
+    del L_2W
+    N = np.maximum(t43, 0.0)
+    del t43
+    M = np.maximum(t48, 0.0)
+    del t48
+    t52 = 1.0 / (N + M)
+    t53 = (N - M) * t52
+    t54 = s_lag * t53
+    c_lag = a_3W * t51
+    del a_3W, t51
+    s_bend_front_elbow_down_alike = t52 * (2.0 * np.sqrt(N) * np.sqrt(M))
+    del N
+    t55 = c_lag * s_bend_front_elbow_down_alike
+    t56 = t54 + t55
+    t57 = c_lag * t53
+    del t53
+    t58 = s_lag * s_bend_front_elbow_down_alike
+    t59 = t57 - t58
+    straight_mid = -(L2 * t56 + a3 * t59)
+    t60 = 0.0 <= straight_mid
+    bent_mid = L2 * t59 - a3 * t56
+    large_mid = fore_arm + np.abs(straight_mid)
+    del straight_mid
+    small_mid = bent_mid * bent_mid / large_mid
+    N_mid = t29 * _runtime.select(t60, small_mid, large_mid)
+    t61 = 1.0 / c_phi
+    del c_phi
+    t62 = t33 * fore
+    t63 = t62 * s_bend_front_elbow_down_alike
+    ahead_1 = t45 + t52 * (t30 * M)
+    del M, t52
+    t64 = t42 * ahead_1
+    t65 = t63 + t64
+    t66 = fore * t42 * s_bend_front_elbow_down_alike
+    del s_bend_front_elbow_down_alike
+    t67 = t33 * ahead_1
+    del ahead_1
+    t68 = t66 - t67
+    t69 = 1.0 / np.sqrt(t65 * t65 + t68 * t68)
+    t70 = t65 * t69
+    del t65
+    t71 = t68 * t69
+    del t68, t69
+    ctheta23A = t59 * t70 - t56 * t71
+    t72 = t59 * t71 + t56 * t70
+    del t56, t59
+    t73 = t61 * (s_phi * ctheta23A) - t3 * (s_psi * t72)
+    t74 = d * t73
+    del t73
+    t75 = t3 * (s_psi * ctheta23A) + t61 * (s_phi * t72)
+    t76 = d * t75
+    del t75
+    gap = t74 * t74 + t76 * t76
+    t77 = N_mid - gap
+    del N_mid
+    t78 = L1 * t70 - L2 * t72 - a3 * ctheta23A
+    del t70
+    t79 = L1 * t71 + L2 * ctheta23A - a3 * t72
+    del ctheta23A, t71, t72
+    twice = 2.0 * t74 * t78 + 2.0 * t76 * t79
+    room_right = t77 - twice
+    t80 = t50 <= room_right
+    room_left = t77 + twice
+    del t77
+    t81 = t50 <= room_left
+    t82 = size * size
+    t83 = t76 + t79
+    t84 = t74 + t78
+    t85 = t83 * t83 + t84 * t84
+    t86 = gap * gap
+    t87 = L1 - fore_arm
+    t88 = t87 * t87
+    M_mid = t29 * _runtime.select(t60, large_mid, small_mid)
+    del large_mid, small_mid, t60
+    t89 = M_mid + gap
+    t90 = _runtime.select(t82 * t85 < t86, t85 - t88, twice + t89)
+    del t85
+    h_left_0 = t76 - t79
+    del t76, t79
+    r_left_0 = t74 - t78
+    del t74, t78
+    t91 = h_left_0 * h_left_0 + r_left_0 * r_left_0
+    t92 = _runtime.select(t82 * t91 < t86, t88 - t91, twice - t89)
+    del t86, t89, t91, twice
+    t93 = t49 & t80 & t81 & t80 & (t50 <= t90) & t81 & (t50 <= -t92)
+    del t80, t81
+    unreachable = np.logical_not(t93)
+    del t93
+    t94 = _runtime.poison(invalid | unreachable)
+    t95 = t16 + t94
+    t96 = _runtime.VANISHING * (_runtime.VANISHING * (play_right * 16.0))
+    M_right = np.maximum(t90, t96)
+    del t90
+    N_right = np.maximum(room_right, t96)
+    t97 = 1.0 / (M_right + N_right)
+    t98 = 2.0 * _runtime.sign(bent_mid)
+    del bent_mid
+    rN_right = np.sqrt(N_right)
+    del N_right
+    rM_right = np.sqrt(M_right)
+    t99 = fore_arm * (t97 * (t98 * rN_right * rM_right))
+    t100 = 2.0 * fore_arm
+    ahead_1_right = t87 + t100 * M_right * t97
+    del M_right, t97
+    t101 = np.arctan2(t84 * t99 - t83 * ahead_1_right, -(t84 * ahead_1_right + t83 * t99))
+    del ahead_1_right, t99
+    t102 = _runtime.wrap_cut(t101) + t94
+    del t101
+    t103 = 1.0 / fore_arm
+    t104 = np.arctan2(L2 * t103, a3 * t103)
+    del t103
+    t105 = _runtime.wrap(t104 + t98 * np.arctan2(rN_right, rM_right))
+    del rM_right, rN_right
+    t106 = t105 + t94
+    del t105
+    M_left = np.maximum(-t92, 0.0)
+    del t92
+    N_left = np.maximum(room_left, 0.0)
+    t107 = 1.0 / (M_left + N_left)
+    ahead_1_left = t87 + t100 * M_left * t107
+    t108 = h_left_0 * ahead_1_left
+    rN_left = np.sqrt(N_left)
+    del N_left
+    rM_left = np.sqrt(M_left)
+    del M_left
+    t109 = fore_arm * (t107 * (t98 * rN_left * rM_left))
+    del t107
+    t110 = r_left_0 * t109
+    t111 = r_left_0 * ahead_1_left
+    del ahead_1_left
+    t112 = h_left_0 * t109
+    del t109
+    t113 = _runtime.wrap_cut(np.arctan2(t108 - t110, t111 + t112))
+    t114 = t98 * np.arctan2(rN_left, rM_left)
+    del rM_left, rN_left, t98
+    t115 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    del c_pitch, s_pitch
+    t116 = t115 + t94
+    t117 = _runtime.wrap_cut(np.arctan2(t108 + t110, t111 - t112))
+    del t108, t110, t111, t112
+    t118 = t54 - t55
+    del t54, t55
+    t119 = t57 + t58
+    del t57, t58
+    straight_mid_front_elbow_down_alike = -(L2 * t118 + a3 * t119)
+    t120 = 0.0 <= straight_mid_front_elbow_down_alike
+    bent_mid_front_elbow_down_alike = L2 * t119 - a3 * t118
+    t121 = bent_mid_front_elbow_down_alike * bent_mid_front_elbow_down_alike
+    large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
+    del straight_mid_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t121 / large_mid_front_elbow_down_alike
+    del t121
+    t122 = _runtime.select(t120, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    t123 = t63 - t64
+    del t63, t64
+    up_front_elbow_down_alike = t66 + t67
+    del t66, t67
+    t124 = up_front_elbow_down_alike * up_front_elbow_down_alike
+    t125 = 1.0 / np.sqrt(t123 * t123 + t124)
+    del t124
+    t126 = t123 * t125
+    del t123
+    stheta2A_front_elbow_down_alike = up_front_elbow_down_alike * t125
+    del t125, up_front_elbow_down_alike
+    t127 = t119 * t126 - t118 * stheta2A_front_elbow_down_alike
+    t128 = t119 * stheta2A_front_elbow_down_alike + t118 * t126
+    del t118, t119
+    t129 = d * (t61 * (s_phi * t127) - t3 * (s_psi * t128))
+    t130 = d * (t3 * (s_psi * t127) + t61 * (s_phi * t128))
+    gap_front_elbow_down_alike = t129 * t129 + t130 * t130
+    t131 = t29 * t122 - gap_front_elbow_down_alike
+    del t122
+    point_11_front_elbow_down_alike = L1 * t126 - L2 * t128 - a3 * t127
+    del t126
+    t132 = L1 * stheta2A_front_elbow_down_alike + L2 * t127
+    del stheta2A_front_elbow_down_alike, t127
+    point_21_front_elbow_down_alike = t132 - a3 * t128
+    del t128, t132
+    twice_front_elbow_down_alike = 2.0 * t129 * point_11_front_elbow_down_alike + 2.0 * t130 * point_21_front_elbow_down_alike
+    room_right_front_elbow_down_alike = t131 - twice_front_elbow_down_alike
+    t133 = t50 <= room_right_front_elbow_down_alike
+    room_left_front_elbow_down_alike = t131 + twice_front_elbow_down_alike
+    del t131
+    t134 = t50 <= room_left_front_elbow_down_alike
+    h_right_0_front_elbow_down_alike = t130 + point_21_front_elbow_down_alike
+    t135 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    r_right_0_front_elbow_down_alike = t129 + point_11_front_elbow_down_alike
+    t136 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t137 = t135 + t136
+    del t135, t136
+    t138 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t139 = _runtime.select(t120, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t120
+    M_mid_front_elbow_down_alike = t29 * t139
+    del t139
+    t140 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t141 = _runtime.select(t82 * t137 < t138, t137 - t88, twice_front_elbow_down_alike + t140)
+    del t137
+    t142 = t49 & t133 & t134 & t133 & (t50 <= t141) & t134
+    del t133, t134, t49
+    t143 = t130 - point_21_front_elbow_down_alike
+    del point_21_front_elbow_down_alike, t130
+    t144 = t129 - point_11_front_elbow_down_alike
+    del point_11_front_elbow_down_alike, t129
+    t145 = t143 * t143 + t144 * t144
+    t146 = _runtime.select(t82 * t145 < t138, t88 - t145, twice_front_elbow_down_alike - t140)
+    del t138, t140, t145, twice_front_elbow_down_alike
+    unreachable_2 = np.logical_not(t142 & (t50 <= -t146))
+    del t142
+    t147 = _runtime.poison(invalid | unreachable_2)
+    t148 = t16 + t147
+    del t16
+    M_right_front_elbow_down_alike = np.maximum(t141, t96)
+    del t141
+    N_right_front_elbow_down_alike = np.maximum(room_right_front_elbow_down_alike, t96)
+    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
+    t149 = 1.0 / whole_right_front_elbow_down_alike
+    del whole_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = t87 + t100 * M_right_front_elbow_down_alike * t149
+    t150 = h_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    sigma_right_front_elbow_down_alike = _runtime.sign(bent_mid_front_elbow_down_alike)
+    del bent_mid_front_elbow_down_alike
+    t151 = 2.0 * sigma_right_front_elbow_down_alike
+    del sigma_right_front_elbow_down_alike
+    rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
+    del N_right_front_elbow_down_alike
+    rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
+    del M_right_front_elbow_down_alike
+    t152 = t151 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    t153 = fore_arm * (t149 * t152)
+    del t149, t152
+    up_right_front_elbow_down_alike = t150 - r_right_0_front_elbow_down_alike * t153
+    del t150
+    t154 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    del ahead_1_right_front_elbow_down_alike
+    out_right_front_elbow_down_alike = t154 + h_right_0_front_elbow_down_alike * t153
+    del t153, t154
+    t155 = np.arctan2(up_right_front_elbow_down_alike, out_right_front_elbow_down_alike)
+    del out_right_front_elbow_down_alike, up_right_front_elbow_down_alike
+    t156 = _runtime.wrap_cut(t155) + t147
+    del t155
+    t157 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    del rM_right_front_elbow_down_alike, rN_right_front_elbow_down_alike
+    t158 = _runtime.wrap(t104 + t151 * t157) + t147
+    del t157
+    M_left_front_elbow_down_alike = np.maximum(-t146, 0.0)
+    del t146
+    N_left_front_elbow_down_alike = np.maximum(room_left_front_elbow_down_alike, 0.0)
+    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
+    t159 = 1.0 / whole_left_front_elbow_down_alike
+    del whole_left_front_elbow_down_alike
+    rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
+    del N_left_front_elbow_down_alike
+    rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
+    t160 = t151 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    t161 = fore_arm * (t159 * t160)
+    del t160
+    t162 = t144 * t161
+    ahead_1_left_front_elbow_down_alike = t87 + t100 * M_left_front_elbow_down_alike * t159
+    del M_left_front_elbow_down_alike, t159
+    t163 = t143 * ahead_1_left_front_elbow_down_alike
+    t164 = t144 * ahead_1_left_front_elbow_down_alike
+    del ahead_1_left_front_elbow_down_alike
+    t165 = t143 * t161
+    del t161
+    t166 = _runtime.wrap_cut(np.arctan2(t162 - t163, -(t164 + t165)))
+    t167 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    del rM_left_front_elbow_down_alike, rN_left_front_elbow_down_alike
+    t168 = t151 * t167
+    del t151, t167
+    t169 = t115 + t147
+    t170 = _runtime.wrap_cut(np.arctan2(-(t163 + t162), t165 - t164))
+    del t162, t163, t164, t165
+    t171 = _runtime.wrap(-(t15 + t14))
+    del t14, t15
+    t172 = x * (t35 * (t38 + t39)) - y * (t35 * (t40 - t41))
+    del t35, t38, t39, t40, t41
+    square_rear_elbow_up_alike = t34 + t172 * t172
+    del t34
+    t173 = t32 - square_rear_elbow_up_alike
+    t174 = square_rear_elbow_up_alike - t47
+    del square_rear_elbow_up_alike, t47
+    t175 = t27 & (t31 <= t173) & (-t46 <= t174)
+    del t27, t31, t46
+    N_rear_elbow_up_alike = np.maximum(t173, 0.0)
+    del t173
+    M_rear_elbow_up_alike = np.maximum(t174, 0.0)
+    del t174
+    t176 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
+    whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
+    t177 = 1.0 / whole_rear_elbow_up_alike
+    del whole_rear_elbow_up_alike
+    t178 = t176 * t177
+    del t176
+    t179 = s_lag * t178
+    t180 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
+    del N_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = t177 * t180
+    del t180
+    t181 = c_lag * s_bend_rear_elbow_up_alike
+    t182 = t179 - t181
+    t183 = c_lag * t178
+    del c_lag, t178
+    t184 = s_lag * s_bend_rear_elbow_up_alike
+    del s_lag
+    t185 = t183 + t184
+    straight_mid_rear_elbow_up_alike = -(L2 * t182 + a3 * t185)
+    t186 = 0.0 <= straight_mid_rear_elbow_up_alike
+    bent_mid_rear_elbow_up_alike = L2 * t185 - a3 * t182
+    t187 = bent_mid_rear_elbow_up_alike * bent_mid_rear_elbow_up_alike
+    large_mid_rear_elbow_up_alike = fore_arm + np.abs(straight_mid_rear_elbow_up_alike)
+    del straight_mid_rear_elbow_up_alike
+    small_mid_rear_elbow_up_alike = t187 / large_mid_rear_elbow_up_alike
+    del t187
+    t188 = _runtime.select(t186, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
+    t189 = t62 * s_bend_rear_elbow_up_alike
+    del t62
+    ahead_1_rear_elbow_up_alike = t45 + t177 * (t30 * M_rear_elbow_up_alike)
+    del M_rear_elbow_up_alike, t177, t30, t45
+    t190 = t172 * ahead_1_rear_elbow_up_alike
+    t191 = t189 - t190
+    t192 = fore * t172 * s_bend_rear_elbow_up_alike
+    del s_bend_rear_elbow_up_alike
+    t193 = t33 * ahead_1_rear_elbow_up_alike
+    del ahead_1_rear_elbow_up_alike
+    up_rear_elbow_up_alike = t192 + t193
+    t194 = up_rear_elbow_up_alike * up_rear_elbow_up_alike
+    t195 = 1.0 / np.sqrt(t191 * t191 + t194)
+    del t194
+    t196 = t191 * t195
+    del t191
+    stheta2A_rear_elbow_up_alike = up_rear_elbow_up_alike * t195
+    del t195, up_rear_elbow_up_alike
+    t197 = t185 * t196 - t182 * stheta2A_rear_elbow_up_alike
+    t198 = t185 * stheta2A_rear_elbow_up_alike + t182 * t196
+    del t182, t185
+    t199 = d * (t61 * (s_phi * t197) - t3 * (s_psi * t198))
+    t200 = d * (t3 * (s_psi * t197) + t61 * (s_phi * t198))
+    gap_rear_elbow_up_alike = t199 * t199 + t200 * t200
+    t201 = t29 * t188 - gap_rear_elbow_up_alike
+    del t188
+    point_11_rear_elbow_up_alike = L1 * t196 - L2 * t198 - a3 * t197
+    del t196
+    t202 = L1 * stheta2A_rear_elbow_up_alike + L2 * t197
+    del stheta2A_rear_elbow_up_alike, t197
+    point_21_rear_elbow_up_alike = t202 - a3 * t198
+    del t198, t202
+    twice_rear_elbow_up_alike = 2.0 * t199 * point_11_rear_elbow_up_alike + 2.0 * t200 * point_21_rear_elbow_up_alike
+    room_right_rear_elbow_up_alike = t201 - twice_rear_elbow_up_alike
+    t203 = t50 <= room_right_rear_elbow_up_alike
+    room_left_rear_elbow_up_alike = t201 + twice_rear_elbow_up_alike
+    del t201
+    t204 = t50 <= room_left_rear_elbow_up_alike
+    h_right_0_rear_elbow_up_alike = t200 + point_21_rear_elbow_up_alike
+    t205 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    r_right_0_rear_elbow_up_alike = t199 + point_11_rear_elbow_up_alike
+    t206 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t207 = t205 + t206
+    del t205, t206
+    t208 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t209 = _runtime.select(t186, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
+    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t186
+    M_mid_rear_elbow_up_alike = t29 * t209
+    del t209
+    t210 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
+    t211 = _runtime.select(t82 * t207 < t208, t207 - t88, twice_rear_elbow_up_alike + t210)
+    del t207
+    t212 = t175 & t203 & t204 & t203 & (t50 <= t211) & t204
+    del t203, t204
+    t213 = t200 - point_21_rear_elbow_up_alike
+    del point_21_rear_elbow_up_alike, t200
+    t214 = t199 - point_11_rear_elbow_up_alike
+    del point_11_rear_elbow_up_alike, t199
+    t215 = t213 * t213 + t214 * t214
+    t216 = _runtime.select(t82 * t215 < t208, t88 - t215, twice_rear_elbow_up_alike - t210)
+    del t208, t210, t215, twice_rear_elbow_up_alike
+    unreachable_3 = np.logical_not(t212 & (t50 <= -t216))
+    del t212
+    t217 = _runtime.poison(invalid | unreachable_3)
+    t218 = t171 + t217
+    M_right_rear_elbow_up_alike = np.maximum(t211, t96)
+    del t211
+    N_right_rear_elbow_up_alike = np.maximum(room_right_rear_elbow_up_alike, t96)
+    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
+    t219 = 1.0 / whole_right_rear_elbow_up_alike
+    del whole_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = t87 + t100 * M_right_rear_elbow_up_alike * t219
+    t220 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t221 = 2.0 * _runtime.sign(bent_mid_rear_elbow_up_alike)
+    del bent_mid_rear_elbow_up_alike
+    rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
+    del N_right_rear_elbow_up_alike
+    rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
+    del M_right_rear_elbow_up_alike
+    t222 = t221 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    t223 = fore_arm * (t219 * t222)
+    del t219, t222
+    t224 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    del ahead_1_right_rear_elbow_up_alike
+    t225 = np.arctan2(t220 - r_right_0_rear_elbow_up_alike * t223, t224 + h_right_0_rear_elbow_up_alike * t223)
+    del t220, t223, t224
+    t226 = _runtime.wrap_cut(t225) + t217
+    del t225
+    t227 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    del rM_right_rear_elbow_up_alike, rN_right_rear_elbow_up_alike
+    t228 = _runtime.wrap(t104 + t221 * t227) + t217
+    del t227
+    M_left_rear_elbow_up_alike = np.maximum(-t216, 0.0)
+    del t216
+    N_left_rear_elbow_up_alike = np.maximum(room_left_rear_elbow_up_alike, 0.0)
+    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
+    t229 = 1.0 / whole_left_rear_elbow_up_alike
+    del whole_left_rear_elbow_up_alike
+    rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
+    del N_left_rear_elbow_up_alike
+    rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
+    t230 = t221 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    t231 = fore_arm * (t229 * t230)
+    del t230
+    t232 = t214 * t231
+    ahead_1_left_rear_elbow_up_alike = t87 + t100 * M_left_rear_elbow_up_alike * t229
+    del M_left_rear_elbow_up_alike, t229
+    t233 = t213 * ahead_1_left_rear_elbow_up_alike
+    t234 = t214 * ahead_1_left_rear_elbow_up_alike
+    del ahead_1_left_rear_elbow_up_alike
+    t235 = t213 * t231
+    del t231
+    t236 = _runtime.wrap_cut(np.arctan2(t232 - t233, -(t234 + t235)))
+    t237 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    del rM_left_rear_elbow_up_alike, rN_left_rear_elbow_up_alike
+    t238 = t221 * t237
+    del t221, t237
+    t239 = t115 + t217
+    t240 = _runtime.wrap_cut(np.arctan2(-(t233 + t232), t235 - t234))
+    del t232, t233, t234, t235
+    t241 = t179 + t181
+    del t179, t181
+    t242 = t183 - t184
+    del t183, t184
+    straight_mid_rear_elbow_down_alike = -(L2 * t241 + a3 * t242)
+    t243 = 0.0 <= straight_mid_rear_elbow_down_alike
+    bent_mid_rear_elbow_down_alike = L2 * t242 - a3 * t241
+    t244 = bent_mid_rear_elbow_down_alike * bent_mid_rear_elbow_down_alike
+    large_mid_rear_elbow_down_alike = fore_arm + np.abs(straight_mid_rear_elbow_down_alike)
+    del straight_mid_rear_elbow_down_alike
+    small_mid_rear_elbow_down_alike = t244 / large_mid_rear_elbow_down_alike
+    del t244
+    t245 = _runtime.select(t243, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
+    t246 = t189 + t190
+    del t189, t190
+    t247 = t192 - t193
+    del t192, t193
+    t248 = 1.0 / np.sqrt(t246 * t246 + t247 * t247)
+    t249 = t246 * t248
+    del t246
+    t250 = t247 * t248
+    del t247, t248
+    ctheta23A_rear_elbow_down_alike = t242 * t249 - t241 * t250
+    t251 = t61 * (s_phi * ctheta23A_rear_elbow_down_alike)
+    t252 = t242 * t250 + t241 * t249
+    del t241, t242
+    t253 = d * (t251 - t3 * (s_psi * t252))
+    del t251
+    t254 = t3 * (s_psi * ctheta23A_rear_elbow_down_alike)
+    del s_psi, t3
+    t255 = d * (t254 + t61 * (s_phi * t252))
+    del s_phi, t254, t61
+    gap_rear_elbow_down_alike = t253 * t253 + t255 * t255
+    t256 = t29 * t245 - gap_rear_elbow_down_alike
+    del t245
+    t257 = L1 * t249 - L2 * t252 - a3 * ctheta23A_rear_elbow_down_alike
+    del t249
+    t258 = L1 * t250 + L2 * ctheta23A_rear_elbow_down_alike
+    del ctheta23A_rear_elbow_down_alike, t250
+    t259 = t258 - a3 * t252
+    del t252, t258
+    twice_rear_elbow_down_alike = 2.0 * t253 * t257 + 2.0 * t255 * t259
+    room_right_rear_elbow_down_alike = t256 - twice_rear_elbow_down_alike
+    t260 = t50 <= room_right_rear_elbow_down_alike
+    room_left_rear_elbow_down_alike = t256 + twice_rear_elbow_down_alike
+    del t256
+    t261 = t50 <= room_left_rear_elbow_down_alike
+    t262 = t255 + t259
+    t263 = t253 + t257
+    t264 = t262 * t262 + t263 * t263
+    t265 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t266 = _runtime.select(t243, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
+    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t243
+    M_mid_rear_elbow_down_alike = t29 * t266
+    del t266, t29
+    t267 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
+    t268 = _runtime.select(t82 * t264 < t265, t264 - t88, twice_rear_elbow_down_alike + t267)
+    del t264
+    t269 = t175 & t260 & t261 & t260 & (t50 <= t268) & t261
+    del t175, t260, t261
+    h_left_0_rear_elbow_down_alike = t255 - t259
+    del t255, t259
+    t270 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t253 - t257
+    del t253, t257
+    t271 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t272 = t270 + t271
+    del t270, t271
+    t273 = _runtime.select(t82 * t272 < t265, t88 - t272, twice_rear_elbow_down_alike - t267)
+    del t265, t267, t272, twice_rear_elbow_down_alike
+    unreachable_4 = np.logical_not(t269 & (t50 <= -t273))
+    del t269, t50
+    t274 = _runtime.poison(invalid | unreachable_4)
+    t275 = t171 + t274
+    del t171
+    M_right_rear_elbow_down_alike = np.maximum(t268, t96)
+    del t268
+    N_right_rear_elbow_down_alike = np.maximum(room_right_rear_elbow_down_alike, t96)
+    del t96
+    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
+    t276 = 1.0 / whole_right_rear_elbow_down_alike
+    del whole_right_rear_elbow_down_alike
+    sigma_right_rear_elbow_down_alike = _runtime.sign(bent_mid_rear_elbow_down_alike)
+    del bent_mid_rear_elbow_down_alike
+    t277 = 2.0 * sigma_right_rear_elbow_down_alike
+    del sigma_right_rear_elbow_down_alike
+    rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
+    del N_right_rear_elbow_down_alike
+    rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
+    t278 = t277 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    t279 = fore_arm * (t276 * t278)
+    del t278
+    ahead_1_right_rear_elbow_down_alike = t87 + t100 * M_right_rear_elbow_down_alike * t276
+    del M_right_rear_elbow_down_alike, t276
+    up_right_rear_elbow_down_alike = t263 * t279 - t262 * ahead_1_right_rear_elbow_down_alike
+    t280 = t263 * ahead_1_right_rear_elbow_down_alike + t262 * t279
+    del ahead_1_right_rear_elbow_down_alike, t279
+    t281 = np.arctan2(up_right_rear_elbow_down_alike, -t280)
+    del t280, up_right_rear_elbow_down_alike
+    t282 = _runtime.wrap_cut(t281) + t274
+    del t281
+    t283 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    del rM_right_rear_elbow_down_alike, rN_right_rear_elbow_down_alike
+    t284 = _runtime.wrap(t104 + t277 * t283) + t274
+    del t283
+    M_left_rear_elbow_down_alike = np.maximum(-t273, 0.0)
+    del t273
+    N_left_rear_elbow_down_alike = np.maximum(room_left_rear_elbow_down_alike, 0.0)
+    whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
+    t285 = 1.0 / whole_left_rear_elbow_down_alike
+    del whole_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = t87 + t100 * M_left_rear_elbow_down_alike * t285
+    del t100, t87
+    t286 = h_left_0_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
+    del N_left_rear_elbow_down_alike
+    rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
+    del M_left_rear_elbow_down_alike
+    t287 = t277 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    t288 = fore_arm * (t285 * t287)
+    del t285, t287
+    t289 = r_left_0_rear_elbow_down_alike * t288
+    t290 = r_left_0_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    del ahead_1_left_rear_elbow_down_alike
+    t291 = h_left_0_rear_elbow_down_alike * t288
+    del t288
+    t292 = _runtime.wrap_cut(np.arctan2(t286 - t289, t290 + t291))
+    t293 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    del rM_left_rear_elbow_down_alike, rN_left_rear_elbow_down_alike
+    t294 = t277 * t293
+    del t277, t293
+    t295 = t115 + t274
+    del t115
+    t296 = _runtime.wrap_cut(np.arctan2(t286 + t289, t290 - t291))
+    del t286, t289, t290, t291
+    t297 = _runtime.status(invalid, unreachable, np.False_)
+    del unreachable
+    t298 = _runtime.status(invalid, unreachable_2, np.False_)
+    del unreachable_2
+    t299 = _runtime.status(invalid, unreachable_3, np.False_)
+    del unreachable_3
+    t300 = _runtime.status(invalid, unreachable_4, np.False_)
+    del invalid, unreachable_4
+    t301 = (h <= t25 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t32)
+    del h, t25, t32
+    t302 = _runtime.VANISHING * t28
+    del t28
+    t303 = np.abs(t33)
+    del t33
+    t304 = t301 | (fore <= t302) | (t303 + np.abs(-t42) <= t302)
+    del fore, t301, t42
+    t305 = _runtime.VANISHING * play_right
+    del play_right
+    t306 = t304 | (room_right <= t305) | (room_left <= t305)
+    del room_left, room_right, t304
+    t307 = t306 | (L1 * fore_arm <= _runtime.VANISHING * t82)
+    del t306
+    t308 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    t309 = t307 | (np.abs(-t83) + np.abs(-t84) <= t308) | (fore_arm <= _runtime.VANISHING * size)
+    del fore_arm, size, t307, t83, t84
+    t310 = t309 | (np.abs(h_left_0) + np.abs(r_left_0) <= t308)
+    del h_left_0, r_left_0, t309
+    t311 = t310 | (room_right_front_elbow_down_alike <= t305)
+    del room_right_front_elbow_down_alike, t310
+    t312 = t311 | (room_left_front_elbow_down_alike <= t305)
+    del room_left_front_elbow_down_alike, t311
+    t313 = np.abs(h_right_0_front_elbow_down_alike) + np.abs(r_right_0_front_elbow_down_alike)
+    del h_right_0_front_elbow_down_alike, r_right_0_front_elbow_down_alike
+    t314 = t312 | (t313 <= t308) | (np.abs(-t143) + np.abs(-t144) <= t308)
+    del t143, t144, t312, t313
+    t315 = t314 | (t303 + np.abs(-t172) <= t302) | (room_right_rear_elbow_up_alike <= t305)
+    del room_right_rear_elbow_up_alike, t172, t302, t303, t314
+    t316 = t315 | (room_left_rear_elbow_up_alike <= t305)
+    del room_left_rear_elbow_up_alike, t315
+    t317 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
+    t318 = t316 | (t317 <= t308) | (np.abs(-t213) + np.abs(-t214) <= t308)
+    del t213, t214, t316, t317
+    t319 = t318 | (room_right_rear_elbow_down_alike <= t305)
+    del room_right_rear_elbow_down_alike, t318
+    t320 = t319 | (room_left_rear_elbow_down_alike <= t305)
+    del room_left_rear_elbow_down_alike, t305, t319
+    t321 = t320 | (np.abs(-t262) + np.abs(-t263) <= t308)
+    del t262, t263, t320
+    t322 = np.abs(h_left_0_rear_elbow_down_alike) + np.abs(r_left_0_rear_elbow_down_alike)
+    del h_left_0_rear_elbow_down_alike, r_left_0_rear_elbow_down_alike
+    square_mid = t88 + M_mid
+    t323 = 10000.0 * t82
+    del t82
+    pole = M_mid * square_mid <= _runtime.VANISHING * (t323 * gap)
+    del M_mid, gap
+    t324 = _runtime.VANISHING * t323
+    t325 = t321 | (t322 <= t308) | pole | (square_mid <= t324)
+    del pole, square_mid, t308, t321, t322
+    square_mid_front_elbow_down_alike = t88 + M_mid_front_elbow_down_alike
+    t326 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    del M_mid_front_elbow_down_alike
+    t327 = _runtime.VANISHING * (t323 * gap_front_elbow_down_alike)
+    del gap_front_elbow_down_alike
+    t328 = t325 | (t326 <= t327) | (square_mid_front_elbow_down_alike <= t324)
+    del square_mid_front_elbow_down_alike, t325, t326, t327
+    square_mid_rear_elbow_up_alike = t88 + M_mid_rear_elbow_up_alike
+    t329 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
+    del M_mid_rear_elbow_up_alike
+    t330 = _runtime.VANISHING * (t323 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike
+    t331 = t328 | (t329 <= t330) | (square_mid_rear_elbow_up_alike <= t324)
+    del square_mid_rear_elbow_up_alike, t328, t329, t330
+    square_mid_rear_elbow_down_alike = t88 + M_mid_rear_elbow_down_alike
+    del t88
+    t332 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
+    del M_mid_rear_elbow_down_alike
+    t333 = _runtime.VANISHING * (t323 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t323
+    t334 = t331 | (t332 <= t333) | (square_mid_rear_elbow_down_alike <= t324)
+    del square_mid_rear_elbow_down_alike, t324, t331, t332, t333
+    return (
+        t95,
+        t102,
+        t106,
+        t113 + t94,
+        _runtime.wrap(t104 + t114) + t94,
+        t116,
+        t95,
+        t102,
+        t106,
+        t117 + t94,
+        _runtime.wrap(t104 - t114) + t94,
+        t116,
+        t148,
+        t156,
+        t158,
+        t166 + t147,
+        _runtime.wrap(t104 + t168) + t147,
+        t169,
+        t148,
+        t156,
+        t158,
+        t170 + t147,
+        _runtime.wrap(t104 - t168) + t147,
+        t169,
+        t218,
+        t226,
+        t228,
+        t236 + t217,
+        _runtime.wrap(t104 + t238) + t217,
+        t239,
+        t218,
+        t226,
+        t228,
+        t240 + t217,
+        _runtime.wrap(t104 - t238) + t217,
+        t239,
+        t275,
+        t282,
+        t284,
+        t292 + t274,
+        _runtime.wrap(t104 + t294) + t274,
+        t295,
+        t275,
+        t282,
+        t284,
+        t296 + t274,
+        _runtime.wrap(t104 - t294) + t274,
+        t295,
+        t297,
+        t297,
+        t298,
+        t298,
+        t299,
+        t299,
+        t300,
+        t300,
+        t334,
+    )
+
+
 _IK = _runtime.Kernel(
     "h6ar_loop_closed.ik",
     _ik,
@@ -2560,6 +3358,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 6)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    _ik_common,
 )
 
 

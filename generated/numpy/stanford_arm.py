@@ -757,6 +757,211 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     )
 
 
+def _ik_common(
+    T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T43, T44, d2
+):
+    # Where nothing vanishes; last, whether something does.
+    t1 = T14 * T14 + T24 * T24
+    amplitude = np.sqrt(t1)
+    t2 = amplitude - d2
+    below = np.maximum(t2, 0.0)
+    t3 = d2 + amplitude
+    above = np.maximum(t3, 0.0)
+    t4 = below - above
+    t5 = 1.0 / (amplitude * (below + above))
+    t6 = T14 * t4 * t5
+    root = np.sqrt(above) * np.sqrt(below)
+    del above, below
+    t7 = root * 2.0
+    t8 = t5 * (T24 * t7)
+    s1 = t6 + t8
+    t9 = T24 * t4 * t5
+    del t4
+    t10 = t5 * (T14 * t7)
+    del t5, t7
+    t11 = t9 - t10
+    t12 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t13 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t14 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t15 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t16 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t17 = np.isfinite(d2) & t12 & t13 & t14 & t15 & (t16 <= _runtime.ROTATION)
+    del t12, t13, t14, t15, t16
+    t18 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t19 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t20 = t17 & (t18 <= _runtime.ROTATION) & t19 & (np.abs(T41) <= _runtime.ROTATION)
+    del t17, t18, t19
+    t21 = t20 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t20
+    t22 = t21 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t21
+    invalid = np.logical_not(t22)
+    del t22
+    t23 = T34 * T34
+    size = np.abs(d2) + np.sqrt(t23 + t1)
+    del t1
+    t24 = -(_runtime.FEASIBILITY * size)
+    unreachable = np.logical_not((t24 <= t2) & (t24 <= t3))
+    del t2, t24, t3
+    t25 = _runtime.poison(invalid | unreachable)
+    t26 = _runtime.wrap_cut(np.arctan2(s1, -t11)) + t25
+    reach = np.sqrt(t23 + root * root)
+    del t23
+    t27 = 1.0 / reach
+    s2 = root * t27
+    del root
+    c2 = T34 * t27
+    del t27
+    t28 = np.arctan2(s2, c2)
+    t29 = _runtime.wrap_cut(t28) + t25
+    t30 = reach + t25
+    t31 = T13 * s1 + T23 * t11
+    t32 = T33 * s2
+    t33 = T13 * t11 - T23 * s1
+    t34 = t32 + c2 * t33
+    h = np.sqrt(t31 * t31 + t34 * t34)
+    t35 = 1.0 / h
+    t36 = t31 * t35
+    c4_right_back_noflip = t34 * t35
+    del t35
+    t37 = np.arctan2(t36, -c4_right_back_noflip)
+    t38 = t31 * t36 + t34 * c4_right_back_noflip
+    del t31, t34
+    t39 = T33 * c2
+    R2_33 = t39 - s2 * t33
+    del t33
+    t40 = np.arctan2(t38, R2_33)
+    t41 = c4_right_back_noflip * (T11 * s1 + T21 * t11)
+    t42 = T31 * s2
+    t43 = t41 - t36 * (t42 + c2 * (T11 * t11 - T21 * s1))
+    del t41
+    t44 = c4_right_back_noflip * (T12 * s1 + T22 * t11)
+    t45 = T32 * s2
+    t46 = t44 - t36 * (t45 + c2 * (T12 * t11 - T22 * s1))
+    del s1, t11, t44
+    t47 = np.arctan2(-t43, t46)
+    t48 = np.arctan2(s2, -c2)
+    t49 = _runtime.wrap_cut(-t48) + t25
+    t50 = -reach + t25
+    t51 = np.arctan2(t36, c4_right_back_noflip)
+    del c4_right_back_noflip, t36
+    t52 = np.arctan2(t38, -R2_33)
+    del R2_33, t38
+    t53 = np.arctan2(t43, -t46)
+    del t43, t46
+    s1_left_out_noflip = t6 - t8
+    del t6, t8
+    t54 = t9 + t10
+    del t10, t9
+    t55 = _runtime.wrap_cut(np.arctan2(s1_left_out_noflip, -t54))
+    t56 = t55 + t25
+    del t55
+    t57 = _runtime.wrap_cut(-t28) + t25
+    del t28
+    t58 = T13 * s1_left_out_noflip + T23 * t54
+    t59 = T13 * t54 - T23 * s1_left_out_noflip
+    R2_13_left_out_noflip = t32 - c2 * t59
+    del t32
+    t60 = R2_13_left_out_noflip * R2_13_left_out_noflip
+    h_left_out_noflip = np.sqrt(t58 * t58 + t60)
+    del t60
+    t61 = 1.0 / h_left_out_noflip
+    t62 = t58 * t61
+    c4_left_out_noflip = R2_13_left_out_noflip * t61
+    del t61
+    t63 = np.arctan2(t62, c4_left_out_noflip)
+    t64 = t58 * t62 + R2_13_left_out_noflip * c4_left_out_noflip
+    del R2_13_left_out_noflip, t58
+    R2_33_left_out_noflip = t39 + s2 * t59
+    del s2, t39, t59
+    t65 = np.arctan2(t64, R2_33_left_out_noflip)
+    t66 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t54)
+    R2_11_left_out_noflip = t42 - c2 * (T11 * t54 - T21 * s1_left_out_noflip)
+    del t42
+    t67 = t66 - t62 * R2_11_left_out_noflip
+    del R2_11_left_out_noflip, t66
+    t68 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t54)
+    R2_12_left_out_noflip = t45 - c2 * (T12 * t54 - T22 * s1_left_out_noflip)
+    del c2, s1_left_out_noflip, t45, t54
+    t69 = t68 - t62 * R2_12_left_out_noflip
+    del R2_12_left_out_noflip, t68
+    t70 = np.arctan2(t67, -t69)
+    t71 = _runtime.wrap_cut(t48) + t25
+    del t48
+    t72 = np.arctan2(t62, -c4_left_out_noflip)
+    del c4_left_out_noflip, t62
+    t73 = np.arctan2(t64, -R2_33_left_out_noflip)
+    del R2_33_left_out_noflip, t64
+    t74 = np.arctan2(-t67, t69)
+    del t67, t69
+    t75 = _runtime.status(invalid, unreachable, np.False_)
+    del invalid, unreachable
+    t76 = _runtime.VANISHING * size
+    del size
+    t77 = _runtime.VANISHING * 16.0
+    t78 = (amplitude <= t76) | (reach <= t76) | (h <= t77)
+    del amplitude, h, reach, t76
+    return (
+        t26,
+        t29,
+        t30,
+        _runtime.wrap_cut(-t37) + t25,
+        _runtime.wrap_cut(t40) + t25,
+        _runtime.wrap_cut(-t47) + t25,
+        t26,
+        t29,
+        t30,
+        _runtime.wrap(3.141592653589793 - t37) + t25,
+        _runtime.wrap_cut(-t40) + t25,
+        _runtime.wrap(3.141592653589793 - t47) + t25,
+        t26,
+        t49,
+        t50,
+        _runtime.wrap_cut(-t51) + t25,
+        _runtime.wrap_cut(t52) + t25,
+        _runtime.wrap_cut(-t53) + t25,
+        t26,
+        t49,
+        t50,
+        _runtime.wrap(3.141592653589793 - t51) + t25,
+        _runtime.wrap_cut(-t52) + t25,
+        _runtime.wrap(3.141592653589793 - t53) + t25,
+        t56,
+        t57,
+        t30,
+        _runtime.wrap_cut(-t63) + t25,
+        _runtime.wrap_cut(t65) + t25,
+        _runtime.wrap_cut(-t70) + t25,
+        t56,
+        t57,
+        t30,
+        _runtime.wrap(3.141592653589793 - t63) + t25,
+        _runtime.wrap_cut(-t65) + t25,
+        _runtime.wrap(3.141592653589793 - t70) + t25,
+        t56,
+        t71,
+        t50,
+        _runtime.wrap_cut(-t72) + t25,
+        _runtime.wrap_cut(t73) + t25,
+        _runtime.wrap_cut(-t74) + t25,
+        t56,
+        t71,
+        t50,
+        _runtime.wrap(3.141592653589793 - t72) + t25,
+        _runtime.wrap_cut(-t73) + t25,
+        _runtime.wrap(3.141592653589793 - t74) + t25,
+        t75,
+        t75,
+        t75,
+        t75,
+        t75,
+        t75,
+        t75,
+        t75,
+        t78 | (h_left_out_noflip <= t77),
+    )
+
+
 _IK = _runtime.Kernel(
     "stanford_arm.ik",
     _ik,
@@ -764,6 +969,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 6)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('d2',),
+    _ik_common,
 )
 
 

@@ -720,21 +720,19 @@ def _ik(
     t56 = _runtime.VANISHING * 4.0
     within_rounding = h_wrist * np.sqrt(t54 * t54 + t55 * t55) <= t56
     del t54, t55
-    inside = np.abs(here - in_reach) <= t3
+    t57 = np.logical_not(np.abs(here - in_reach) <= t3)
     del here, in_reach
-    t57 = _runtime.select(within_rounding, _runtime.select(inside, s_phi, c_near), s_phi)
+    t58 = within_rounding & t57
+    del t57, within_rounding
+    sphi = _runtime.select(aligned_wrist, c_mid, _runtime.select(t58, c_near, s_phi))
     del c_near
-    sphi = _runtime.select(aligned_wrist, c_mid, t57)
-    del t57
-    t58 = across - d5 * sphi
+    t59 = across - d5 * sphi
     s_mid = _runtime.select(hub_mid, 0.0, t43 * (across * us_mid - t34 * uc_mid))
     del uc_mid, us_mid
-    t59 = _runtime.select(within_rounding, -_runtime.select(inside, -c_phi, s_near), c_phi)
-    del c_phi, inside, s_near, within_rounding
-    cphi = _runtime.select(aligned_wrist, -s_mid, t59)
-    del t59
+    cphi = _runtime.select(aligned_wrist, -s_mid, _runtime.select(t58, -s_near, c_phi))
+    del c_phi, s_near, t58
     ey = t34 - d5 * cphi
-    r_elbow = np.sqrt(t58 * t58 + ey * ey)
+    r_elbow = np.sqrt(t59 * t59 + ey * ey)
     t60 = t1 - r_elbow
     t61 = t37 + r_elbow
     t62 = r_elbow - t37
@@ -765,12 +763,12 @@ def _ik(
     del t71
     s_base_elbow = _runtime.select(no_link_elbow, 0.0, t68 * area_elbow)
     del t68
-    t72 = t69 * (t58 * s_base_elbow)
+    t72 = t69 * (t59 * s_base_elbow)
     s2 = _runtime.select(folded_elbow, 0.0, t70 + t72)
     t73 = t69 * (ey * s_base_elbow)
     del ey, s_base_elbow
-    t74 = t69 * (t58 * c_base_elbow)
-    del c_base_elbow, t58, t69
+    t74 = t69 * (t59 * c_base_elbow)
+    del c_base_elbow, t59, t69
     c2 = _runtime.select(folded_elbow, 1.0, t73 - t74)
     t75 = A_elbow * S_elbow
     del A_elbow, S_elbow
@@ -851,486 +849,470 @@ def _ik(
     del h_wrist, t100, t102
     t103 = np.abs(here_left_flip_up - in_reach_left_flip_up)
     del here_left_flip_up, in_reach_left_flip_up
-    inside_left_flip_up = t103 <= t3
-    del t103
-    c_moved_left_flip_up = _runtime.select(inside_left_flip_up, -s_phi, c_near_left_flip_up)
-    del c_near_left_flip_up
-    t104 = _runtime.select(within_rounding_left_flip_up, c_moved_left_flip_up, -s_phi)
-    del c_moved_left_flip_up, s_phi
-    sphi_left_flip_up = _runtime.select(aligned_wrist, c_mid, t104)
-    del c_mid, t104
-    t105 = across - d5 * sphi_left_flip_up
+    t104 = within_rounding_left_flip_up & np.logical_not(t103 <= t3)
+    del t103, within_rounding_left_flip_up
+    t105 = _runtime.select(t104, c_near_left_flip_up, -s_phi)
+    del c_near_left_flip_up, s_phi
+    sphi_left_flip_up = _runtime.select(aligned_wrist, c_mid, t105)
+    del c_mid, t105
+    t106 = across - d5 * sphi_left_flip_up
     del across
-    s_moved_left_flip_up = _runtime.select(inside_left_flip_up, -c_phi_left_flip_up, s_near_left_flip_up)
-    del inside_left_flip_up, s_near_left_flip_up
-    t106 = _runtime.select(within_rounding_left_flip_up, -s_moved_left_flip_up, c_phi_left_flip_up)
-    del c_phi_left_flip_up, s_moved_left_flip_up, within_rounding_left_flip_up
-    cphi_left_flip_up = _runtime.select(aligned_wrist, -s_mid, t106)
-    del s_mid, t106
+    t107 = _runtime.select(t104, -s_near_left_flip_up, c_phi_left_flip_up)
+    del c_phi_left_flip_up, s_near_left_flip_up, t104
+    cphi_left_flip_up = _runtime.select(aligned_wrist, -s_mid, t107)
+    del s_mid, t107
     ey_left_flip_up = t34 - d5 * cphi_left_flip_up
-    t107 = t105 * t105 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t107)
-    del t107
-    t108 = t1 - r_elbow_left_flip_up
-    t109 = t37 + r_elbow_left_flip_up
-    t110 = r_elbow_left_flip_up - t37
-    t111 = t31 & (t30 <= t108) & (t30 <= t109) & (t30 <= t110)
-    unreachable_2 = np.logical_not(t111)
-    del t111
-    t112 = _runtime.poison(invalid | unreachable_2)
-    t113 = t14 + t112
+    t108 = t106 * t106 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t108)
+    del t108
+    t109 = t1 - r_elbow_left_flip_up
+    t110 = t37 + r_elbow_left_flip_up
+    t111 = r_elbow_left_flip_up - t37
+    t112 = t31 & (t30 <= t109) & (t30 <= t110) & (t30 <= t111)
+    unreachable_2 = np.logical_not(t112)
+    del t112
+    t113 = _runtime.poison(invalid | unreachable_2)
+    t114 = t14 + t113
     del t14
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t3
-    A_elbow_left_flip_up = np.maximum(t108, 0.0)
-    del t108
-    C_elbow_left_flip_up = np.maximum(t110, 0.0)
-    del t110
-    t114 = A_elbow_left_flip_up * C_elbow_left_flip_up
-    S_elbow_left_flip_up = t1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t109, 0.0)
+    A_elbow_left_flip_up = np.maximum(t109, 0.0)
     del t109
-    t115 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    t116 = 1.0 / (t114 + t115)
-    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t114 - t115) * t116))
-    del t114, t115
-    t117 = 1.0 / r_elbow_left_flip_up
+    C_elbow_left_flip_up = np.maximum(t111, 0.0)
+    del t111
+    t115 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    S_elbow_left_flip_up = t1 + r_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t110, 0.0)
+    del t110
+    t116 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t117 = 1.0 / (t115 + t116)
+    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t115 - t116) * t117))
+    del t115, t116
+    t118 = 1.0 / r_elbow_left_flip_up
     del r_elbow_left_flip_up
-    t118 = ey_left_flip_up * c_base_elbow_left_flip_up * t117
-    t119 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
-    area_elbow_left_flip_up = t119 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
-    del t119
-    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t116 * area_elbow_left_flip_up)
-    del t116
-    t120 = t117 * (t105 * s_base_elbow_left_flip_up)
-    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t118 + t120)
-    t121 = t117 * (ey_left_flip_up * s_base_elbow_left_flip_up)
+    t119 = ey_left_flip_up * c_base_elbow_left_flip_up * t118
+    t120 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
+    area_elbow_left_flip_up = t120 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
+    del t120
+    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t117 * area_elbow_left_flip_up)
+    del t117
+    t121 = t118 * (t106 * s_base_elbow_left_flip_up)
+    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t119 + t121)
+    t122 = t118 * (ey_left_flip_up * s_base_elbow_left_flip_up)
     del ey_left_flip_up, s_base_elbow_left_flip_up
-    t122 = t117 * (t105 * c_base_elbow_left_flip_up)
-    del c_base_elbow_left_flip_up, t105, t117
-    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t121 - t122)
-    t123 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t124 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t123 = t118 * (t106 * c_base_elbow_left_flip_up)
+    del c_base_elbow_left_flip_up, t106, t118
+    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t122 - t123)
+    t124 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t125 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t125 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t126 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t126 = 1.0 / (t124 + t125)
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t126)
+    t127 = 1.0 / (t125 + t126)
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t127)
     del area_elbow_left_flip_up
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t126 * (t124 - t125)))
-    del t124, t125, t126
-    t127 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t128 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t129 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t127 * (t125 - t126)))
+    del t125, t126, t127
+    t128 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t129 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t130 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
     del c2_left_flip_up, s2_left_flip_up
-    t130 = c3_left_flip_up * t128 - s3_left_flip_up * t129
-    t131 = c3_left_flip_up * t129 + s3_left_flip_up * t128
-    del t128, t129
-    t132 = _runtime.wrap_cut(np.arctan2(t130, t131)) + t112
-    del t130, t131
-    t133 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t131 = c3_left_flip_up * t129 - s3_left_flip_up * t130
+    t132 = c3_left_flip_up * t130 + s3_left_flip_up * t129
+    del t129, t130
+    t133 = _runtime.wrap_cut(np.arctan2(t131, t132)) + t113
+    del t131, t132
+    t134 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
     del M_13
-    t134 = _runtime.wrap_cut(-np.arctan2(t133, M_33)) + t112
-    del M_33, t133
-    t135 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
+    t135 = _runtime.wrap_cut(-np.arctan2(t134, M_33)) + t113
+    del M_33, t134
+    t136 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
     del M_11
-    t136 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
+    t137 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
     del M_12
-    t137 = _runtime.wrap_cut(-np.arctan2(t135, t136)) + t112
-    del t135, t136
-    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t118 - t120)
-    del t118, t120
-    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t122 + t121))
-    del t121, t122
-    t138 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t139 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t140 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t138 = _runtime.wrap_cut(-np.arctan2(t136, t137)) + t113
+    del t136, t137
+    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t119 - t121)
+    del t119, t121
+    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t123 + t122))
+    del t122, t123
+    t139 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t140 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t141 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
     del c2_left_flip_down, cphi_left_flip_up, s2_left_flip_down, sphi_left_flip_up
-    t141 = c3_left_flip_up * t139 + s3_left_flip_up * t140
-    t142 = c3_left_flip_up * t140 - s3_left_flip_up * t139
-    del c3_left_flip_up, s3_left_flip_up, t139, t140
-    t143 = _runtime.wrap_cut(np.arctan2(t141, t142)) + t112
-    del t141, t142
-    t144 = _runtime.select(free1, 0.0, t8 - t10)
+    t142 = c3_left_flip_up * t140 + s3_left_flip_up * t141
+    t143 = c3_left_flip_up * t141 - s3_left_flip_up * t140
+    del c3_left_flip_up, s3_left_flip_up, t140, t141
+    t144 = _runtime.wrap_cut(np.arctan2(t142, t143)) + t113
+    del t142, t143
+    t145 = _runtime.select(free1, 0.0, t8 - t10)
     del t10, t8
     c1_right_noflip_up = _runtime.select(free1, 1.0, t12 + t13)
     del t12, t13
-    t145 = _runtime.wrap_cut(np.arctan2(-t144, c1_right_noflip_up))
-    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t144
+    t146 = _runtime.wrap_cut(np.arctan2(-t145, c1_right_noflip_up))
+    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t145
     del w_x, w_y
-    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t144
-    t146 = t32 + M_13_right_noflip_up * M_13_right_noflip_up
+    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t145
+    t147 = t32 + M_13_right_noflip_up * M_13_right_noflip_up
     del t32
-    h_wrist_right_noflip_up = np.sqrt(t146)
-    del t146
+    h_wrist_right_noflip_up = np.sqrt(t147)
+    del t147
     aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t33
     del t33
-    t147 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t35 + t147)
-    del t147, t35
+    t148 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t35 + t148)
+    del t148, t35
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t3
-    t148 = d5 + r_hub_right_noflip_up
-    t149 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(t1, t148) / 2.0 + np.maximum(t38, np.abs(t149)) / 2.0
-    t150 = (t148 - mid_reach_right_noflip_up) * (t148 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t150)
-    del t150
+    t149 = d5 + r_hub_right_noflip_up
+    t150 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(t1, t149) / 2.0 + np.maximum(t38, np.abs(t150)) / 2.0
     t151 = (t149 - mid_reach_right_noflip_up) * (t149 + mid_reach_right_noflip_up)
-    del mid_reach_right_noflip_up
-    d_mid_right_noflip_up = np.maximum(0.0, -t151)
+    k_mid_right_noflip_up = np.maximum(0.0, t151)
     del t151
+    t152 = (t150 - mid_reach_right_noflip_up) * (t150 + mid_reach_right_noflip_up)
+    del mid_reach_right_noflip_up
+    d_mid_right_noflip_up = np.maximum(0.0, -t152)
+    del t152
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
     any_mid_right_noflip_up = n_mid_right_noflip_up <= t40
-    t152 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    t153 = 1.0 / n_mid_right_noflip_up
+    t153 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    t154 = 1.0 / n_mid_right_noflip_up
     del n_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t152 * t153)
-    del t152
-    t154 = across_right_noflip_up * uc_mid_right_noflip_up
-    t155 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t153 * t154)
+    del t153
+    t155 = across_right_noflip_up * uc_mid_right_noflip_up
+    t156 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
     del d_mid_right_noflip_up, k_mid_right_noflip_up
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t153 * t155)
-    del any_mid_right_noflip_up, t153, t155
-    t156 = 1.0 / r_hub_right_noflip_up
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t154 * t156)
+    del any_mid_right_noflip_up, t154, t156
+    t157 = 1.0 / r_hub_right_noflip_up
     del r_hub_right_noflip_up
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t154 + t34 * us_mid_right_noflip_up) * t156)
-    del t154
-    t157 = 1.0 / h_wrist_right_noflip_up
-    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t157)
-    t158 = d5 * s_phi_right_noflip_up
-    t159 = across_right_noflip_up - t158
-    t160 = M_13_right_noflip_up * t157
-    del t157
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, t160)
-    t161 = t34 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t159 * t159 + t161 * t161)
-    del t159, t161
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t155 + t34 * us_mid_right_noflip_up) * t157)
+    del t155
+    t158 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t158)
+    t159 = d5 * s_phi_right_noflip_up
+    t160 = across_right_noflip_up - t159
+    t161 = M_13_right_noflip_up * t158
+    del t158
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, t161)
+    t162 = t34 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t160 * t160 + t162 * t162)
+    del t160, t162
     in_reach_right_noflip_up = np.minimum(t1, np.maximum(here_right_noflip_up, t38))
-    t162 = (t148 - in_reach_right_noflip_up) * (t148 + in_reach_right_noflip_up)
-    k_near_right_noflip_up = np.maximum(0.0, t162)
-    del t162
     t163 = (t149 - in_reach_right_noflip_up) * (t149 + in_reach_right_noflip_up)
-    d_near_right_noflip_up = np.maximum(0.0, -t163)
+    k_near_right_noflip_up = np.maximum(0.0, t163)
     del t163
+    t164 = (t150 - in_reach_right_noflip_up) * (t150 + in_reach_right_noflip_up)
+    d_near_right_noflip_up = np.maximum(0.0, -t164)
+    del t164
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
     any_near_right_noflip_up = n_near_right_noflip_up <= t40
-    t164 = k_near_right_noflip_up - d_near_right_noflip_up
-    t165 = 1.0 / n_near_right_noflip_up
+    t165 = k_near_right_noflip_up - d_near_right_noflip_up
+    t166 = 1.0 / n_near_right_noflip_up
     del n_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t164 * t165)
-    del t164
-    t166 = across_right_noflip_up * uc_near_right_noflip_up
-    t167 = across_right_noflip_up * c_phi_right_noflip_up
-    t168 = t34 * s_phi_right_noflip_up
-    t169 = t167 - t168
-    del t167
-    t170 = np.abs(t169)
-    side_right_noflip_up = _runtime.select(t170 <= t3, 1.0, -(t169 / t170))
-    del t169, t170
-    t171 = 2.0 * side_right_noflip_up * np.sqrt(d_near_right_noflip_up)
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t165 * t166)
+    del t165
+    t167 = across_right_noflip_up * uc_near_right_noflip_up
+    t168 = across_right_noflip_up * c_phi_right_noflip_up
+    t169 = t34 * s_phi_right_noflip_up
+    t170 = t168 - t169
+    del t168
+    t171 = np.abs(t170)
+    side_right_noflip_up = _runtime.select(t171 <= t3, 1.0, -(t170 / t171))
+    del t170, t171
+    t172 = 2.0 * side_right_noflip_up * np.sqrt(d_near_right_noflip_up)
     del d_near_right_noflip_up, side_right_noflip_up
-    t172 = t165 * (t171 * np.sqrt(k_near_right_noflip_up))
-    del k_near_right_noflip_up, t165, t171
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t172)
-    del any_near_right_noflip_up, t172
-    t173 = t156 * (t166 + t34 * us_near_right_noflip_up)
-    del t166
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t173)
-    del t173
-    t174 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t175 = across_right_noflip_up * us_near_right_noflip_up
+    t173 = t166 * (t172 * np.sqrt(k_near_right_noflip_up))
+    del k_near_right_noflip_up, t166, t172
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t173)
+    del any_near_right_noflip_up, t173
+    t174 = t157 * (t167 + t34 * us_near_right_noflip_up)
+    del t167
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t174)
+    del t174
+    t175 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t176 = across_right_noflip_up * us_near_right_noflip_up
     del us_near_right_noflip_up
-    t176 = t156 * (t175 - t34 * uc_near_right_noflip_up)
-    del t175, uc_near_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t176)
-    del t176
-    t177 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t178 = h_wrist_right_noflip_up * np.sqrt(t174 * t174 + t177 * t177)
-    del t174, t177
-    within_rounding_right_noflip_up = t178 <= t56
-    del t178
-    t179 = here_right_noflip_up - in_reach_right_noflip_up
+    t177 = t157 * (t176 - t34 * uc_near_right_noflip_up)
+    del t176, uc_near_right_noflip_up
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t177)
+    del t177
+    t178 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t179 = h_wrist_right_noflip_up * np.sqrt(t175 * t175 + t178 * t178)
+    del t175, t178
+    t180 = here_right_noflip_up - in_reach_right_noflip_up
     del here_right_noflip_up, in_reach_right_noflip_up
-    inside_right_noflip_up = np.abs(t179) <= t3
-    del t179
-    c_moved_right_noflip_up = _runtime.select(inside_right_noflip_up, s_phi_right_noflip_up, c_near_right_noflip_up)
+    t181 = (t179 <= t56) & np.logical_not(np.abs(t180) <= t3)
+    del t179, t180
+    t182 = _runtime.select(t181, c_near_right_noflip_up, s_phi_right_noflip_up)
     del c_near_right_noflip_up
-    t180 = _runtime.select(within_rounding_right_noflip_up, c_moved_right_noflip_up, s_phi_right_noflip_up)
-    del c_moved_right_noflip_up
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t180)
-    del t180
-    t181 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t182 = across_right_noflip_up * us_mid_right_noflip_up
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t182)
+    del t182
+    t183 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t184 = across_right_noflip_up * us_mid_right_noflip_up
     del us_mid_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t156 * (t182 - t34 * uc_mid_right_noflip_up))
-    del t182, uc_mid_right_noflip_up
-    s_moved_right_noflip_up = _runtime.select(inside_right_noflip_up, -c_phi_right_noflip_up, s_near_right_noflip_up)
-    del inside_right_noflip_up, s_near_right_noflip_up
-    t183 = _runtime.select(within_rounding_right_noflip_up, -s_moved_right_noflip_up, c_phi_right_noflip_up)
-    del c_phi_right_noflip_up, s_moved_right_noflip_up, within_rounding_right_noflip_up
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t183)
-    del t183
-    ey_right_noflip_up = t34 - d5 * cphi_right_noflip_up
-    t184 = t181 * t181 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t184)
-    del t184
-    t185 = t1 - r_elbow_right_noflip_up
-    t186 = t37 + r_elbow_right_noflip_up
-    t187 = r_elbow_right_noflip_up - t37
-    t188 = t31 & (t30 <= t185) & (t30 <= t186) & (t30 <= t187)
-    unreachable_3 = np.logical_not(t188)
-    del t188
-    t189 = _runtime.poison(invalid | unreachable_3)
-    t190 = t145 + t189
-    folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
-    A_elbow_right_noflip_up = np.maximum(t185, 0.0)
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t157 * (t184 - t34 * uc_mid_right_noflip_up))
+    del t184, uc_mid_right_noflip_up
+    t185 = _runtime.select(t181, -s_near_right_noflip_up, c_phi_right_noflip_up)
+    del c_phi_right_noflip_up, s_near_right_noflip_up, t181
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t185)
     del t185
-    C_elbow_right_noflip_up = np.maximum(t187, 0.0)
-    del t187
-    t191 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
-    S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t186, 0.0)
+    ey_right_noflip_up = t34 - d5 * cphi_right_noflip_up
+    t186 = t183 * t183 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t186)
     del t186
-    t192 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t193 = 1.0 / (t191 + t192)
-    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t191 - t192) * t193))
-    del t191, t192
-    t194 = ey_right_noflip_up * c_base_elbow_right_noflip_up
-    t195 = 1.0 / r_elbow_right_noflip_up
+    t187 = t1 - r_elbow_right_noflip_up
+    t188 = t37 + r_elbow_right_noflip_up
+    t189 = r_elbow_right_noflip_up - t37
+    t190 = t31 & (t30 <= t187) & (t30 <= t188) & (t30 <= t189)
+    unreachable_3 = np.logical_not(t190)
+    del t190
+    t191 = _runtime.poison(invalid | unreachable_3)
+    t192 = t146 + t191
+    folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
+    A_elbow_right_noflip_up = np.maximum(t187, 0.0)
+    del t187
+    C_elbow_right_noflip_up = np.maximum(t189, 0.0)
+    del t189
+    t193 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t188, 0.0)
+    del t188
+    t194 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t195 = 1.0 / (t193 + t194)
+    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t193 - t194) * t195))
+    del t193, t194
+    t196 = ey_right_noflip_up * c_base_elbow_right_noflip_up
+    t197 = 1.0 / r_elbow_right_noflip_up
     del r_elbow_right_noflip_up
-    t196 = t194 * t195
-    del t194
-    t197 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
-    area_elbow_right_noflip_up = t197 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
-    del t197
-    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t193 * area_elbow_right_noflip_up)
-    del t193
-    t198 = t195 * (t181 * s_base_elbow_right_noflip_up)
-    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t196 + t198)
-    t199 = ey_right_noflip_up * s_base_elbow_right_noflip_up
-    del ey_right_noflip_up, s_base_elbow_right_noflip_up
-    t200 = t195 * t199
+    t198 = t196 * t197
+    del t196
+    t199 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
+    area_elbow_right_noflip_up = t199 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
     del t199
-    t201 = t195 * (t181 * c_base_elbow_right_noflip_up)
-    del c_base_elbow_right_noflip_up, t181, t195
-    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t200 - t201)
-    t202 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t203 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t195 * area_elbow_right_noflip_up)
+    del t195
+    t200 = t197 * (t183 * s_base_elbow_right_noflip_up)
+    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t198 + t200)
+    t201 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    del ey_right_noflip_up, s_base_elbow_right_noflip_up
+    t202 = t197 * t201
+    del t201
+    t203 = t197 * (t183 * c_base_elbow_right_noflip_up)
+    del c_base_elbow_right_noflip_up, t183, t197
+    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t202 - t203)
+    t204 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t205 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
     del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t204 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t206 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t205 = 1.0 / (t203 + t204)
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t205)
+    t207 = 1.0 / (t205 + t206)
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t207)
     del area_elbow_right_noflip_up
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t205 * (t203 - t204)))
-    del t203, t204, t205
-    t206 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t207 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t208 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t207 * (t205 - t206)))
+    del t205, t206, t207
+    t208 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t209 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t210 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
     del c2_right_noflip_up, s2_right_noflip_up
-    t209 = c3_right_noflip_up * t207 - s3_right_noflip_up * t208
-    t210 = c3_right_noflip_up * t208 + s3_right_noflip_up * t207
-    del t207, t208
-    t211 = _runtime.wrap_cut(np.arctan2(t209, t210)) + t189
+    t211 = c3_right_noflip_up * t209 - s3_right_noflip_up * t210
+    t212 = c3_right_noflip_up * t210 + s3_right_noflip_up * t209
     del t209, t210
-    t212 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
-    M_33_right_noflip_up = -(T13 * t144 + T23 * c1_right_noflip_up)
-    t213 = _runtime.wrap_cut(-np.arctan2(t212, M_33_right_noflip_up))
-    del t212
-    t214 = t213 + t189
-    del t213
-    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t144
-    t215 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
-    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t144
-    del c1_right_noflip_up, t144
-    t216 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
-    t217 = _runtime.wrap_cut(-np.arctan2(t215, t216)) + t189
-    del t215, t216
-    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t196 - t198)
-    del t196, t198
-    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t201 + t200))
-    del t200, t201
-    t218 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t219 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t220 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t213 = _runtime.wrap_cut(np.arctan2(t211, t212)) + t191
+    del t211, t212
+    t214 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    M_33_right_noflip_up = -(T13 * t145 + T23 * c1_right_noflip_up)
+    t215 = _runtime.wrap_cut(-np.arctan2(t214, M_33_right_noflip_up))
+    del t214
+    t216 = t215 + t191
+    del t215
+    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t145
+    t217 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t145
+    del c1_right_noflip_up, t145
+    t218 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t219 = _runtime.wrap_cut(-np.arctan2(t217, t218)) + t191
+    del t217, t218
+    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t198 - t200)
+    del t198, t200
+    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t203 + t202))
+    del t202, t203
+    t220 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t221 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t222 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
     del c2_right_noflip_down, cphi_right_noflip_up, s2_right_noflip_down, sphi_right_noflip_up
-    t221 = c3_right_noflip_up * t219 + s3_right_noflip_up * t220
-    t222 = c3_right_noflip_up * t220 - s3_right_noflip_up * t219
-    del c3_right_noflip_up, s3_right_noflip_up, t219, t220
-    t223 = _runtime.wrap_cut(np.arctan2(t221, t222)) + t189
-    del t221, t222
-    t224 = across_right_noflip_up + t158
-    del t158
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, -t160)
-    del t160
-    t225 = t34 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t224 * t224 + t225 * t225)
-    del t224, t225
+    t223 = c3_right_noflip_up * t221 + s3_right_noflip_up * t222
+    t224 = c3_right_noflip_up * t222 - s3_right_noflip_up * t221
+    del c3_right_noflip_up, s3_right_noflip_up, t221, t222
+    t225 = _runtime.wrap_cut(np.arctan2(t223, t224)) + t191
+    del t223, t224
+    t226 = across_right_noflip_up + t159
+    del t159
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, -t161)
+    del t161
+    t227 = t34 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t226 * t226 + t227 * t227)
+    del t226, t227
     in_reach_right_flip_up = np.minimum(t1, np.maximum(here_right_flip_up, t38))
     del t38
-    t226 = (t148 - in_reach_right_flip_up) * (t148 + in_reach_right_flip_up)
-    del t148
-    k_near_right_flip_up = np.maximum(0.0, t226)
-    del t226
-    t227 = (t149 - in_reach_right_flip_up) * (t149 + in_reach_right_flip_up)
+    t228 = (t149 - in_reach_right_flip_up) * (t149 + in_reach_right_flip_up)
     del t149
-    d_near_right_flip_up = np.maximum(0.0, -t227)
-    del t227
+    k_near_right_flip_up = np.maximum(0.0, t228)
+    del t228
+    t229 = (t150 - in_reach_right_flip_up) * (t150 + in_reach_right_flip_up)
+    del t150
+    d_near_right_flip_up = np.maximum(0.0, -t229)
+    del t229
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
     any_near_right_flip_up = n_near_right_flip_up <= t40
     del t40
-    t228 = 1.0 / n_near_right_flip_up
+    t230 = 1.0 / n_near_right_flip_up
     del n_near_right_flip_up
-    t229 = (k_near_right_flip_up - d_near_right_flip_up) * t228
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t229)
-    del t229
-    t230 = across_right_noflip_up * uc_near_right_flip_up
-    t231 = t168 + across_right_noflip_up * c_phi_right_flip_up
-    del t168
-    t232 = np.abs(t231)
-    side_right_flip_up = _runtime.select(t232 <= t3, 1.0, -(t231 / t232))
-    del t231, t232
-    t233 = 2.0 * side_right_flip_up * np.sqrt(d_near_right_flip_up)
+    t231 = (k_near_right_flip_up - d_near_right_flip_up) * t230
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t231)
+    del t231
+    t232 = across_right_noflip_up * uc_near_right_flip_up
+    t233 = t169 + across_right_noflip_up * c_phi_right_flip_up
+    del t169
+    t234 = np.abs(t233)
+    side_right_flip_up = _runtime.select(t234 <= t3, 1.0, -(t233 / t234))
+    del t233, t234
+    t235 = 2.0 * side_right_flip_up * np.sqrt(d_near_right_flip_up)
     del d_near_right_flip_up, side_right_flip_up
-    t234 = t228 * (t233 * np.sqrt(k_near_right_flip_up))
-    del k_near_right_flip_up, t228, t233
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t234)
-    del any_near_right_flip_up, t234
-    c_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t156 * (t230 + t34 * us_near_right_flip_up))
-    del t230
-    t235 = s_phi_right_noflip_up + c_near_right_flip_up
-    t236 = across_right_noflip_up * us_near_right_flip_up
+    t236 = t230 * (t235 * np.sqrt(k_near_right_flip_up))
+    del k_near_right_flip_up, t230, t235
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t236)
+    del any_near_right_flip_up, t236
+    c_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t157 * (t232 + t34 * us_near_right_flip_up))
+    del t232
+    t237 = s_phi_right_noflip_up + c_near_right_flip_up
+    t238 = across_right_noflip_up * us_near_right_flip_up
     del us_near_right_flip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t156 * (t236 - t34 * uc_near_right_flip_up))
-    del hub_mid_right_noflip_up, t156, t236, uc_near_right_flip_up
-    t237 = c_phi_right_flip_up + s_near_right_flip_up
-    t238 = h_wrist_right_noflip_up * np.sqrt(t235 * t235 + t237 * t237)
-    del h_wrist_right_noflip_up, t235, t237
-    within_rounding_right_flip_up = t238 <= t56
-    del t238, t56
-    t239 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    s_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t157 * (t238 - t34 * uc_near_right_flip_up))
+    del hub_mid_right_noflip_up, t157, t238, uc_near_right_flip_up
+    t239 = c_phi_right_flip_up + s_near_right_flip_up
+    t240 = h_wrist_right_noflip_up * np.sqrt(t237 * t237 + t239 * t239)
+    del h_wrist_right_noflip_up, t237, t239
+    t241 = np.abs(here_right_flip_up - in_reach_right_flip_up)
     del here_right_flip_up, in_reach_right_flip_up
-    inside_right_flip_up = t239 <= t3
-    del t239
-    c_moved_right_flip_up = _runtime.select(inside_right_flip_up, -s_phi_right_noflip_up, c_near_right_flip_up)
-    del c_near_right_flip_up
-    t240 = _runtime.select(within_rounding_right_flip_up, c_moved_right_flip_up, -s_phi_right_noflip_up)
-    del c_moved_right_flip_up, s_phi_right_noflip_up
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t240)
-    del c_mid_right_noflip_up, t240
-    t241 = across_right_noflip_up - d5 * sphi_right_flip_up
+    t242 = (t240 <= t56) & np.logical_not(t241 <= t3)
+    del t240, t241, t56
+    t243 = _runtime.select(t242, c_near_right_flip_up, -s_phi_right_noflip_up)
+    del c_near_right_flip_up, s_phi_right_noflip_up
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t243)
+    del c_mid_right_noflip_up, t243
+    t244 = across_right_noflip_up - d5 * sphi_right_flip_up
     del across_right_noflip_up
-    s_moved_right_flip_up = _runtime.select(inside_right_flip_up, -c_phi_right_flip_up, s_near_right_flip_up)
-    del inside_right_flip_up, s_near_right_flip_up
-    t242 = _runtime.select(within_rounding_right_flip_up, -s_moved_right_flip_up, c_phi_right_flip_up)
-    del c_phi_right_flip_up, s_moved_right_flip_up, within_rounding_right_flip_up
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t242)
-    del s_mid_right_noflip_up, t242
+    t245 = _runtime.select(t242, -s_near_right_flip_up, c_phi_right_flip_up)
+    del c_phi_right_flip_up, s_near_right_flip_up, t242
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t245)
+    del s_mid_right_noflip_up, t245
     ey_right_flip_up = t34 - d5 * cphi_right_flip_up
     del t34
-    t243 = t241 * t241 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t243)
-    del t243
-    t244 = t1 - r_elbow_right_flip_up
-    t245 = t37 + r_elbow_right_flip_up
-    t246 = r_elbow_right_flip_up - t37
+    t246 = t244 * t244 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t246)
+    del t246
+    t247 = t1 - r_elbow_right_flip_up
+    t248 = t37 + r_elbow_right_flip_up
+    t249 = r_elbow_right_flip_up - t37
     del t37
-    t247 = t31 & (t30 <= t244) & (t30 <= t245) & (t30 <= t246)
+    t250 = t31 & (t30 <= t247) & (t30 <= t248) & (t30 <= t249)
     del t30, t31
-    unreachable_4 = np.logical_not(t247)
-    del t247
-    t248 = _runtime.poison(invalid | unreachable_4)
-    t249 = t145 + t248
-    del t145
+    unreachable_4 = np.logical_not(t250)
+    del t250
+    t251 = _runtime.poison(invalid | unreachable_4)
+    t252 = t146 + t251
+    del t146
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3
     del t3
-    A_elbow_right_flip_up = np.maximum(t244, 0.0)
-    del t244
-    C_elbow_right_flip_up = np.maximum(t246, 0.0)
-    del t246
-    t250 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    A_elbow_right_flip_up = np.maximum(t247, 0.0)
+    del t247
+    C_elbow_right_flip_up = np.maximum(t249, 0.0)
+    del t249
+    t253 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = t1 + r_elbow_right_flip_up
     del t1
-    B_elbow_right_flip_up = np.maximum(t245, 0.0)
-    del t245
-    t251 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    t252 = 1.0 / (t250 + t251)
-    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t250 - t251) * t252))
-    del t250, t251
-    t253 = ey_right_flip_up * c_base_elbow_right_flip_up
-    t254 = 1.0 / r_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t248, 0.0)
+    del t248
+    t254 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    t255 = 1.0 / (t253 + t254)
+    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t253 - t254) * t255))
+    del t253, t254
+    t256 = ey_right_flip_up * c_base_elbow_right_flip_up
+    t257 = 1.0 / r_elbow_right_flip_up
     del r_elbow_right_flip_up
-    t255 = t253 * t254
-    del t253
-    t256 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
-    area_elbow_right_flip_up = t256 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    t258 = t256 * t257
     del t256
-    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t252 * area_elbow_right_flip_up)
-    del t252
-    t257 = t254 * (t241 * s_base_elbow_right_flip_up)
-    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t255 + t257)
-    t258 = ey_right_flip_up * s_base_elbow_right_flip_up
+    t259 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
+    area_elbow_right_flip_up = t259 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    del t259
+    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t255 * area_elbow_right_flip_up)
+    del t255
+    t260 = t257 * (t244 * s_base_elbow_right_flip_up)
+    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t258 + t260)
+    t261 = ey_right_flip_up * s_base_elbow_right_flip_up
     del ey_right_flip_up, s_base_elbow_right_flip_up
-    t259 = t254 * t258
-    del t258
-    t260 = t254 * (t241 * c_base_elbow_right_flip_up)
-    del c_base_elbow_right_flip_up, t241, t254
-    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t259 - t260)
-    t261 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t262 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t262 = t257 * t261
+    del t261
+    t263 = t257 * (t244 * c_base_elbow_right_flip_up)
+    del c_base_elbow_right_flip_up, t244, t257
+    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t262 - t263)
+    t264 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t265 = A_elbow_right_flip_up * S_elbow_right_flip_up
     del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t263 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t266 = C_elbow_right_flip_up * B_elbow_right_flip_up
     del B_elbow_right_flip_up, C_elbow_right_flip_up
-    t264 = 1.0 / (t262 + t263)
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t264)
+    t267 = 1.0 / (t265 + t266)
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t267)
     del area_elbow_right_flip_up
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t264 * (t262 - t263)))
-    del t262, t263, t264
-    t265 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t266 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t267 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t267 * (t265 - t266)))
+    del t265, t266, t267
+    t268 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t269 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t270 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
     del c2_right_flip_up, s2_right_flip_up
-    t268 = c3_right_flip_up * t266 - s3_right_flip_up * t267
-    t269 = c3_right_flip_up * t267 + s3_right_flip_up * t266
-    del t266, t267
-    t270 = _runtime.wrap_cut(np.arctan2(t268, t269)) + t248
-    del t268, t269
-    t271 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t271 = c3_right_flip_up * t269 - s3_right_flip_up * t270
+    t272 = c3_right_flip_up * t270 + s3_right_flip_up * t269
+    del t269, t270
+    t273 = _runtime.wrap_cut(np.arctan2(t271, t272)) + t251
+    del t271, t272
+    t274 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
     del M_13_right_noflip_up
-    t272 = _runtime.wrap_cut(-np.arctan2(t271, M_33_right_noflip_up))
-    del M_33_right_noflip_up, t271
-    t273 = t272 + t248
-    del t272
-    t274 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
+    t275 = _runtime.wrap_cut(-np.arctan2(t274, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t274
+    t276 = t275 + t251
+    del t275
+    t277 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
     del M_11_right_noflip_up
-    t275 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
+    t278 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
     del M_12_right_noflip_up
-    t276 = _runtime.wrap_cut(-np.arctan2(t274, t275)) + t248
-    del t274, t275
-    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t255 - t257)
-    del t255, t257
-    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t260 + t259))
-    del t259, t260
-    t277 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t278 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t279 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t279 = _runtime.wrap_cut(-np.arctan2(t277, t278)) + t251
+    del t277, t278
+    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t258 - t260)
+    del t258, t260
+    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t263 + t262))
+    del t262, t263
+    t280 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t281 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t282 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
     del c2_right_flip_down, cphi_right_flip_up, s2_right_flip_down, sphi_right_flip_up
-    t280 = c3_right_flip_up * t278 + s3_right_flip_up * t279
-    t281 = c3_right_flip_up * t279 - s3_right_flip_up * t278
-    del c3_right_flip_up, s3_right_flip_up, t278, t279
-    t282 = _runtime.wrap_cut(np.arctan2(t280, t281)) + t248
-    del t280, t281
-    t283 = free1 | aligned_wrist | no_link_elbow
+    t283 = c3_right_flip_up * t281 + s3_right_flip_up * t282
+    t284 = c3_right_flip_up * t282 - s3_right_flip_up * t281
+    del c3_right_flip_up, s3_right_flip_up, t281, t282
+    t285 = _runtime.wrap_cut(np.arctan2(t283, t284)) + t251
+    del t283, t284
+    t286 = free1 | aligned_wrist | no_link_elbow
     del aligned_wrist
-    t284 = _runtime.status(invalid, unreachable, t283 | folded_elbow)
+    t287 = _runtime.status(invalid, unreachable, t286 | folded_elbow)
     del folded_elbow, unreachable
-    t285 = _runtime.status(invalid, unreachable_2, t283 | folded_elbow_left_flip_up)
-    del folded_elbow_left_flip_up, t283, unreachable_2
-    t286 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t288 = _runtime.status(invalid, unreachable_2, t286 | folded_elbow_left_flip_up)
+    del folded_elbow_left_flip_up, t286, unreachable_2
+    t289 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
     del aligned_wrist_right_noflip_up, free1, no_link_elbow
-    t287 = _runtime.status(invalid, unreachable_3, t286 | folded_elbow_right_noflip_up)
+    t290 = _runtime.status(invalid, unreachable_3, t289 | folded_elbow_right_noflip_up)
     del folded_elbow_right_noflip_up, unreachable_3
-    t288 = _runtime.status(invalid, unreachable_4, t286 | folded_elbow_right_flip_up)
-    del folded_elbow_right_flip_up, invalid, t286, unreachable_4
+    t291 = _runtime.status(invalid, unreachable_4, t289 | folded_elbow_right_flip_up)
+    del folded_elbow_right_flip_up, invalid, t289, unreachable_4
     return (
         t65,
         _runtime.wrap_cut(np.arctan2(s2, c2)) + t64,
@@ -1344,50 +1326,658 @@ def _ik(
         _runtime.wrap_cut(t89) + t64,
         t83,
         t85,
-        t113,
-        t123 + t112,
-        _runtime.wrap_cut(t127) + t112,
-        t132,
-        t134,
-        t137,
-        t113,
-        _runtime.wrap_cut(t138) + t112,
-        _runtime.wrap_cut(-t127) + t112,
-        t143,
-        t134,
-        t137,
-        t190,
-        _runtime.wrap_cut(t202) + t189,
-        _runtime.wrap_cut(t206) + t189,
-        t211,
-        t214,
-        t217,
-        t190,
-        _runtime.wrap_cut(t218) + t189,
-        _runtime.wrap_cut(-t206) + t189,
-        t223,
-        t214,
-        t217,
-        t249,
-        _runtime.wrap_cut(t261) + t248,
-        _runtime.wrap_cut(t265) + t248,
-        t270,
+        t114,
+        t124 + t113,
+        _runtime.wrap_cut(t128) + t113,
+        t133,
+        t135,
+        t138,
+        t114,
+        _runtime.wrap_cut(t139) + t113,
+        _runtime.wrap_cut(-t128) + t113,
+        t144,
+        t135,
+        t138,
+        t192,
+        _runtime.wrap_cut(t204) + t191,
+        _runtime.wrap_cut(t208) + t191,
+        t213,
+        t216,
+        t219,
+        t192,
+        _runtime.wrap_cut(t220) + t191,
+        _runtime.wrap_cut(-t208) + t191,
+        t225,
+        t216,
+        t219,
+        t252,
+        _runtime.wrap_cut(t264) + t251,
+        _runtime.wrap_cut(t268) + t251,
         t273,
         t276,
-        t249,
-        _runtime.wrap_cut(t277) + t248,
-        _runtime.wrap_cut(-t265) + t248,
-        t282,
-        t273,
+        t279,
+        t252,
+        _runtime.wrap_cut(t280) + t251,
+        _runtime.wrap_cut(-t268) + t251,
+        t285,
         t276,
-        t284,
-        t284,
-        t285,
-        t285,
+        t279,
         t287,
         t287,
         t288,
         t288,
+        t290,
+        t290,
+        t291,
+        t291,
+    )
+
+
+def _ik_common(
+    T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T43, T44, d1, L2, L3,
+    d4, d5, d6
+):
+    # Where nothing vanishes; last, whether something does.
+    w_x = T14 - T13 * d6
+    w_y = T24 - T23 * d6
+    h1 = np.sqrt(w_x * w_x + w_y * w_y)
+    t1 = h1 - d4
+    below1 = np.maximum(t1, 0.0)
+    t2 = d4 + h1
+    above1 = np.maximum(t2, 0.0)
+    t3 = below1 - above1
+    t4 = 1.0 / (h1 * (below1 + above1))
+    t5 = w_x * t3 * t4
+    t6 = 2.0 * (np.sqrt(above1) * np.sqrt(below1))
+    del above1, below1
+    t7 = t4 * (w_y * t6)
+    t8 = t5 + t7
+    t9 = w_y * t3 * t4
+    del t3
+    t10 = t4 * (w_x * t6)
+    del t4, t6
+    c1 = t9 - t10
+    t11 = _runtime.wrap_cut(-np.arctan2(t8, c1))
+    t12 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
+    t13 = t12 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    del t12
+    t14 = t13 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    del t13
+    t15 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t16 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t17 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t18 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t19 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t20 = t14 & t15 & t16 & t17 & t18 & (t19 <= _runtime.ROTATION)
+    del t14, t15, t16, t17, t18, t19
+    t21 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t22 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t23 = t20 & (t21 <= _runtime.ROTATION) & t22 & (np.abs(T41) <= _runtime.ROTATION)
+    del t20, t21, t22
+    t24 = t23 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t23
+    t25 = t24 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t24
+    invalid = np.logical_not(t25)
+    del t25
+    t26 = L2 / 2.0 + L3 / 2.0 + d1 / 2.0 + d4 / 2.0 + d5 / 2.0
+    t27 = -(_runtime.FEASIBILITY * (t26 + d6 / 2.0))
+    del t26
+    t28 = (t27 <= t1) & (t27 <= t2)
+    del t1, t2
+    t29 = L2 + L3
+    t30 = w_x * c1 - w_y * t8
+    t31 = T33 * T33
+    t32 = T13 * c1 - T23 * t8
+    h_wrist = np.sqrt(t31 + t32 * t32)
+    t33 = 1.0 / h_wrist
+    s_phi = T33 * t33
+    t34 = d5 * s_phi
+    t35 = t30 - t34
+    t36 = d1 - (T34 - T33 * d6)
+    t37 = t32 * t33
+    del t33
+    t38 = d5 * t37
+    ey = t36 - t38
+    here = np.sqrt(t35 * t35 + ey * ey)
+    t39 = t29 - here
+    t40 = L2 - L3
+    t41 = t40 + here
+    t42 = here - t40
+    t43 = t28 & (t27 <= t39) & (t27 <= t41) & (t27 <= t42)
+    unreachable = np.logical_not(t43)
+    del t43
+    t44 = _runtime.poison(invalid | unreachable)
+    t45 = t11 + t44
+    t46 = 1.0 / here
+    A_elbow = np.maximum(t39, 0.0)
+    del t39
+    C_elbow = np.maximum(t42, 0.0)
+    del t42
+    t47 = A_elbow * C_elbow
+    S_elbow = t29 + here
+    B_elbow = np.maximum(t41, 0.0)
+    del t41
+    t48 = S_elbow * B_elbow
+    t49 = 1.0 / (t47 + t48)
+    t50 = (t47 - t48) * t49
+    del t47, t48
+    t51 = t46 * (ey * t50)
+    t52 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
+    area_elbow = t52 * np.sqrt(S_elbow)
+    del t52
+    s_base_elbow = t49 * area_elbow
+    del t49
+    t53 = t46 * (t35 * s_base_elbow)
+    t54 = t51 - t53
+    t55 = t46 * (t35 * t50)
+    del t35, t50
+    t56 = t46 * (ey * s_base_elbow)
+    del ey, s_base_elbow, t46
+    c2 = t55 + t56
+    t57 = _runtime.wrap_cut(np.arctan2(-t54, c2)) + t44
+    t58 = A_elbow * S_elbow
+    del A_elbow, S_elbow
+    t59 = C_elbow * B_elbow
+    del B_elbow, C_elbow
+    t60 = 1.0 / (t58 + t59)
+    s3 = area_elbow * t60
+    del area_elbow
+    t61 = t60 * (t58 - t59)
+    del t58, t59, t60
+    t62 = np.arctan2(s3, -t61)
+    t63 = s_phi * c2 + t37 * t54
+    t64 = t37 * c2 - s_phi * t54
+    del c2, t54
+    t65 = np.arctan2(-(t61 * t63 + s3 * t64), s3 * t63 - t61 * t64)
+    del t63, t64
+    t66 = t32 * t37 + T33 * s_phi
+    del t32
+    M_33 = -(T13 * t8 + T23 * c1)
+    t67 = _runtime.wrap_cut(-np.arctan2(t66, M_33)) + t44
+    t68 = s_phi * (T11 * c1 - T21 * t8) - T31 * t37
+    t69 = s_phi * (T12 * c1 - T22 * t8) - T32 * t37
+    del c1, t8
+    t70 = _runtime.wrap_cut(-np.arctan2(t68, -t69)) + t44
+    t71 = t51 + t53
+    del t51, t53
+    c2_left_noflip_down = t55 - t56
+    del t55, t56
+    t72 = _runtime.wrap_cut(np.arctan2(-t71, c2_left_noflip_down))
+    t73 = t37 * c2_left_noflip_down - s_phi * t71
+    t74 = s_phi * c2_left_noflip_down + t37 * t71
+    del c2_left_noflip_down, t71
+    t75 = np.arctan2(s3 * t73 - t61 * t74, -(t61 * t73 + s3 * t74))
+    del s3, t61, t73, t74
+    t76 = t30 + t34
+    del t34
+    ey_left_flip_up = t36 + t38
+    del t38
+    t77 = t76 * t76 + ey_left_flip_up * ey_left_flip_up
+    here_left_flip_up = np.sqrt(t77)
+    del t77
+    t78 = t29 - here_left_flip_up
+    t79 = t40 + here_left_flip_up
+    t80 = here_left_flip_up - t40
+    t81 = t28 & (t27 <= t78) & (t27 <= t79) & (t27 <= t80)
+    unreachable_2 = np.logical_not(t81)
+    del t81
+    t82 = _runtime.poison(invalid | unreachable_2)
+    t83 = t11 + t82
+    del t11
+    t84 = 1.0 / here_left_flip_up
+    A_elbow_left_flip_up = np.maximum(t78, 0.0)
+    del t78
+    C_elbow_left_flip_up = np.maximum(t80, 0.0)
+    del t80
+    t85 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    S_elbow_left_flip_up = t29 + here_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t79, 0.0)
+    del t79
+    t86 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t87 = 1.0 / (t85 + t86)
+    t88 = (t85 - t86) * t87
+    del t85, t86
+    t89 = t84 * (ey_left_flip_up * t88)
+    t90 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
+    area_elbow_left_flip_up = t90 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
+    del t90
+    s_base_elbow_left_flip_up = t87 * area_elbow_left_flip_up
+    del t87
+    t91 = t84 * (t76 * s_base_elbow_left_flip_up)
+    t92 = t89 - t91
+    t93 = t84 * (t76 * t88)
+    del t76, t88
+    t94 = t84 * (ey_left_flip_up * s_base_elbow_left_flip_up)
+    del ey_left_flip_up, s_base_elbow_left_flip_up, t84
+    c2_left_flip_up = t93 + t94
+    t95 = _runtime.wrap_cut(np.arctan2(-t92, c2_left_flip_up))
+    t96 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    del A_elbow_left_flip_up, S_elbow_left_flip_up
+    t97 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    del B_elbow_left_flip_up, C_elbow_left_flip_up
+    t98 = 1.0 / (t96 + t97)
+    s3_left_flip_up = area_elbow_left_flip_up * t98
+    del area_elbow_left_flip_up
+    t99 = t98 * (t96 - t97)
+    del t96, t97, t98
+    t100 = np.arctan2(s3_left_flip_up, -t99)
+    t101 = s_phi * c2_left_flip_up + t37 * t92
+    t102 = t37 * c2_left_flip_up - s_phi * t92
+    del c2_left_flip_up, t92
+    t103 = np.arctan2(t99 * t101 + s3_left_flip_up * t102, t99 * t102 - s3_left_flip_up * t101)
+    del t101, t102
+    t104 = _runtime.wrap_cut(-np.arctan2(-t66, M_33)) + t82
+    del M_33, t66
+    t105 = _runtime.wrap_cut(-np.arctan2(-t68, t69)) + t82
+    del t68, t69
+    t106 = t89 + t91
+    del t89, t91
+    c2_left_flip_down = t93 - t94
+    del t93, t94
+    t107 = _runtime.wrap_cut(np.arctan2(-t106, c2_left_flip_down))
+    t108 = s_phi * c2_left_flip_down + t37 * t106
+    t109 = t37 * c2_left_flip_down - s_phi * t106
+    del c2_left_flip_down, t106
+    t110 = np.arctan2(t99 * t108 - s3_left_flip_up * t109, t99 * t109 + s3_left_flip_up * t108)
+    del s3_left_flip_up, t108, t109, t99
+    t111 = t5 - t7
+    del t5, t7
+    c1_right_noflip_up = t9 + t10
+    del t10, t9
+    t112 = _runtime.wrap_cut(np.arctan2(-t111, c1_right_noflip_up))
+    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t111
+    del w_x, w_y
+    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t111
+    t113 = t31 + M_13_right_noflip_up * M_13_right_noflip_up
+    del t31
+    h_wrist_right_noflip_up = np.sqrt(t113)
+    del t113
+    t114 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = T33 * t114
+    t115 = d5 * s_phi_right_noflip_up
+    t116 = across_right_noflip_up - t115
+    c_phi_right_noflip_up = M_13_right_noflip_up * t114
+    del t114
+    t117 = d5 * c_phi_right_noflip_up
+    ey_right_noflip_up = t36 - t117
+    t118 = t116 * t116 + ey_right_noflip_up * ey_right_noflip_up
+    here_right_noflip_up = np.sqrt(t118)
+    del t118
+    t119 = t29 - here_right_noflip_up
+    t120 = t40 + here_right_noflip_up
+    t121 = here_right_noflip_up - t40
+    t122 = t28 & (t27 <= t119) & (t27 <= t120) & (t27 <= t121)
+    unreachable_3 = np.logical_not(t122)
+    del t122
+    t123 = _runtime.poison(invalid | unreachable_3)
+    t124 = t112 + t123
+    t125 = 1.0 / here_right_noflip_up
+    A_elbow_right_noflip_up = np.maximum(t119, 0.0)
+    del t119
+    C_elbow_right_noflip_up = np.maximum(t121, 0.0)
+    del t121
+    t126 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    S_elbow_right_noflip_up = t29 + here_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t120, 0.0)
+    del t120
+    t127 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t128 = 1.0 / (t126 + t127)
+    t129 = (t126 - t127) * t128
+    del t126, t127
+    t130 = t125 * (ey_right_noflip_up * t129)
+    t131 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
+    area_elbow_right_noflip_up = t131 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
+    del t131
+    s_base_elbow_right_noflip_up = t128 * area_elbow_right_noflip_up
+    del t128
+    t132 = t125 * (t116 * s_base_elbow_right_noflip_up)
+    t133 = t130 - t132
+    t134 = t125 * (t116 * t129)
+    del t116, t129
+    t135 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    del ey_right_noflip_up, s_base_elbow_right_noflip_up
+    t136 = t125 * t135
+    del t125, t135
+    c2_right_noflip_up = t134 + t136
+    t137 = _runtime.wrap_cut(np.arctan2(-t133, c2_right_noflip_up))
+    t138 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    del A_elbow_right_noflip_up, S_elbow_right_noflip_up
+    t139 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    del B_elbow_right_noflip_up, C_elbow_right_noflip_up
+    t140 = 1.0 / (t138 + t139)
+    s3_right_noflip_up = area_elbow_right_noflip_up * t140
+    del area_elbow_right_noflip_up
+    t141 = t140 * (t138 - t139)
+    del t138, t139, t140
+    t142 = np.arctan2(s3_right_noflip_up, -t141)
+    t143 = s_phi_right_noflip_up * c2_right_noflip_up + c_phi_right_noflip_up * t133
+    t144 = c_phi_right_noflip_up * c2_right_noflip_up - s_phi_right_noflip_up * t133
+    del c2_right_noflip_up, t133
+    t145 = np.arctan2(-(t141 * t143 + s3_right_noflip_up * t144), s3_right_noflip_up * t143 - t141 * t144)
+    del t143, t144
+    t146 = M_13_right_noflip_up * c_phi_right_noflip_up + T33 * s_phi_right_noflip_up
+    del M_13_right_noflip_up
+    M_33_right_noflip_up = -(T13 * t111 + T23 * c1_right_noflip_up)
+    t147 = _runtime.wrap_cut(-np.arctan2(t146, M_33_right_noflip_up))
+    t148 = t147 + t123
+    del t147
+    t149 = s_phi_right_noflip_up * (T11 * c1_right_noflip_up - T21 * t111)
+    t150 = t149 - T31 * c_phi_right_noflip_up
+    del t149
+    t151 = s_phi_right_noflip_up * (T12 * c1_right_noflip_up - T22 * t111)
+    del c1_right_noflip_up, t111
+    t152 = t151 - T32 * c_phi_right_noflip_up
+    del t151
+    t153 = _runtime.wrap_cut(-np.arctan2(t150, -t152)) + t123
+    t154 = t130 + t132
+    del t130, t132
+    c2_right_noflip_down = t134 - t136
+    del t134, t136
+    t155 = _runtime.wrap_cut(np.arctan2(-t154, c2_right_noflip_down))
+    t156 = c_phi_right_noflip_up * c2_right_noflip_down - s_phi_right_noflip_up * t154
+    t157 = s_phi_right_noflip_up * c2_right_noflip_down + c_phi_right_noflip_up * t154
+    del c2_right_noflip_down, t154
+    t158 = np.arctan2(s3_right_noflip_up * t156 - t141 * t157, -(t141 * t156 + s3_right_noflip_up * t157))
+    del s3_right_noflip_up, t141, t156, t157
+    t159 = across_right_noflip_up + t115
+    del t115
+    ey_right_flip_up = t36 + t117
+    del t117
+    t160 = t159 * t159 + ey_right_flip_up * ey_right_flip_up
+    here_right_flip_up = np.sqrt(t160)
+    del t160
+    t161 = t29 - here_right_flip_up
+    t162 = t40 + here_right_flip_up
+    t163 = here_right_flip_up - t40
+    t164 = t28 & (t27 <= t161) & (t27 <= t162) & (t27 <= t163)
+    del t27, t28
+    unreachable_4 = np.logical_not(t164)
+    del t164
+    t165 = _runtime.poison(invalid | unreachable_4)
+    t166 = t112 + t165
+    del t112
+    t167 = 1.0 / here_right_flip_up
+    A_elbow_right_flip_up = np.maximum(t161, 0.0)
+    del t161
+    C_elbow_right_flip_up = np.maximum(t163, 0.0)
+    del t163
+    t168 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    S_elbow_right_flip_up = t29 + here_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t162, 0.0)
+    del t162
+    t169 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    t170 = 1.0 / (t168 + t169)
+    t171 = (t168 - t169) * t170
+    del t168, t169
+    t172 = t167 * (ey_right_flip_up * t171)
+    t173 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
+    area_elbow_right_flip_up = t173 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
+    del t173
+    s_base_elbow_right_flip_up = t170 * area_elbow_right_flip_up
+    del t170
+    t174 = t167 * (t159 * s_base_elbow_right_flip_up)
+    t175 = t172 - t174
+    t176 = t167 * (t159 * t171)
+    del t159, t171
+    t177 = ey_right_flip_up * s_base_elbow_right_flip_up
+    del ey_right_flip_up, s_base_elbow_right_flip_up
+    t178 = t167 * t177
+    del t167, t177
+    c2_right_flip_up = t176 + t178
+    t179 = _runtime.wrap_cut(np.arctan2(-t175, c2_right_flip_up))
+    t180 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    del A_elbow_right_flip_up, S_elbow_right_flip_up
+    t181 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    del B_elbow_right_flip_up, C_elbow_right_flip_up
+    t182 = 1.0 / (t180 + t181)
+    s3_right_flip_up = area_elbow_right_flip_up * t182
+    del area_elbow_right_flip_up
+    t183 = t182 * (t180 - t181)
+    del t180, t181, t182
+    t184 = np.arctan2(s3_right_flip_up, -t183)
+    t185 = s_phi_right_noflip_up * c2_right_flip_up + c_phi_right_noflip_up * t175
+    t186 = c_phi_right_noflip_up * c2_right_flip_up - s_phi_right_noflip_up * t175
+    del c2_right_flip_up, t175
+    t187 = np.arctan2(t183 * t185 + s3_right_flip_up * t186, t183 * t186 - s3_right_flip_up * t185)
+    del t185, t186
+    t188 = _runtime.wrap_cut(-np.arctan2(-t146, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t146
+    t189 = t188 + t165
+    del t188
+    t190 = _runtime.wrap_cut(-np.arctan2(-t150, t152)) + t165
+    del t150, t152
+    t191 = t172 + t174
+    del t172, t174
+    c2_right_flip_down = t176 - t178
+    del t176, t178
+    t192 = _runtime.wrap_cut(np.arctan2(-t191, c2_right_flip_down))
+    t193 = s_phi_right_noflip_up * c2_right_flip_down + c_phi_right_noflip_up * t191
+    t194 = c_phi_right_noflip_up * c2_right_flip_down - s_phi_right_noflip_up * t191
+    del c2_right_flip_down, t191
+    t195 = np.arctan2(t183 * t193 - s3_right_flip_up * t194, t183 * t194 + s3_right_flip_up * t193)
+    del s3_right_flip_up, t183, t193, t194
+    t196 = _runtime.status(invalid, unreachable, np.False_)
+    del unreachable
+    t197 = _runtime.status(invalid, unreachable_2, np.False_)
+    del unreachable_2
+    t198 = _runtime.status(invalid, unreachable_3, np.False_)
+    del unreachable_3
+    t199 = _runtime.status(invalid, unreachable_4, np.False_)
+    del invalid, unreachable_4
+    t200 = d1 + d4 + d5 + d6 + t29
+    t201 = _runtime.VANISHING * t200
+    t202 = _runtime.VANISHING * 16.0
+    t203 = np.abs(t40)
+    del t40
+    in_reach = np.minimum(t29, np.maximum(here, t203))
+    t204 = t36 * t36
+    r_hub = np.sqrt(t204 + t30 * t30)
+    t205 = d5 + r_hub
+    k_near = np.maximum(0.0, -((in_reach - t205) * (in_reach + t205)))
+    t206 = d5 - r_hub
+    d_near = np.maximum(0.0, (in_reach - t206) * (in_reach + t206))
+    n_near = k_near + d_near
+    t207 = _runtime.VANISHING * (t200 * t200)
+    del t200
+    t208 = (h1 <= t201) | (h_wrist <= t202) | (n_near <= t207)
+    del h1
+    t209 = t30 * t37 - t36 * s_phi
+    t210 = np.abs(t209)
+    t211 = 1.0 / r_hub
+    t212 = 1.0 / n_near
+    del n_near
+    uc_near = (k_near - d_near) * t212
+    t213 = 2.0 * (t209 / t210) * np.sqrt(d_near) * np.sqrt(k_near)
+    del d_near, k_near
+    t214 = t212 * t213
+    del t212, t213
+    t215 = s_phi - t211 * (t30 * uc_near - t36 * t214)
+    t216 = t37 - t211 * (t30 * t214 + t36 * uc_near)
+    del t214, uc_near
+    t217 = _runtime.VANISHING * 4.0
+    within_rounding = h_wrist * np.sqrt(t215 * t215 + t216 * t216) <= t217
+    del t215, t216
+    t218 = np.logical_not(np.abs(here - in_reach) <= t201)
+    del in_reach
+    t219 = t208 | (t210 <= t201) | (r_hub <= t201) | (within_rounding & t218)
+    del r_hub, t208, t210, t218, within_rounding
+    t220 = t219 | (L2 * L3 <= _runtime.VANISHING * (t29 * t29))
+    del t219
+    in_reach_left_flip_up = np.minimum(t29, np.maximum(here_left_flip_up, t203))
+    t221 = (in_reach_left_flip_up - t205) * (in_reach_left_flip_up + t205)
+    del t205
+    k_near_left_flip_up = np.maximum(0.0, -t221)
+    del t221
+    t222 = (in_reach_left_flip_up - t206) * (in_reach_left_flip_up + t206)
+    del t206
+    d_near_left_flip_up = np.maximum(0.0, t222)
+    del t222
+    n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
+    t223 = t220 | (here <= t201) | (n_near_left_flip_up <= t207)
+    del here, t220
+    t224 = np.abs(-t209)
+    t225 = 1.0 / n_near_left_flip_up
+    del n_near_left_flip_up
+    uc_near_left_flip_up = (k_near_left_flip_up - d_near_left_flip_up) * t225
+    t226 = 2.0 * (t209 / t224) * np.sqrt(d_near_left_flip_up)
+    del d_near_left_flip_up, t209
+    us_near_left_flip_up = t225 * (t226 * np.sqrt(k_near_left_flip_up))
+    del k_near_left_flip_up, t225, t226
+    t227 = t30 * uc_near_left_flip_up + t36 * us_near_left_flip_up
+    t228 = s_phi + t211 * t227
+    del s_phi, t227
+    t229 = t30 * us_near_left_flip_up - t36 * uc_near_left_flip_up
+    del t30, uc_near_left_flip_up, us_near_left_flip_up
+    t230 = t37 - t211 * t229
+    del t211, t229, t37
+    within_rounding_left_flip_up = h_wrist * np.sqrt(t228 * t228 + t230 * t230) <= t217
+    del h_wrist, t228, t230
+    t231 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    del in_reach_left_flip_up
+    t232 = within_rounding_left_flip_up & np.logical_not(t231 <= t201)
+    del t231, within_rounding_left_flip_up
+    t233 = t223 | (t224 <= t201) | t232 | (here_left_flip_up <= t201)
+    del here_left_flip_up, t223, t224, t232
+    in_reach_right_noflip_up = np.minimum(t29, np.maximum(here_right_noflip_up, t203))
+    t234 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t204 + t234)
+    del t204, t234
+    t235 = d5 + r_hub_right_noflip_up
+    t236 = (in_reach_right_noflip_up - t235) * (in_reach_right_noflip_up + t235)
+    k_near_right_noflip_up = np.maximum(0.0, -t236)
+    del t236
+    t237 = d5 - r_hub_right_noflip_up
+    t238 = (in_reach_right_noflip_up - t237) * (in_reach_right_noflip_up + t237)
+    d_near_right_noflip_up = np.maximum(0.0, t238)
+    del t238
+    n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
+    t239 = t233 | (h_wrist_right_noflip_up <= t202) | (n_near_right_noflip_up <= t207)
+    del t202, t233
+    t240 = across_right_noflip_up * c_phi_right_noflip_up
+    t241 = t240 - t36 * s_phi_right_noflip_up
+    del t240
+    t242 = np.abs(t241)
+    t243 = t239 | (t242 <= t201) | (r_hub_right_noflip_up <= t201)
+    del t239
+    t244 = 1.0 / r_hub_right_noflip_up
+    del r_hub_right_noflip_up
+    t245 = k_near_right_noflip_up - d_near_right_noflip_up
+    t246 = 1.0 / n_near_right_noflip_up
+    del n_near_right_noflip_up
+    uc_near_right_noflip_up = t245 * t246
+    del t245
+    t247 = across_right_noflip_up * uc_near_right_noflip_up
+    t248 = 2.0 * (t241 / t242) * np.sqrt(d_near_right_noflip_up)
+    del d_near_right_noflip_up, t242
+    t249 = t246 * (t248 * np.sqrt(k_near_right_noflip_up))
+    del k_near_right_noflip_up, t246, t248
+    t250 = s_phi_right_noflip_up - t244 * (t247 - t36 * t249)
+    del t247
+    t251 = across_right_noflip_up * t249 + t36 * uc_near_right_noflip_up
+    del t249, uc_near_right_noflip_up
+    t252 = c_phi_right_noflip_up - t244 * t251
+    del t251
+    t253 = h_wrist_right_noflip_up * np.sqrt(t250 * t250 + t252 * t252)
+    del t250, t252
+    t254 = here_right_noflip_up - in_reach_right_noflip_up
+    del in_reach_right_noflip_up
+    t255 = (t253 <= t217) & np.logical_not(np.abs(t254) <= t201)
+    del t253, t254
+    in_reach_right_flip_up = np.minimum(t29, np.maximum(here_right_flip_up, t203))
+    del t203, t29
+    t256 = (in_reach_right_flip_up - t235) * (in_reach_right_flip_up + t235)
+    del t235
+    k_near_right_flip_up = np.maximum(0.0, -t256)
+    del t256
+    t257 = (in_reach_right_flip_up - t237) * (in_reach_right_flip_up + t237)
+    del t237
+    d_near_right_flip_up = np.maximum(0.0, t257)
+    del t257
+    n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
+    t258 = t243 | t255 | (here_right_noflip_up <= t201) | (n_near_right_flip_up <= t207)
+    del here_right_noflip_up, t207, t243, t255
+    t259 = np.abs(-t241)
+    t260 = 1.0 / n_near_right_flip_up
+    del n_near_right_flip_up
+    uc_near_right_flip_up = (k_near_right_flip_up - d_near_right_flip_up) * t260
+    t261 = across_right_noflip_up * uc_near_right_flip_up
+    t262 = 2.0 * (t241 / t259) * np.sqrt(d_near_right_flip_up)
+    del d_near_right_flip_up, t241
+    us_near_right_flip_up = t260 * (t262 * np.sqrt(k_near_right_flip_up))
+    del k_near_right_flip_up, t260, t262
+    t263 = s_phi_right_noflip_up + t244 * (t261 + t36 * us_near_right_flip_up)
+    del s_phi_right_noflip_up, t261
+    t264 = across_right_noflip_up * us_near_right_flip_up
+    del across_right_noflip_up, us_near_right_flip_up
+    t265 = c_phi_right_noflip_up - t244 * (t264 - t36 * uc_near_right_flip_up)
+    del c_phi_right_noflip_up, t244, t264, t36, uc_near_right_flip_up
+    t266 = h_wrist_right_noflip_up * np.sqrt(t263 * t263 + t265 * t265)
+    del h_wrist_right_noflip_up, t263, t265
+    t267 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    del in_reach_right_flip_up
+    t268 = (t266 <= t217) & np.logical_not(t267 <= t201)
+    del t217, t266, t267
+    t269 = t258 | (t259 <= t201) | t268 | (here_right_flip_up <= t201)
+    del here_right_flip_up, t201, t258, t259, t268
+    return (
+        t45,
+        t57,
+        _runtime.wrap_cut(t62) + t44,
+        _runtime.wrap_cut(t65) + t44,
+        t67,
+        t70,
+        t45,
+        t72 + t44,
+        _runtime.wrap_cut(-t62) + t44,
+        _runtime.wrap_cut(t75) + t44,
+        t67,
+        t70,
+        t83,
+        t95 + t82,
+        _runtime.wrap_cut(t100) + t82,
+        _runtime.wrap_cut(t103) + t82,
+        t104,
+        t105,
+        t83,
+        t107 + t82,
+        _runtime.wrap_cut(-t100) + t82,
+        _runtime.wrap_cut(t110) + t82,
+        t104,
+        t105,
+        t124,
+        t137 + t123,
+        _runtime.wrap_cut(t142) + t123,
+        _runtime.wrap_cut(t145) + t123,
+        t148,
+        t153,
+        t124,
+        t155 + t123,
+        _runtime.wrap_cut(-t142) + t123,
+        _runtime.wrap_cut(t158) + t123,
+        t148,
+        t153,
+        t166,
+        t179 + t165,
+        _runtime.wrap_cut(t184) + t165,
+        _runtime.wrap_cut(t187) + t165,
+        t189,
+        t190,
+        t166,
+        t192 + t165,
+        _runtime.wrap_cut(-t184) + t165,
+        _runtime.wrap_cut(t195) + t165,
+        t189,
+        t190,
+        t196,
+        t196,
+        t197,
+        t197,
+        t198,
+        t198,
+        t199,
+        t199,
+        t269,
     )
 
 
@@ -1398,6 +1988,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 6)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('d1', 'L2', 'L3', 'd4', 'd5', 'd6'),
+    _ik_common,
 )
 
 

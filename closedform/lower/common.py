@@ -1,0 +1,67 @@
+"""The common case of a program: what is left of it where no flag holds.
+
+An inverse of a long chain spends half its operations on what is as good as zero: which value a
+joint then takes, and how far rounding may have moved a target.  The common case has none of that,
+but tells whether something vanishes; then the whole program is evaluated in its place.  A flag is
+itself judged on the common case.  That is no loss: where no flag holds there, those that it rests
+on do not hold either, so that it is judged on the values of the whole program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from closedform.lower.graph import BOOLEAN, Graph, Node, hardly_ever, reachable, rebuild
+from closedform.lower.share import same
+
+
+def common_case(
+    graph: Graph, roots: Sequence[Node], names: Mapping[int, str]
+) -> tuple[list[Node], Node, dict[int, str]]:
+    """Of ``roots`` what is left, the condition that something vanishes, and the names of nodes."""
+    raised: list[Node] = []
+    kept: dict[int, str] = {}
+    within = _within_rare_conditions(roots)
+
+    def operands(node: Node) -> tuple[Node, ...]:
+        return (node.args[0], node.args[2]) if _is_rare_choice(node) else node.args
+
+    def assumed_false(node: Node, image: Node) -> Node:
+        if not hardly_ever(node):
+            return image
+        raised.extend(_alternatives(image))
+        return graph.node("false")
+
+    def change(node: Node, args: tuple[Node, ...]) -> Node:
+        if node.id in within:
+            result = same(graph, node, args)
+        elif _is_rare_choice(node):
+            raised.extend(_alternatives(args[0]))
+            result = args[1]
+        else:
+            result = same(graph, node, tuple(map(assumed_false, node.args, args)))
+        if node.id in names:
+            kept.setdefault(result.id, names[node.id])
+        return result
+
+    images = rebuild(roots, change, operands)
+    return images, graph.any(raised), kept
+
+
+def _is_rare_choice(node: Node) -> bool:
+    return node.op == "select" and hardly_ever(node.args[0])
+
+
+def _within_rare_conditions(roots: Sequence[Node]) -> set[int]:
+    """The conditions that hardly ever hold, and those that these are made of."""
+    rare = [n for n in reachable(roots) if hardly_ever(n)]
+    values = frozenset(n.op for n in reachable(rare)) - BOOLEAN
+    return {n.id for n in reachable(rare, values) if n.op in BOOLEAN}
+
+
+def _alternatives(condition: Node) -> Iterator[Node]:
+    if condition.op == "or":
+        for part in condition.args:
+            yield from _alternatives(part)
+    else:
+        yield condition

@@ -370,6 +370,11 @@ def sign_of(value: Number) -> sp.Expr:
     return sp.Piecewise((1, value >= 0), (-1, True))
 
 
+def used_up(room: Number) -> sp.Expr:
+    """What vanishes where ``room`` does, or falls short by so little that an easing may mend it."""
+    return sp.Max(room, -room / 2**40)
+
+
 __all__ = [
     "SINGLE",
     "Array",
@@ -389,4 +394,5 @@ __all__ = [
     "reject_floats",
     "sign_of",
     "substitute",
+    "used_up",
 ]

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from closedform.functions import Program, Statement, choose, sign_of
+from closedform.functions import Program, Statement, choose, sign_of, used_up
 
 
 @dataclass(frozen=True)
@@ -405,7 +405,7 @@ def two_sines(
     part = program.let("part_y", choose(parallel, with_v, across))
     rest = program.let("rest", ahead - part / whole * lean)
     left = program.let("left_along", size - sp.Abs(rest))
-    spent = program.vanishes("spent_along", left, scale, "no room: a sine is at most 1")
+    spent = program.vanishes("spent_along", used_up(left), scale, "no room: a sine is at most 1")
     loose = sp.Abs(lean) / (aside + sp.Rational(1, 10**9) * size)
     play = program.let("play_along", scale * (1 + choose(spent, loose, 0)))
     program.bound("kept_along", left, play, "a sine is at most 1")

@@ -15,7 +15,7 @@ from sympy import Rational, atan2, cos, pi, sin, sqrt
 
 from closedform.derivation import Derivation
 from closedform.frames import denavit_hartenberg, homogeneous, rotation
-from closedform.functions import Program, choose, real
+from closedform.functions import Program, choose, real, used_up
 from closedform.lemmas import Lemma, linear_pair, sine_cosine
 from closedform.two_link import two_link_arm
 
@@ -346,7 +346,8 @@ class FreeTurn:
         """
         # a turn that is free where tilt is zero: its square is below rounding
         nothing = Rational(1, 10**5) * self.size
-        spent = self.program.vanishes(f"spent_{name}", room, self.scale, f"no room: {meaning}")
+        no_room = f"no room: {meaning}"
+        spent = self.program.vanishes(f"spent_{name}", used_up(room), self.scale, no_room)
         loose = sp.Abs(slope) * self.size / (sp.Abs(self.tilt) + nothing)
         scale = self.program.let(f"play_{name}", self.scale + choose(spent, loose, 0))
         self.program.bound(f"kept_{name}", room, scale, meaning)

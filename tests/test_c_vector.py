@@ -62,11 +62,11 @@ def build(tmp_path_factory):
 
 
 def batch_loops(source: str) -> dict[int, str]:
-    """The loops over the postures of a block: their lines, and the functions they stand in."""
+    """The loops over the postures of a block: their lines, and the functions they serve."""
     loops, function = {}, ""
     for number, line in enumerate(source.splitlines(), 1):
         if definition := re.match(r"(?:CF_INLINE )?void (\w+)\(", line):
-            function = definition[1]
+            function = definition[1].replace("_common", "")
         if re.search(r"\bfor \(size_t i = 0; i < length;", line):
             loops[number] = function
     return loops

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import re
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -42,6 +42,8 @@ LOCALS = frozenset({
     "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
     "single", "opposite", "adjacent", "angles",
 })  # fmt: skip
+WHOLE = "Every case."
+COMMON = "Where nothing vanishes; rare is whether something does."
 RESERVED = LOCALS | C_WORDS
 
 
@@ -148,18 +150,16 @@ class CArray:
 
 
 @dataclass(frozen=True)
-class CFunction:
-    """The plain strings of one function, for the templates."""
+class CProgram:
+    """The plain strings of one program: its kernel, and what the forms that call it are made of.
 
-    name: str
+    A program of one branch has ``signs``, a row of them for each sign, and only a single form.
+    """
+
     full: str
-    comment: str
-    doc_lines: tuple[str, ...]
-    result: str
-    n_params: int
+    note: str
     unused_single: tuple[str, ...]
     unused_batch: tuple[str, ...]
-    inputs: tuple[CArray, ...]
     outputs: tuple[CArray, ...]
     narrowed: tuple[CArray, ...]
     single: str
@@ -176,6 +176,45 @@ class CFunction:
     loads: tuple[str, ...]
     stores: tuple[str, ...]
     narrow: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class CBranch:
+    """One branch of the common case, for all branches of a posture as the lanes of vectors."""
+
+    program: CProgram
+    n: int
+    signs: tuple[str, ...]
+    loads: tuple[str, ...]
+    outputs: tuple[CArray, ...]
+    stores: tuple[str, ...]
+    collected: tuple[str, ...]
+    kernel_call: str
+
+
+@dataclass(frozen=True)
+class CFunction:
+    """The plain strings of one function, for the templates.
+
+    Where there is a common case, ``whole`` is what its rare postures are handed on to.
+    """
+
+    name: str
+    full: str
+    comment: str
+    doc_lines: tuple[str, ...]
+    result: str
+    n_params: int
+    inputs: tuple[CArray, ...]
+    outputs: tuple[CArray, ...]
+    single: str
+    batch: str
+    whole: CProgram
+    common: CProgram | None
+    branch: CBranch | None
+    arguments: str
+    block_arguments: str
+    gathered_arguments: str
     table_single: str
     table_batch: str
 
@@ -187,9 +226,7 @@ def robot(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, A
         "banner": banner(derivation, lowered, " *"),
         "interface": interface(derivation),
         "field_names": ", ".join(f'"{p.name}"' for p in derivation.parameters),
-        "functions": [
-            _Emission(derivation, f, lowered[f.name]).emit() for f in derivation.functions
-        ],
+        "functions": [_function(derivation, f, lowered[f.name]) for f in derivation.functions],
     }
 
 
@@ -228,16 +265,92 @@ def _lanes(n: int) -> int:
     return 1 << (n - 1).bit_length() if n <= LANES else -(-n // LANES) * LANES
 
 
-class _Emission:
-    """Collects the strings of one function."""
+def _function(derivation: Derivation, function: Function, program: Lowered) -> CFunction:
+    full = f"{derivation.name}_{function.name}"
+    parts = program.common is not None
+    whole = _Emission(derivation, function, program, f"{full}_whole" if parts else full)
+    common = branch = None
+    if program.common is not None:
+        common = _Emission(derivation, function, program.common, f"{full}_common").emit(COMMON)
+    if program.branch is not None:
+        branch = _branch(derivation, function, program.branch, f"{full}_branch")
+    inputs, outputs = whole.inputs, whole.outputs
+    arrays = (*inputs, *outputs)
+    params = f"const {derivation.name}_params *params"
+    call = f"(const {derivation.name}_params *)params"
+    return CFunction(
+        name=function.name,
+        full=full,
+        comment="\n".join(f" * {x}" for x in _paragraphs(derivation, function, WIDTH - 3)),
+        doc_lines=tuple(json.dumps(x + "\n") for x in _paragraphs(derivation, function, 80)),
+        result=function.result or "",
+        n_params=len(derivation.parameters),
+        inputs=inputs,
+        outputs=outputs,
+        single=_folded([params, *(a.single for a in arrays)]),
+        batch=_folded(["size_t n", params, *(a.batch for a in arrays)]),
+        whole=whole.emit(WHOLE if parts else ""),
+        common=common,
+        branch=branch,
+        arguments=", ".join(["params", *(a.name for a in arrays)]),
+        block_arguments=", ".join(["params", *(f"{a.name} + start, {a.name}_stride" for a in arrays)]),
+        gathered_arguments=", ".join(["params", *(f"{a.name}_i" for a in arrays)]),
+        table_single=_table_call(call, inputs, outputs, "in[{k}]", "out[{k}]"),
+        table_batch=_table_call(
+            f"n, {call}", inputs, outputs, "in[{k}], in_stride[{k}]", "out[{k}], out_stride[{k}]"
+        ),
+    )
 
-    def __init__(self, derivation: Derivation, function: Function, program: Lowered):
+
+def _branch(derivation: Derivation, function: Function, program: Lowered, full: str) -> CBranch:
+    emission = _Emission(derivation, function, program, full)
+    *inputs, signs = emission.inputs
+    assert function.branches
+    rows = [[b[s] for b in function.branches.signs] for s in function.branches.signs[0]]
+    n = len(function.branches)
+    listed = ", ".join(f"signs[{k}][i]" for k in range(signs.size))
+    read = [a.name for a in emission.raw if a is not signs]
+    trig = emission.trig
+    return CBranch(
+        program=emission.emit(COMMON),
+        n=n,
+        signs=tuple("{ " + ", ".join(f"CLOSEDFORM_C({v}.0)" for v in row) + " }" for row in rows),
+        loads=(
+            f"const real_t signs_i[{signs.size}] = {{ {listed} }};",
+            *(f"real_t {o.name}_i[{o.size}];" for o in emission.outputs),
+        ),
+        outputs=emission.outputs,
+        stores=tuple(
+            f"{o.name}_lanes[{k}][i] = {o.name}_i[{k}];"
+            for o in emission.outputs
+            for k in range(o.size)
+        ),
+        collected=tuple(
+            f"{o.name}[{f'{o.size} * i' if o.size > 1 else 'i'}{f' + {k}' if k else ''}] = "
+            f"{'' if o.kind == 'CF_REAL' else f'({o.type})'}{o.name}_lanes[{k}][i];"
+            for o in emission.outputs[:-1]
+            for k in range(o.size)
+        ),
+        kernel_call=", ".join(
+            ["0"] * emission.distinguishes_single
+            + ["&local"] * bool(emission.parameters)
+            + [*read, "signs_i", *trig]
+            + [f"{o.name}_i" for o in emission.outputs]
+        ),
+    )
+
+
+class _Emission:
+    """Collects the strings of one program."""
+
+    def __init__(self, derivation: Derivation, function: Function, program: Lowered, full: str):
         self.derivation, self.function, self.program = derivation, function, program
-        self.inputs = tuple(_array(a.name, a.shape, "real", "const ") for a in function.inputs)
+        self.full = full
+        self.inputs = tuple(_array(a.name, a.shape, "real", "const ") for a in program.inputs)
         self.outputs = tuple(_array(r.name, r.shape, r.kind) for r in program.results)
         self.places = {
             str(entry): (argument, k)
-            for argument, a in zip(self.inputs, function.inputs, strict=True)
+            for argument, a in zip(self.inputs, program.inputs, strict=True)
             for k, entry in enumerate(a.entries)
         }
         names = [a.name for a in (*self.inputs, *self.outputs)]
@@ -249,28 +362,24 @@ class _Emission:
         self.parameters = [p for p in program.parameters if p in read]
         self.raw = [
             argument
-            for argument, a in zip(self.inputs, function.inputs, strict=True)
+            for argument, a in zip(self.inputs, program.inputs, strict=True)
             if any(str(e) in read for e in a.entries)
         ]
         self.entries = [e for e in self.places if e in read]
+        self.kernel_lines = self._kernel_lines()
+        self.distinguishes_single = _occurs("single", self.kernel_lines)
+        self.trig = [name for name in ("sines", "cosines") if _occurs(name, self.kernel_lines)]
 
-    def emit(self) -> CFunction:
-        f, arrays = self.function, (*self.inputs, *self.outputs)
+    def emit(self, note: str) -> CProgram:
+        arrays = (*self.inputs, *self.outputs)
         params = f"const {self.derivation.name}_params *params"
-        n_angles = len(self.program.angles)
         narrowed = tuple(o for o in self.outputs if o.kind != "CF_REAL")
         shared = ["params"] * bool(self.parameters)
-        kernel_lines = self._kernel_lines()
-        single = _occurs("single", kernel_lines)
-        trig = [name for name in ("sines", "cosines") if _occurs(name, kernel_lines)]
+        single, trig = ["const int single"] * self.distinguishes_single, self.trig
         names = [o.name for o in self.outputs]
-        return CFunction(
-            name=f.name,
-            full=f"{self.derivation.name}_{f.name}",
-            comment=self._comment(),
-            doc_lines=tuple(json.dumps(line + "\n") for line in self._paragraphs(80)),
-            result=f.result or "",
-            n_params=len(self.derivation.parameters),
+        return CProgram(
+            full=self.full,
+            note=note,
             unused_single=tuple(
                 name
                 for name in ["params"] + [a.name for a in self.inputs]
@@ -286,64 +395,45 @@ class _Emission:
                     [
                         *shared,
                         *self._angle_blocks(),
-                        *self._loads(trig),
+                        *self._loads(),
                         *self._stores(),
                         *self._narrow(),
                     ],
                 )
             ),
-            inputs=self.inputs,
             outputs=self.outputs,
             narrowed=narrowed,
             single=_folded([params, *(a.single for a in arrays)]),
             batch=_folded(["size_t n", params, *(a.batch for a in arrays)]),
             kernel=_folded(
-                ["const int single"] * single
+                single
                 + [params] * bool(self.parameters)
                 + [a.single for a in self.raw]
                 + [f"const real_t *{name}" for name in trig]
                 + [f"real_t {o.name}[{o.size}]" for o in self.outputs]
             ),
-            kernel_lines=tuple(kernel_lines),
+            kernel_lines=tuple(self.kernel_lines),
             kernel_call_single=", ".join(
-                ["1"] * single
+                ["1"] * len(single)
                 + shared
                 + [a.name for a in self.raw]
                 + trig
                 + [f"{o.name}_real" if o in narrowed else o.name for o in self.outputs]
             ),
             kernel_call_batch=", ".join(
-                ["0"] * single
+                ["0"] * len(single)
                 + ["&local"] * bool(self.parameters)
                 + [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)]
             ),
             copies_params=bool(self.parameters),
-            n_angles=n_angles,
+            n_angles=len(self.program.angles),
             n_lanes=self._n_lanes,
-            lanes=tuple(self._lanes()) if n_angles else (),
+            lanes=tuple(self._lanes()) if self.program.angles else (),
             angle_blocks=tuple(self._angle_blocks()),
-            loads=tuple(self._loads(trig)),
+            loads=tuple(self._loads()),
             stores=tuple(self._stores()),
             narrow=tuple(self._narrow()),
-            table_single=self._table_call(
-                f"(const {self.derivation.name}_params *)params", "in[{k}]", "out[{k}]"
-            ),
-            table_batch=self._table_call(
-                f"n, (const {self.derivation.name}_params *)params",
-                "in[{k}], in_stride[{k}]",
-                "out[{k}], out_stride[{k}]",
-            ),
         )
-
-    def _paragraphs(self, width: int) -> list[str]:
-        return [
-            line
-            for paragraph in describe(self.derivation, self.function)
-            for line in textwrap.wrap(paragraph, width, subsequent_indent="    ")
-        ]
-
-    def _comment(self) -> str:
-        return "\n".join(f" * {line}" for line in self._paragraphs(WIDTH - 3))
 
     def _kernel_lines(self) -> list[str]:
         lines = [f"const real_t {self.printer.inputs[p]} = params->{p};" for p in self.parameters]
@@ -447,19 +537,33 @@ class _Emission:
             for k in range(o.size)
         ]
 
-    def _loads(self, trig: Sequence[str]) -> list[str]:
-        lines = []
-        for a in self.raw:
-            listed = ", ".join(f"{a.name}[{a.plane(k)} + i]" for k in range(a.size))
-            lines.append(f"const real_t {a.name}_i[{a.size}] = {{ {listed} }};")
+    def _loads(self) -> list[str]:
+        lines = list(_loads(self.raw))
         n = len(self.program.angles)
-        for array in trig:
+        for array in self.trig:
             listed = ", ".join(f"{array}[{k}][i]" for k in range(n))
             lines.append(f"const real_t {array}_i[{n}] = {{ {listed} }};")
         lines += [f"real_t {o.name}_i[{o.size}];" for o in self.outputs]
         return lines
 
-    def _table_call(self, first: str, source: str, target: str) -> str:
-        inputs = [source.format(k=k) for k in range(len(self.inputs))]
-        outputs = [target.format(k=k) for k in range(len(self.outputs))]
-        return ", ".join([first, *inputs, *outputs])
+
+def _loads(arrays: Iterable[CArray]) -> Iterator[str]:
+    """The coordinates of posture ``start + i``."""
+    for a in arrays:
+        listed = ", ".join(f"{a.name}[{a.plane(k)} + i]" for k in range(a.size))
+        yield f"const real_t {a.name}_i[{a.size}] = {{ {listed} }};"
+
+
+def _paragraphs(derivation: Derivation, function: Function, width: int) -> list[str]:
+    return [
+        line
+        for paragraph in describe(derivation, function)
+        for line in textwrap.wrap(paragraph, width, subsequent_indent="    ")
+    ]
+
+
+def _table_call(
+    first: str, inputs: Sequence[CArray], outputs: Sequence[CArray], source: str, target: str
+) -> str:
+    read = [source.format(k=k) for k in range(len(inputs))]
+    return ", ".join([first, *read, *(target.format(k=k) for k in range(len(outputs)))])

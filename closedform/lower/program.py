@@ -24,6 +24,10 @@ SPARED = 0.15
 """Which part of the operations a common case must spare to be worth a program of its own."""
 
 
+class UnboundedAngleError(TypeError):
+    """An output is an angle of a size that is not known."""
+
+
 @dataclass(frozen=True)
 class Result:
     """An output array with its leading branch axis, entry by entry."""
@@ -49,6 +53,7 @@ class Lowered:
     results: tuple[Result, ...]
     names: Mapping[int, str]
     common: Lowered | None = None
+    branch: Lowered | None = None
 
     @property
     def roots(self) -> list[Node]:
@@ -72,18 +77,57 @@ class Lowered:
         counts["sincos"] = len(self.angles)
         return {k: counts[k] for k in sorted(counts) if counts[k]}
 
+    @property
+    def length(self) -> int:
+        """How many operators there are in all."""
+        return sum(self.operations().values())
+
 
 def lower(function: Function, derivation: Derivation) -> Lowered:
     """Lower one function of a derivation."""
+    entries = Turns.of(function, derivation).entries()
+    whole, common = _lower(function, derivation, entries, list(function.cases()))
+    if common.length > (1 - SPARED) * whole.length:
+        return whole
+    common = replace(common, parameters=whole.parameters)
+    branch = _one_branch(function, derivation, entries) if function.branches else None
+    short = branch is not None and branch.length < common.length / 2
+    return replace(whole, common=common, branch=branch if short else None)
+
+
+def _one_branch(
+    function: Function, derivation: Derivation, entries: Sequence[tuple[sp.Expr, bool]]
+) -> Lowered | None:
+    """The common case of a branch, whose signs are inputs."""
+    assert function.branches
+    signs = list(function.branches.signs[0])
+    one = replace(
+        function,
+        branches=None,
+        inputs=(*function.inputs, Array("signs", (len(signs),), tuple(signs))),
+    )
+    try:
+        return _lower(one, derivation, entries, [("", {})], signs)[1]
+    except UnboundedAngleError:  # a sign enters an angle in another way than as a factor
+        return None
+
+
+def _lower(
+    function: Function,
+    derivation: Derivation,
+    entries: Sequence[tuple[sp.Expr, bool]],
+    cases: Sequence[tuple[str, Mapping[sp.Symbol, int]]],
+    signs: Sequence[sp.Symbol] = (),
+) -> tuple[Lowered, Lowered]:
+    """The whole program and its common case; ``signs`` are inputs that are 1 or -1."""
     graph = Graph()
     parameters = [p.symbol for p in derivation.parameters]
     leaves = {s: graph.input(s.name) for s in (*function.symbols, *parameters)}
-    entries = Turns.of(function, derivation).entries()
     divisors = angle_divisors([*_expressions(function), *(e for e, _ in entries)])
     names: dict[int, str] = {}
     rows = []
-    for label, signs in function.cases():
-        branch = _Branch(function, derivation, graph, leaves, divisors, signs, entries)
+    for label, chosen in cases:
+        branch = _Branch(function, derivation, graph, leaves, divisors, chosen, signs, entries)
         rows.append(branch.run(names, label))
     results = []
     for k, output in enumerate(function.outputs):
@@ -100,11 +144,7 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
     nodes, rare, kept = common_case(graph, [n for r in results for n in r.nodes], names)
     flat = iter(nodes)
     plain = [replace(r, nodes=tuple(islice(flat, len(r.nodes)))) for r in results]
-    common = finish([*plain, Result("rare", (), "bool", (rare,))], kept)
-    most = (1 - SPARED) * sum(whole.operations().values())
-    if sum(common.operations().values()) > most:
-        return whole
-    return replace(whole, common=replace(common, parameters=whole.parameters))
+    return whole, finish([*plain, Result("rare", (), "bool", (rare,))], kept)
 
 
 def _finished(
@@ -161,13 +201,14 @@ class _Branch:
     graph: Graph
     leaves: Mapping[sp.Basic, Node]
     divisors: Mapping[sp.Basic, int]
-    signs: Mapping[sp.Symbol, int]
+    chosen: Mapping[sp.Symbol, int]
+    signs: Sequence[sp.Symbol]
     entries: Sequence[tuple[sp.Expr, bool]]
 
     def run(self, names: dict[int, str], label: str) -> tuple[list[list[Node]], Node]:
         graph = self.graph
         build = Builder(graph, self.leaves, self.divisors)
-        for symbol, sign in self.signs.items():
+        for symbol, sign in self.chosen.items():
             build.define(symbol, graph.const(sign))
         build.names = names
         valid, reachable, singular = self._valid_input(), [], []
@@ -226,7 +267,8 @@ class _Branch:
     def _ranges(self) -> Ranges:
         """Where an answer with a negative length is marked, lengths count as not negative."""
         marked = self._guarded
-        return Ranges([p.name for p in self.derivation.parameters if marked and p.nonnegative])
+        lengths = [p.name for p in self.derivation.parameters if marked and p.nonnegative]
+        return Ranges(lengths, [s.name for s in self.signs])
 
     def _output(self, build: Builder, failed: Node, entry: sp.Expr, angle: bool) -> Node:
         """The value of an entry; adding NaN to a failed one is one selection for all entries."""
@@ -237,7 +279,7 @@ class _Branch:
             try:
                 node = self._ranges.wrapped(self.graph, node)
             except UnboundedError:
-                raise TypeError(
+                raise UnboundedAngleError(
                     f"{self.function.name}: the size of the angle {entry} is not known, so that it "
                     f"cannot be brought into (-pi, pi]; write it as atan2(sin, cos)"
                 ) from None
@@ -278,7 +320,7 @@ class _Branch:
                 for p in parameters
                 if p.nonnegative
             ),
-            *finite(self.function.symbols),
+            *finite(s for s in self.function.symbols if s not in self.signs),
         ]
 
     def _name(

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection
 from fractions import Fraction
+from itertools import product
+from math import prod
 from typing import TypeAlias
 
 import sympy as sp
@@ -23,10 +25,12 @@ class UnboundedError(ValueError):
 
 
 class Ranges:
-    """Ranges of the nodes of a graph; the inputs named in ``lengths`` are not negative."""
+    """Ranges of the nodes of a graph; the inputs named in ``lengths`` are not negative, those in
+    ``signs`` 1 or -1."""
 
-    def __init__(self, lengths: Collection[str] = ()):
+    def __init__(self, lengths: Collection[str] = (), signs: Collection[str] = ()):
         self.lengths = frozenset(lengths)
+        self.signs = frozenset(signs)
 
     def wrapped(self, graph: Graph, angle: Node) -> Node:
         """The angle in (-pi, pi], by the cheapest of the wraps that its range allows.
@@ -71,7 +75,7 @@ class Ranges:
 
     def _product(self, node: Node) -> Range | None:
         """Of one angle and whole numbers, be they signs that were computed."""
-        factors = [_whole_numbers(a) for a in node.args]
+        factors = [self._whole_numbers(a) for a in node.args]
         others = [a for a, f in zip(node.args, factors, strict=True) if f is None]
         found = self.of(others[0]) if len(others) == 1 else None
         if found is None:
@@ -95,22 +99,25 @@ class Ranges:
             return all(map(self._not_negative, node.args)) and any(map(self.positive, node.args))
         return False
 
+    def _whole_numbers(self, node: Node) -> set[int] | None:
+        """The values of a node that is a whole number: of signs, and of choices between such."""
+        value = constant_of(node)
+        if value is not None:
+            return {int(value)} if value.is_Integer else None
+        if node.op == "sign" or (node.op == "input" and node.payload in self.signs):
+            return {-1, 1}
+        combine = {"sum": sum, "product": prod, "neg": lambda only: -only[0]}.get(node.op)
+        if combine is None and node.op != "select":
+            return None
+        parts = [self._whole_numbers(a) for a in node.args[node.op == "select" :]]
+        known = [p for p in parts if p is not None]
+        if len(known) < len(parts):
+            return None
+        return {combine(values) for values in product(*known)} if combine else set().union(*known)
+
     def _not_negative(self, node: Node) -> bool:
         return self.positive(node) or (node.op == "input" and node.payload in self.lengths)
 
 
 def _point(value: Fraction) -> Range:
     return value, value
-
-
-def _whole_numbers(node: Node) -> list[int] | None:
-    """The values of a node that is a whole number, or a choice of such."""
-    value = constant_of(node)
-    if value is not None:
-        return [int(value)] if value.is_Integer else None
-    if node.op == "sign":
-        return [-1, 1]
-    if node.op != "select":
-        return None
-    either = [_whole_numbers(a) for a in node.args[1:]]
-    return [n for numbers in either for n in numbers or []] if None not in either else None

@@ -706,7 +706,8 @@ void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *param
     }
 }
 
-CF_INLINE void stanford_arm_ik_kernel(const int single, const stanford_arm_params *params,
+/* Every case. */
+CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm_params *params,
     const real_t T[16], real_t q[48], real_t status[8])
 {
     const real_t d2 = params->d2;
@@ -934,32 +935,234 @@ CF_INLINE void stanford_arm_ik_kernel(const int single, const stanford_arm_param
     status[7] = t74;
 }
 
-CLOSEDFORM_DISPATCHED
-void stanford_arm_ik(const stanford_arm_params *params,
+CF_APART void stanford_arm_ik_whole(const stanford_arm_params *params,
     const real_t T[16], real_t q[48], uint8_t status[8])
 {
     real_t status_real[8];
-    stanford_arm_ik_kernel(1, params, T, q, status_real);
+    stanford_arm_ik_whole_kernel(1, params, T, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
 }
 
-CLOSEDFORM_DISPATCHED
-void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_arm_params *params,
+    const real_t T[16], real_t q[48], real_t status[8],
+    real_t rare[1])
+{
+    const real_t d2 = params->d2;
+    const real_t T11 = T[0];
+    const real_t T12 = T[1];
+    const real_t T13 = T[2];
+    const real_t T14 = T[3];
+    const real_t T21 = T[4];
+    const real_t T22 = T[5];
+    const real_t T23 = T[6];
+    const real_t T24 = T[7];
+    const real_t T31 = T[8];
+    const real_t T32 = T[9];
+    const real_t T33 = T[10];
+    const real_t T34 = T[11];
+    const real_t T41 = T[12];
+    const real_t T42 = T[13];
+    const real_t T43 = T[14];
+    const real_t T44 = T[15];
+    const real_t t1 = T14 * T14 + T24 * T24;
+    const real_t amplitude = cf_sqrt(t1);
+    const real_t t2 = amplitude - d2;
+    const real_t below = cf_max(t2, CLOSEDFORM_C(0.0));
+    const real_t t3 = d2 + amplitude;
+    const real_t above = cf_max(t3, CLOSEDFORM_C(0.0));
+    const real_t t4 = below - above;
+    const real_t t5 = CLOSEDFORM_C(1.0) / (amplitude * (below + above));
+    const real_t t6 = T14 * t4 * t5;
+    const real_t root = cf_sqrt(above) * cf_sqrt(below);
+    const real_t t7 = root * CLOSEDFORM_C(2.0);
+    const real_t t8 = t5 * (T24 * t7);
+    const real_t s1 = t6 + t8;
+    const real_t t9 = T24 * t4 * t5;
+    const real_t t10 = t5 * (T14 * t7);
+    const real_t t11 = t9 - t10;
+    const int t12 = cf_nought(d2) == 0;
+    const int t13 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
+    const int t14 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
+    const int t15 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
+    const int t16 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
+    const real_t t17 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
+    const int t18 = cf_abs(t17) <= CLOSEDFORM_ROTATION;
+    const real_t t19 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
+    const int t20 = cf_abs(t19) <= CLOSEDFORM_ROTATION;
+    const int t21 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
+    const int t22 = t12 & t13 & t14 & t15 & t16 & t18 & t20 & t21;
+    const int t23 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t24 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t25 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t26 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t22 & t23 & t24 & t25 & t26);
+    const real_t t27 = T34 * T34;
+    const real_t size = cf_abs(d2) + cf_sqrt(t27 + t1);
+    const real_t t28 = -(CLOSEDFORM_FEASIBILITY * size);
+    const int unreachable = !((t28 <= t2) & (t28 <= t3));
+    const real_t t29 = cf_poison(single, invalid | unreachable);
+    const real_t reach = cf_sqrt(t27 + root * root);
+    const real_t t30 = CLOSEDFORM_C(1.0) / reach;
+    const real_t s2 = root * t30;
+    const real_t c2 = T34 * t30;
+    const real_t t31 = reach + t29;
+    const real_t t32 = T13 * s1 + T23 * t11;
+    const real_t t33 = T33 * s2;
+    const real_t t34 = T13 * t11 - T23 * s1;
+    const real_t t35 = t33 + c2 * t34;
+    const real_t h = cf_sqrt(t32 * t32 + t35 * t35);
+    const real_t t36 = CLOSEDFORM_C(1.0) / h;
+    const real_t t37 = t32 * t36;
+    const real_t c4_right_back_noflip = t35 * t36;
+    const real_t t38 = t32 * t37 + t35 * c4_right_back_noflip;
+    const real_t t39 = T33 * c2;
+    const real_t R2_33 = t39 - s2 * t34;
+    const real_t t40 = c4_right_back_noflip * (T11 * s1 + T21 * t11);
+    const real_t t41 = T31 * s2;
+    const real_t t42 = t40 - t37 * (t41 + c2 * (T11 * t11 - T21 * s1));
+    const real_t t43 = c4_right_back_noflip * (T12 * s1 + T22 * t11);
+    const real_t t44 = T32 * s2;
+    const real_t t45 = t43 - t37 * (t44 + c2 * (T12 * t11 - T22 * s1));
+    const real_t t46 = -reach + t29;
+    const real_t s1_left_out_noflip = t6 - t8;
+    const real_t t47 = t9 + t10;
+    const real_t t48 = T13 * s1_left_out_noflip + T23 * t47;
+    const real_t t49 = T13 * t47 - T23 * s1_left_out_noflip;
+    const real_t R2_13_left_out_noflip = t33 - c2 * t49;
+    const real_t t50 = R2_13_left_out_noflip * R2_13_left_out_noflip;
+    const real_t h_left_out_noflip = cf_sqrt(t48 * t48 + t50);
+    const real_t t51 = CLOSEDFORM_C(1.0) / h_left_out_noflip;
+    const real_t t52 = t48 * t51;
+    const real_t c4_left_out_noflip = R2_13_left_out_noflip * t51;
+    const real_t t53 = t48 * t52 + R2_13_left_out_noflip * c4_left_out_noflip;
+    const real_t R2_33_left_out_noflip = t39 + s2 * t49;
+    const real_t t54 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t47);
+    const real_t R2_11_left_out_noflip = t41 - c2 * (T11 * t47 - T21 * s1_left_out_noflip);
+    const real_t t55 = t54 - t52 * R2_11_left_out_noflip;
+    const real_t t56 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t47);
+    const real_t R2_12_left_out_noflip = t44 - c2 * (T12 * t47 - T22 * s1_left_out_noflip);
+    const real_t t57 = t56 - t52 * R2_12_left_out_noflip;
+    const real_t t58 = cf_status(single, invalid, unreachable, 0);
+    const real_t t59 = CLOSEDFORM_VANISHING * size;
+    const real_t t60 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
+    const int t61 = (amplitude <= t59) | (reach <= t59) | (h <= t60);
+    const real_t opposite[16] = { s1, s2, t37, t38, -t42, s2, t37, t38, t42, s1_left_out_noflip, t52, t53, t55, t52, t53, -t55 };
+    const real_t adjacent[16] = { -t11, c2, -c4_right_back_noflip, R2_33, t45, -c2, c4_right_back_noflip, -R2_33, -t45, -t47, c4_left_out_noflip, R2_33_left_out_noflip, -t57, -c4_left_out_noflip, -R2_33_left_out_noflip, t57 };
+    real_t angles[16];
+    if (single) {
+        cf_atan2_lanes(16, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+        angles[2] = cf_atan2(opposite[2], adjacent[2]);
+        angles[3] = cf_atan2(opposite[3], adjacent[3]);
+        angles[4] = cf_atan2(opposite[4], adjacent[4]);
+        angles[5] = cf_atan2(opposite[5], adjacent[5]);
+        angles[6] = cf_atan2(opposite[6], adjacent[6]);
+        angles[7] = cf_atan2(opposite[7], adjacent[7]);
+        angles[8] = cf_atan2(opposite[8], adjacent[8]);
+        angles[9] = cf_atan2(opposite[9], adjacent[9]);
+        angles[10] = cf_atan2(opposite[10], adjacent[10]);
+        angles[11] = cf_atan2(opposite[11], adjacent[11]);
+        angles[12] = cf_atan2(opposite[12], adjacent[12]);
+        angles[13] = cf_atan2(opposite[13], adjacent[13]);
+        angles[14] = cf_atan2(opposite[14], adjacent[14]);
+        angles[15] = cf_atan2(opposite[15], adjacent[15]);
+    }
+    const real_t t62 = cf_wrap_cut(angles[0]) + t29;
+    const real_t t63 = cf_wrap_cut(angles[1]) + t29;
+    const real_t t64 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[2]);
+    const real_t t65 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[4]);
+    const real_t t66 = cf_wrap_cut(-angles[5]) + t29;
+    const real_t t67 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[6]);
+    const real_t t68 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[8]);
+    const real_t t69 = cf_wrap_cut(angles[9]) + t29;
+    const real_t t70 = cf_wrap_cut(-angles[1]) + t29;
+    const real_t t71 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[10]);
+    const real_t t72 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[12]);
+    const real_t t73 = cf_wrap_cut(angles[5]) + t29;
+    const real_t t74 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[13]);
+    const real_t t75 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[15]);
+    q[0] = t62;
+    q[1] = t63;
+    q[2] = t31;
+    q[3] = cf_wrap_cut(-angles[2]) + t29;
+    q[4] = cf_wrap_cut(angles[3]) + t29;
+    q[5] = cf_wrap_cut(-angles[4]) + t29;
+    q[6] = t62;
+    q[7] = t63;
+    q[8] = t31;
+    q[9] = t64 + t29;
+    q[10] = cf_wrap_cut(-angles[3]) + t29;
+    q[11] = t65 + t29;
+    q[12] = t62;
+    q[13] = t66;
+    q[14] = t46;
+    q[15] = cf_wrap_cut(-angles[6]) + t29;
+    q[16] = cf_wrap_cut(angles[7]) + t29;
+    q[17] = cf_wrap_cut(-angles[8]) + t29;
+    q[18] = t62;
+    q[19] = t66;
+    q[20] = t46;
+    q[21] = t67 + t29;
+    q[22] = cf_wrap_cut(-angles[7]) + t29;
+    q[23] = t68 + t29;
+    q[24] = t69;
+    q[25] = t70;
+    q[26] = t31;
+    q[27] = cf_wrap_cut(-angles[10]) + t29;
+    q[28] = cf_wrap_cut(angles[11]) + t29;
+    q[29] = cf_wrap_cut(-angles[12]) + t29;
+    q[30] = t69;
+    q[31] = t70;
+    q[32] = t31;
+    q[33] = t71 + t29;
+    q[34] = cf_wrap_cut(-angles[11]) + t29;
+    q[35] = t72 + t29;
+    q[36] = t69;
+    q[37] = t73;
+    q[38] = t46;
+    q[39] = cf_wrap_cut(-angles[13]) + t29;
+    q[40] = cf_wrap_cut(angles[14]) + t29;
+    q[41] = cf_wrap_cut(-angles[15]) + t29;
+    q[42] = t69;
+    q[43] = t73;
+    q[44] = t46;
+    q[45] = t74 + t29;
+    q[46] = cf_wrap_cut(-angles[14]) + t29;
+    q[47] = t75 + t29;
+    status[0] = t58;
+    status[1] = t58;
+    status[2] = t58;
+    status[3] = t58;
+    status[4] = t58;
+    status[5] = t58;
+    status[6] = t58;
+    status[7] = t58;
+    rare[0] = (t61 | (h_left_out_noflip <= t60)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void stanford_arm_ik_common_batch(size_t n, const stanford_arm_params *params,
     const real_t *T, size_t T_stride,
     real_t *q, size_t q_stride,
-    uint8_t *status, size_t status_stride)
+    uint8_t *status, size_t status_stride,
+    uint8_t *rare, size_t rare_stride)
 {
+    (void)rare_stride;
     const stanford_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[8][CLOSEDFORM_BLOCK];
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t T_i[16] = { T[start + i], T[T_stride + start + i], T[2 * T_stride + start + i], T[3 * T_stride + start + i], T[4 * T_stride + start + i], T[5 * T_stride + start + i], T[6 * T_stride + start + i], T[7 * T_stride + start + i], T[8 * T_stride + start + i], T[9 * T_stride + start + i], T[10 * T_stride + start + i], T[11 * T_stride + start + i], T[12 * T_stride + start + i], T[13 * T_stride + start + i], T[14 * T_stride + start + i], T[15 * T_stride + start + i] };
             real_t q_i[48];
             real_t status_i[8];
-            stanford_arm_ik_kernel(0, &local, T_i, q_i, status_i);
+            real_t rare_i[1];
+            stanford_arm_ik_common_kernel(0, &local, T_i, q_i, status_i, rare_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -1016,6 +1219,7 @@ void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
             status_real[5][i] = status_i[5];
             status_real[6][i] = status_i[6];
             status_real[7][i] = status_i[7];
+            rare_real[0][i] = rare_i[0];
         }
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
@@ -1041,5 +1245,53 @@ void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[7 * status_stride + start + i] = (uint8_t)status_real[7][i];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void stanford_arm_ik_common(const stanford_arm_params *params,
+    const real_t T[16], real_t q[48], uint8_t status[8],
+    uint8_t rare[1])
+{
+    real_t status_real[8];
+    real_t rare_real[1];
+    stanford_arm_ik_common_kernel(1, params, T, q, status_real, rare_real);
+    for (size_t i = 0; i < 8; ++i)
+        status[i] = (uint8_t)status_real[i];
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_ik(const stanford_arm_params *params,
+    const real_t T[16], real_t q[48], uint8_t status[8])
+{
+    uint8_t rare[1];
+    stanford_arm_ik_common(params, T, q, status, rare);
+    if (CF_UNLIKELY(rare[0])) stanford_arm_ik_whole(params, T, q, status);
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        stanford_arm_ik_common_batch(length, params, T + start, T_stride, q + start, q_stride, status + start, status_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t T_i[16];
+            for (size_t k = 0; k < 16; ++k) T_i[k] = T[k * T_stride + i];
+            real_t q_i[48];
+            uint8_t status_i[8];
+            stanford_arm_ik_whole(params, T_i, q_i, status_i);
+            for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
+            for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+        }
     }
 }

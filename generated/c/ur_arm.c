@@ -804,7 +804,8 @@ void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params,
     }
 }
 
-CF_INLINE void ur_arm_ik_kernel(const int single, const ur_arm_params *params,
+/* Every case. */
+CF_INLINE void ur_arm_ik_whole_kernel(const int single, const ur_arm_params *params,
     const real_t T[16], real_t q[48], real_t status[8])
 {
     const real_t d1 = params->d1;
@@ -1378,32 +1379,504 @@ CF_INLINE void ur_arm_ik_kernel(const int single, const ur_arm_params *params,
     status[7] = t264;
 }
 
-CLOSEDFORM_DISPATCHED
-void ur_arm_ik(const ur_arm_params *params, const real_t T[16],
+CF_APART void ur_arm_ik_whole(const ur_arm_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8])
 {
     real_t status_real[8];
-    ur_arm_ik_kernel(1, params, T, q, status_real);
+    ur_arm_ik_whole_kernel(1, params, T, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
 }
 
-CLOSEDFORM_DISPATCHED
-void ur_arm_ik_batch(size_t n, const ur_arm_params *params,
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void ur_arm_ik_common_kernel(const int single, const ur_arm_params *params,
+    const real_t T[16], real_t q[48], real_t status[8],
+    real_t rare[1])
+{
+    const real_t d1 = params->d1;
+    const real_t L2 = params->L2;
+    const real_t L3 = params->L3;
+    const real_t d4 = params->d4;
+    const real_t d5 = params->d5;
+    const real_t d6 = params->d6;
+    const real_t T11 = T[0];
+    const real_t T12 = T[1];
+    const real_t T13 = T[2];
+    const real_t T14 = T[3];
+    const real_t T21 = T[4];
+    const real_t T22 = T[5];
+    const real_t T23 = T[6];
+    const real_t T24 = T[7];
+    const real_t T31 = T[8];
+    const real_t T32 = T[9];
+    const real_t T33 = T[10];
+    const real_t T34 = T[11];
+    const real_t T41 = T[12];
+    const real_t T42 = T[13];
+    const real_t T43 = T[14];
+    const real_t T44 = T[15];
+    const real_t w_x = T14 - T13 * d6;
+    const real_t w_y = T24 - T23 * d6;
+    const real_t h1 = cf_sqrt(w_x * w_x + w_y * w_y);
+    const real_t t1 = h1 - d4;
+    const real_t below1 = cf_max(t1, CLOSEDFORM_C(0.0));
+    const real_t t2 = d4 + h1;
+    const real_t above1 = cf_max(t2, CLOSEDFORM_C(0.0));
+    const real_t t3 = below1 - above1;
+    const real_t t4 = CLOSEDFORM_C(1.0) / (h1 * (below1 + above1));
+    const real_t t5 = w_x * t3 * t4;
+    const real_t t6 = CLOSEDFORM_C(2.0) * (cf_sqrt(above1) * cf_sqrt(below1));
+    const real_t t7 = t4 * (w_y * t6);
+    const real_t t8 = t5 + t7;
+    const real_t t9 = w_y * t3 * t4;
+    const real_t t10 = t4 * (w_x * t6);
+    const real_t c1 = t9 - t10;
+    const int t11 = cf_nought(d1) + cf_nought(L2) + cf_nought(L3) + cf_nought(d4) + cf_nought(d5) + cf_nought(d6) == 0;
+    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= d1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= d4);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= d5) & (CLOSEDFORM_C(0.0) <= d6);
+    const int t15 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
+    const int t16 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
+    const int t17 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
+    const int t18 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
+    const real_t t19 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
+    const int t20 = cf_abs(t19) <= CLOSEDFORM_ROTATION;
+    const real_t t21 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
+    const int t22 = cf_abs(t21) <= CLOSEDFORM_ROTATION;
+    const int t23 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
+    const int t24 = t14 & t15 & t16 & t17 & t18 & t20 & t22 & t23;
+    const int t25 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t26 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t27 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t28 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t24 & t25 & t26 & t27 & t28);
+    const real_t t29 = L2 / CLOSEDFORM_C(2.0) + L3 / CLOSEDFORM_C(2.0);
+    const real_t t30 = t29 + d1 / CLOSEDFORM_C(2.0) + d4 / CLOSEDFORM_C(2.0);
+    const real_t t31 = t30 + d5 / CLOSEDFORM_C(2.0) + d6 / CLOSEDFORM_C(2.0);
+    const real_t t32 = -(CLOSEDFORM_FEASIBILITY * t31);
+    const int t33 = (t32 <= t1) & (t32 <= t2);
+    const real_t t34 = L2 + L3;
+    const real_t t35 = w_x * c1 - w_y * t8;
+    const real_t t36 = T33 * T33;
+    const real_t t37 = T13 * c1 - T23 * t8;
+    const real_t h_wrist = cf_sqrt(t36 + t37 * t37);
+    const real_t t38 = CLOSEDFORM_C(1.0) / h_wrist;
+    const real_t s_phi = T33 * t38;
+    const real_t t39 = d5 * s_phi;
+    const real_t t40 = t35 - t39;
+    const real_t t41 = d1 - (T34 - T33 * d6);
+    const real_t t42 = t37 * t38;
+    const real_t t43 = d5 * t42;
+    const real_t ey = t41 - t43;
+    const real_t here = cf_sqrt(t40 * t40 + ey * ey);
+    const real_t t44 = t34 - here;
+    const real_t t45 = L2 - L3;
+    const real_t t46 = t45 + here;
+    const real_t t47 = here - t45;
+    const int t48 = t33 & (t32 <= t44) & (t32 <= t46) & (t32 <= t47);
+    const int unreachable = !t48;
+    const real_t t49 = cf_poison(single, invalid | unreachable);
+    const real_t t50 = CLOSEDFORM_C(1.0) / here;
+    const real_t A_elbow = cf_max(t44, CLOSEDFORM_C(0.0));
+    const real_t C_elbow = cf_max(t47, CLOSEDFORM_C(0.0));
+    const real_t t51 = A_elbow * C_elbow;
+    const real_t S_elbow = t34 + here;
+    const real_t B_elbow = cf_max(t46, CLOSEDFORM_C(0.0));
+    const real_t t52 = S_elbow * B_elbow;
+    const real_t t53 = CLOSEDFORM_C(1.0) / (t51 + t52);
+    const real_t t54 = (t51 - t52) * t53;
+    const real_t t55 = t50 * (ey * t54);
+    const real_t t56 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow) * cf_sqrt(B_elbow);
+    const real_t area_elbow = t56 * cf_sqrt(C_elbow) * cf_sqrt(S_elbow);
+    const real_t s_base_elbow = t53 * area_elbow;
+    const real_t t57 = t50 * (t40 * s_base_elbow);
+    const real_t t58 = t55 - t57;
+    const real_t t59 = t50 * (t40 * t54);
+    const real_t t60 = t50 * (ey * s_base_elbow);
+    const real_t c2 = t59 + t60;
+    const real_t t61 = A_elbow * S_elbow;
+    const real_t t62 = C_elbow * B_elbow;
+    const real_t t63 = CLOSEDFORM_C(1.0) / (t61 + t62);
+    const real_t s3 = area_elbow * t63;
+    const real_t t64 = t63 * (t61 - t62);
+    const real_t t65 = s_phi * c2 + t42 * t58;
+    const real_t t66 = t42 * c2 - s_phi * t58;
+    const real_t t67 = t37 * t42 + T33 * s_phi;
+    const real_t M_33 = -(T13 * t8 + T23 * c1);
+    const real_t t68 = s_phi * (T11 * c1 - T21 * t8) - T31 * t42;
+    const real_t t69 = s_phi * (T12 * c1 - T22 * t8) - T32 * t42;
+    const real_t t70 = t55 + t57;
+    const real_t c2_left_noflip_down = t59 - t60;
+    const real_t t71 = t42 * c2_left_noflip_down - s_phi * t70;
+    const real_t t72 = s_phi * c2_left_noflip_down + t42 * t70;
+    const real_t t73 = t35 + t39;
+    const real_t ey_left_flip_up = t41 + t43;
+    const real_t t74 = t73 * t73 + ey_left_flip_up * ey_left_flip_up;
+    const real_t here_left_flip_up = cf_sqrt(t74);
+    const real_t t75 = t34 - here_left_flip_up;
+    const real_t t76 = t45 + here_left_flip_up;
+    const real_t t77 = here_left_flip_up - t45;
+    const int t78 = t33 & (t32 <= t75) & (t32 <= t76) & (t32 <= t77);
+    const int unreachable_2 = !t78;
+    const real_t t79 = cf_poison(single, invalid | unreachable_2);
+    const real_t t80 = CLOSEDFORM_C(1.0) / here_left_flip_up;
+    const real_t A_elbow_left_flip_up = cf_max(t75, CLOSEDFORM_C(0.0));
+    const real_t C_elbow_left_flip_up = cf_max(t77, CLOSEDFORM_C(0.0));
+    const real_t t81 = A_elbow_left_flip_up * C_elbow_left_flip_up;
+    const real_t S_elbow_left_flip_up = t34 + here_left_flip_up;
+    const real_t B_elbow_left_flip_up = cf_max(t76, CLOSEDFORM_C(0.0));
+    const real_t t82 = S_elbow_left_flip_up * B_elbow_left_flip_up;
+    const real_t t83 = CLOSEDFORM_C(1.0) / (t81 + t82);
+    const real_t t84 = (t81 - t82) * t83;
+    const real_t t85 = t80 * (ey_left_flip_up * t84);
+    const real_t t86 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow_left_flip_up);
+    const real_t t87 = t86 * cf_sqrt(B_elbow_left_flip_up) * cf_sqrt(C_elbow_left_flip_up);
+    const real_t area_elbow_left_flip_up = t87 * cf_sqrt(S_elbow_left_flip_up);
+    const real_t s_base_elbow_left_flip_up = t83 * area_elbow_left_flip_up;
+    const real_t t88 = t80 * (t73 * s_base_elbow_left_flip_up);
+    const real_t t89 = t85 - t88;
+    const real_t t90 = t80 * (t73 * t84);
+    const real_t t91 = t80 * (ey_left_flip_up * s_base_elbow_left_flip_up);
+    const real_t c2_left_flip_up = t90 + t91;
+    const real_t t92 = A_elbow_left_flip_up * S_elbow_left_flip_up;
+    const real_t t93 = C_elbow_left_flip_up * B_elbow_left_flip_up;
+    const real_t t94 = CLOSEDFORM_C(1.0) / (t92 + t93);
+    const real_t s3_left_flip_up = area_elbow_left_flip_up * t94;
+    const real_t t95 = t94 * (t92 - t93);
+    const real_t t96 = s_phi * c2_left_flip_up + t42 * t89;
+    const real_t t97 = t42 * c2_left_flip_up - s_phi * t89;
+    const real_t t98 = t85 + t88;
+    const real_t c2_left_flip_down = t90 - t91;
+    const real_t t99 = s_phi * c2_left_flip_down + t42 * t98;
+    const real_t t100 = t42 * c2_left_flip_down - s_phi * t98;
+    const real_t t101 = t5 - t7;
+    const real_t c1_right_noflip_up = t9 + t10;
+    const real_t across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t101;
+    const real_t M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t101;
+    const real_t t102 = t36 + M_13_right_noflip_up * M_13_right_noflip_up;
+    const real_t h_wrist_right_noflip_up = cf_sqrt(t102);
+    const real_t t103 = CLOSEDFORM_C(1.0) / h_wrist_right_noflip_up;
+    const real_t s_phi_right_noflip_up = T33 * t103;
+    const real_t t104 = d5 * s_phi_right_noflip_up;
+    const real_t t105 = across_right_noflip_up - t104;
+    const real_t c_phi_right_noflip_up = M_13_right_noflip_up * t103;
+    const real_t t106 = d5 * c_phi_right_noflip_up;
+    const real_t ey_right_noflip_up = t41 - t106;
+    const real_t t107 = t105 * t105 + ey_right_noflip_up * ey_right_noflip_up;
+    const real_t here_right_noflip_up = cf_sqrt(t107);
+    const real_t t108 = t34 - here_right_noflip_up;
+    const real_t t109 = t45 + here_right_noflip_up;
+    const real_t t110 = here_right_noflip_up - t45;
+    const int t111 = t33 & (t32 <= t108) & (t32 <= t109) & (t32 <= t110);
+    const int unreachable_3 = !t111;
+    const real_t t112 = cf_poison(single, invalid | unreachable_3);
+    const real_t t113 = CLOSEDFORM_C(1.0) / here_right_noflip_up;
+    const real_t A_elbow_right_noflip_up = cf_max(t108, CLOSEDFORM_C(0.0));
+    const real_t C_elbow_right_noflip_up = cf_max(t110, CLOSEDFORM_C(0.0));
+    const real_t t114 = A_elbow_right_noflip_up * C_elbow_right_noflip_up;
+    const real_t S_elbow_right_noflip_up = t34 + here_right_noflip_up;
+    const real_t B_elbow_right_noflip_up = cf_max(t109, CLOSEDFORM_C(0.0));
+    const real_t t115 = S_elbow_right_noflip_up * B_elbow_right_noflip_up;
+    const real_t t116 = CLOSEDFORM_C(1.0) / (t114 + t115);
+    const real_t t117 = (t114 - t115) * t116;
+    const real_t t118 = t113 * (ey_right_noflip_up * t117);
+    const real_t t119 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow_right_noflip_up);
+    const real_t t120 = t119 * cf_sqrt(B_elbow_right_noflip_up) * cf_sqrt(C_elbow_right_noflip_up);
+    const real_t area_elbow_right_noflip_up = t120 * cf_sqrt(S_elbow_right_noflip_up);
+    const real_t s_base_elbow_right_noflip_up = t116 * area_elbow_right_noflip_up;
+    const real_t t121 = t113 * (t105 * s_base_elbow_right_noflip_up);
+    const real_t t122 = t118 - t121;
+    const real_t t123 = t113 * (t105 * t117);
+    const real_t t124 = ey_right_noflip_up * s_base_elbow_right_noflip_up;
+    const real_t t125 = t113 * t124;
+    const real_t c2_right_noflip_up = t123 + t125;
+    const real_t t126 = A_elbow_right_noflip_up * S_elbow_right_noflip_up;
+    const real_t t127 = C_elbow_right_noflip_up * B_elbow_right_noflip_up;
+    const real_t t128 = CLOSEDFORM_C(1.0) / (t126 + t127);
+    const real_t s3_right_noflip_up = area_elbow_right_noflip_up * t128;
+    const real_t t129 = t128 * (t126 - t127);
+    const real_t t130 = s_phi_right_noflip_up * c2_right_noflip_up + c_phi_right_noflip_up * t122;
+    const real_t t131 = c_phi_right_noflip_up * c2_right_noflip_up - s_phi_right_noflip_up * t122;
+    const real_t t132 = M_13_right_noflip_up * c_phi_right_noflip_up + T33 * s_phi_right_noflip_up;
+    const real_t M_33_right_noflip_up = -(T13 * t101 + T23 * c1_right_noflip_up);
+    const real_t t133 = s_phi_right_noflip_up * (T11 * c1_right_noflip_up - T21 * t101);
+    const real_t t134 = t133 - T31 * c_phi_right_noflip_up;
+    const real_t t135 = s_phi_right_noflip_up * (T12 * c1_right_noflip_up - T22 * t101);
+    const real_t t136 = t135 - T32 * c_phi_right_noflip_up;
+    const real_t t137 = t118 + t121;
+    const real_t c2_right_noflip_down = t123 - t125;
+    const real_t t138 = c_phi_right_noflip_up * c2_right_noflip_down - s_phi_right_noflip_up * t137;
+    const real_t t139 = s_phi_right_noflip_up * c2_right_noflip_down + c_phi_right_noflip_up * t137;
+    const real_t t140 = across_right_noflip_up + t104;
+    const real_t ey_right_flip_up = t41 + t106;
+    const real_t t141 = t140 * t140 + ey_right_flip_up * ey_right_flip_up;
+    const real_t here_right_flip_up = cf_sqrt(t141);
+    const real_t t142 = t34 - here_right_flip_up;
+    const real_t t143 = t45 + here_right_flip_up;
+    const real_t t144 = here_right_flip_up - t45;
+    const int t145 = t33 & (t32 <= t142) & (t32 <= t143) & (t32 <= t144);
+    const int unreachable_4 = !t145;
+    const real_t t146 = cf_poison(single, invalid | unreachable_4);
+    const real_t t147 = CLOSEDFORM_C(1.0) / here_right_flip_up;
+    const real_t A_elbow_right_flip_up = cf_max(t142, CLOSEDFORM_C(0.0));
+    const real_t C_elbow_right_flip_up = cf_max(t144, CLOSEDFORM_C(0.0));
+    const real_t t148 = A_elbow_right_flip_up * C_elbow_right_flip_up;
+    const real_t S_elbow_right_flip_up = t34 + here_right_flip_up;
+    const real_t B_elbow_right_flip_up = cf_max(t143, CLOSEDFORM_C(0.0));
+    const real_t t149 = S_elbow_right_flip_up * B_elbow_right_flip_up;
+    const real_t t150 = CLOSEDFORM_C(1.0) / (t148 + t149);
+    const real_t t151 = (t148 - t149) * t150;
+    const real_t t152 = t147 * (ey_right_flip_up * t151);
+    const real_t t153 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow_right_flip_up);
+    const real_t t154 = t153 * cf_sqrt(B_elbow_right_flip_up) * cf_sqrt(C_elbow_right_flip_up);
+    const real_t area_elbow_right_flip_up = t154 * cf_sqrt(S_elbow_right_flip_up);
+    const real_t s_base_elbow_right_flip_up = t150 * area_elbow_right_flip_up;
+    const real_t t155 = t147 * (t140 * s_base_elbow_right_flip_up);
+    const real_t t156 = t152 - t155;
+    const real_t t157 = t147 * (t140 * t151);
+    const real_t t158 = ey_right_flip_up * s_base_elbow_right_flip_up;
+    const real_t t159 = t147 * t158;
+    const real_t c2_right_flip_up = t157 + t159;
+    const real_t t160 = A_elbow_right_flip_up * S_elbow_right_flip_up;
+    const real_t t161 = C_elbow_right_flip_up * B_elbow_right_flip_up;
+    const real_t t162 = CLOSEDFORM_C(1.0) / (t160 + t161);
+    const real_t s3_right_flip_up = area_elbow_right_flip_up * t162;
+    const real_t t163 = t162 * (t160 - t161);
+    const real_t t164 = s_phi_right_noflip_up * c2_right_flip_up + c_phi_right_noflip_up * t156;
+    const real_t t165 = c_phi_right_noflip_up * c2_right_flip_up - s_phi_right_noflip_up * t156;
+    const real_t t166 = t152 + t155;
+    const real_t c2_right_flip_down = t157 - t159;
+    const real_t t167 = s_phi_right_noflip_up * c2_right_flip_down + c_phi_right_noflip_up * t166;
+    const real_t t168 = c_phi_right_noflip_up * c2_right_flip_down - s_phi_right_noflip_up * t166;
+    const real_t t169 = cf_status(single, invalid, unreachable, 0);
+    const real_t t170 = cf_status(single, invalid, unreachable_2, 0);
+    const real_t t171 = cf_status(single, invalid, unreachable_3, 0);
+    const real_t t172 = cf_status(single, invalid, unreachable_4, 0);
+    const real_t t173 = d1 + d4 + d5 + d6 + t34;
+    const real_t t174 = CLOSEDFORM_VANISHING * t173;
+    const real_t t175 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
+    const real_t t176 = cf_abs(t45);
+    const real_t in_reach = cf_min(t34, cf_max(here, t176));
+    const real_t t177 = t41 * t41;
+    const real_t r_hub = cf_sqrt(t177 + t35 * t35);
+    const real_t t178 = d5 + r_hub;
+    const real_t k_near = cf_max(CLOSEDFORM_C(0.0), -((in_reach - t178) * (in_reach + t178)));
+    const real_t t179 = d5 - r_hub;
+    const real_t d_near = cf_max(CLOSEDFORM_C(0.0), (in_reach - t179) * (in_reach + t179));
+    const real_t n_near = k_near + d_near;
+    const real_t t180 = CLOSEDFORM_VANISHING * (t173 * t173);
+    const int t181 = (h1 <= t174) | (h_wrist <= t175) | (n_near <= t180);
+    const real_t t182 = t35 * t42 - t41 * s_phi;
+    const real_t t183 = cf_abs(t182);
+    const real_t t184 = CLOSEDFORM_C(1.0) / r_hub;
+    const real_t t185 = CLOSEDFORM_C(1.0) / n_near;
+    const real_t uc_near = (k_near - d_near) * t185;
+    const real_t t186 = CLOSEDFORM_C(2.0) * (t182 / t183) * cf_sqrt(d_near);
+    const real_t t187 = t185 * (t186 * cf_sqrt(k_near));
+    const real_t t188 = s_phi - t184 * (t35 * uc_near - t41 * t187);
+    const real_t t189 = t42 - t184 * (t35 * t187 + t41 * uc_near);
+    const real_t t190 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(4.0);
+    const int within_rounding = h_wrist * cf_sqrt(t188 * t188 + t189 * t189) <= t190;
+    const int inside = cf_abs(here - in_reach) <= t174;
+    const int t191 = t181 | (t183 <= t174) | (r_hub <= t174) | (within_rounding & (!inside));
+    const int no_link_elbow = L2 * L3 <= CLOSEDFORM_VANISHING * (t34 * t34);
+    const real_t in_reach_left_flip_up = cf_min(t34, cf_max(here_left_flip_up, t176));
+    const real_t t192 = (in_reach_left_flip_up - t178) * (in_reach_left_flip_up + t178);
+    const real_t k_near_left_flip_up = cf_max(CLOSEDFORM_C(0.0), -t192);
+    const real_t t193 = (in_reach_left_flip_up - t179) * (in_reach_left_flip_up + t179);
+    const real_t d_near_left_flip_up = cf_max(CLOSEDFORM_C(0.0), t193);
+    const real_t n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up;
+    const int t194 = t191 | no_link_elbow | (here <= t174) | (n_near_left_flip_up <= t180);
+    const real_t t195 = cf_abs(-t182);
+    const real_t t196 = CLOSEDFORM_C(1.0) / n_near_left_flip_up;
+    const real_t uc_near_left_flip_up = (k_near_left_flip_up - d_near_left_flip_up) * t196;
+    const real_t t197 = CLOSEDFORM_C(2.0) * (t182 / t195) * cf_sqrt(d_near_left_flip_up);
+    const real_t us_near_left_flip_up = t196 * (t197 * cf_sqrt(k_near_left_flip_up));
+    const real_t t198 = t35 * uc_near_left_flip_up + t41 * us_near_left_flip_up;
+    const real_t t199 = s_phi + t184 * t198;
+    const real_t t200 = t35 * us_near_left_flip_up - t41 * uc_near_left_flip_up;
+    const real_t t201 = t42 - t184 * t200;
+    const int within_rounding_left_flip_up = h_wrist * cf_sqrt(t199 * t199 + t201 * t201) <= t190;
+    const real_t t202 = cf_abs(here_left_flip_up - in_reach_left_flip_up);
+    const int t203 = within_rounding_left_flip_up & (!(t202 <= t174));
+    const int t204 = t194 | (t195 <= t174) | t203 | (here_left_flip_up <= t174);
+    const real_t in_reach_right_noflip_up = cf_min(t34, cf_max(here_right_noflip_up, t176));
+    const real_t t205 = across_right_noflip_up * across_right_noflip_up;
+    const real_t r_hub_right_noflip_up = cf_sqrt(t177 + t205);
+    const real_t t206 = d5 + r_hub_right_noflip_up;
+    const real_t t207 = (in_reach_right_noflip_up - t206) * (in_reach_right_noflip_up + t206);
+    const real_t k_near_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), -t207);
+    const real_t t208 = d5 - r_hub_right_noflip_up;
+    const real_t t209 = (in_reach_right_noflip_up - t208) * (in_reach_right_noflip_up + t208);
+    const real_t d_near_right_noflip_up = cf_max(CLOSEDFORM_C(0.0), t209);
+    const real_t n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up;
+    const int t210 = t204 | (h_wrist_right_noflip_up <= t175) | (n_near_right_noflip_up <= t180);
+    const real_t t211 = across_right_noflip_up * c_phi_right_noflip_up;
+    const real_t t212 = t211 - t41 * s_phi_right_noflip_up;
+    const real_t t213 = cf_abs(t212);
+    const int t214 = t210 | (t213 <= t174) | (r_hub_right_noflip_up <= t174);
+    const real_t t215 = CLOSEDFORM_C(1.0) / r_hub_right_noflip_up;
+    const real_t t216 = k_near_right_noflip_up - d_near_right_noflip_up;
+    const real_t t217 = CLOSEDFORM_C(1.0) / n_near_right_noflip_up;
+    const real_t uc_near_right_noflip_up = t216 * t217;
+    const real_t t218 = across_right_noflip_up * uc_near_right_noflip_up;
+    const real_t t219 = CLOSEDFORM_C(2.0) * (t212 / t213) * cf_sqrt(d_near_right_noflip_up);
+    const real_t t220 = t217 * (t219 * cf_sqrt(k_near_right_noflip_up));
+    const real_t t221 = s_phi_right_noflip_up - t215 * (t218 - t41 * t220);
+    const real_t t222 = across_right_noflip_up * t220 + t41 * uc_near_right_noflip_up;
+    const real_t t223 = c_phi_right_noflip_up - t215 * t222;
+    const real_t t224 = h_wrist_right_noflip_up * cf_sqrt(t221 * t221 + t223 * t223);
+    const real_t t225 = here_right_noflip_up - in_reach_right_noflip_up;
+    const int inside_right_noflip_up = cf_abs(t225) <= t174;
+    const int t226 = t214 | ((t224 <= t190) & (!inside_right_noflip_up));
+    const real_t in_reach_right_flip_up = cf_min(t34, cf_max(here_right_flip_up, t176));
+    const real_t t227 = (in_reach_right_flip_up - t206) * (in_reach_right_flip_up + t206);
+    const real_t k_near_right_flip_up = cf_max(CLOSEDFORM_C(0.0), -t227);
+    const real_t t228 = (in_reach_right_flip_up - t208) * (in_reach_right_flip_up + t208);
+    const real_t d_near_right_flip_up = cf_max(CLOSEDFORM_C(0.0), t228);
+    const real_t n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up;
+    const int t229 = t226 | (here_right_noflip_up <= t174) | (n_near_right_flip_up <= t180);
+    const real_t t230 = cf_abs(-t212);
+    const real_t t231 = CLOSEDFORM_C(1.0) / n_near_right_flip_up;
+    const real_t uc_near_right_flip_up = (k_near_right_flip_up - d_near_right_flip_up) * t231;
+    const real_t t232 = across_right_noflip_up * uc_near_right_flip_up;
+    const real_t t233 = CLOSEDFORM_C(2.0) * (t212 / t230) * cf_sqrt(d_near_right_flip_up);
+    const real_t us_near_right_flip_up = t231 * (t233 * cf_sqrt(k_near_right_flip_up));
+    const real_t t234 = s_phi_right_noflip_up + t215 * (t232 + t41 * us_near_right_flip_up);
+    const real_t t235 = across_right_noflip_up * us_near_right_flip_up;
+    const real_t t236 = c_phi_right_noflip_up - t215 * (t235 - t41 * uc_near_right_flip_up);
+    const real_t t237 = h_wrist_right_noflip_up * cf_sqrt(t234 * t234 + t236 * t236);
+    const real_t t238 = cf_abs(here_right_flip_up - in_reach_right_flip_up);
+    const int t239 = t229 | (t230 <= t174) | ((t237 <= t190) & (!(t238 <= t174)));
+    const real_t opposite[32] = { t8, -t58, s3, -(t64 * t65 + s3 * t66), t67, t68, -t70, s3 * t71 - t64 * t72, -t89, s3_left_flip_up, t95 * t96 + s3_left_flip_up * t97, -t67, -t68, -t98, t95 * t99 - s3_left_flip_up * t100, -t101, -t122, s3_right_noflip_up, -(t129 * t130 + s3_right_noflip_up * t131), t132, t134, -t137, s3_right_noflip_up * t138 - t129 * t139, -t156, s3_right_flip_up, t163 * t164 + s3_right_flip_up * t165, -t132, -t134, -t166, t163 * t167 - s3_right_flip_up * t168 };
+    const real_t adjacent[32] = { c1, c2, -t64, s3 * t65 - t64 * t66, M_33, -t69, c2_left_noflip_down, -(t64 * t71 + s3 * t72), c2_left_flip_up, -t95, t95 * t97 - s3_left_flip_up * t96, M_33, t69, c2_left_flip_down, t95 * t100 + s3_left_flip_up * t99, c1_right_noflip_up, c2_right_noflip_up, -t129, s3_right_noflip_up * t130 - t129 * t131, M_33_right_noflip_up, -t136, c2_right_noflip_down, -(t129 * t138 + s3_right_noflip_up * t139), c2_right_flip_up, -t163, t163 * t165 - s3_right_flip_up * t164, M_33_right_noflip_up, t136, c2_right_flip_down, t163 * t168 + s3_right_flip_up * t167 };
+    real_t angles[32];
+    if (single) {
+        cf_atan2_lanes(32, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+        angles[2] = cf_atan2(opposite[2], adjacent[2]);
+        angles[3] = cf_atan2(opposite[3], adjacent[3]);
+        angles[4] = cf_atan2(opposite[4], adjacent[4]);
+        angles[5] = cf_atan2(opposite[5], adjacent[5]);
+        angles[6] = cf_atan2(opposite[6], adjacent[6]);
+        angles[7] = cf_atan2(opposite[7], adjacent[7]);
+        angles[8] = cf_atan2(opposite[8], adjacent[8]);
+        angles[9] = cf_atan2(opposite[9], adjacent[9]);
+        angles[10] = cf_atan2(opposite[10], adjacent[10]);
+        angles[11] = cf_atan2(opposite[11], adjacent[11]);
+        angles[12] = cf_atan2(opposite[12], adjacent[12]);
+        angles[13] = cf_atan2(opposite[13], adjacent[13]);
+        angles[14] = cf_atan2(opposite[14], adjacent[14]);
+        angles[15] = cf_atan2(opposite[15], adjacent[15]);
+        angles[16] = cf_atan2(opposite[16], adjacent[16]);
+        angles[17] = cf_atan2(opposite[17], adjacent[17]);
+        angles[18] = cf_atan2(opposite[18], adjacent[18]);
+        angles[19] = cf_atan2(opposite[19], adjacent[19]);
+        angles[20] = cf_atan2(opposite[20], adjacent[20]);
+        angles[21] = cf_atan2(opposite[21], adjacent[21]);
+        angles[22] = cf_atan2(opposite[22], adjacent[22]);
+        angles[23] = cf_atan2(opposite[23], adjacent[23]);
+        angles[24] = cf_atan2(opposite[24], adjacent[24]);
+        angles[25] = cf_atan2(opposite[25], adjacent[25]);
+        angles[26] = cf_atan2(opposite[26], adjacent[26]);
+        angles[27] = cf_atan2(opposite[27], adjacent[27]);
+        angles[28] = cf_atan2(opposite[28], adjacent[28]);
+        angles[29] = cf_atan2(opposite[29], adjacent[29]);
+    }
+    const real_t t240 = cf_wrap_cut(-angles[0]);
+    const real_t t241 = t240 + t49;
+    const real_t t242 = cf_wrap_cut(-angles[4]) + t49;
+    const real_t t243 = cf_wrap_cut(-angles[5]) + t49;
+    const real_t t244 = t240 + t79;
+    const real_t t245 = cf_wrap_cut(-angles[11]) + t79;
+    const real_t t246 = cf_wrap_cut(-angles[12]) + t79;
+    const real_t t247 = cf_wrap_cut(angles[15]);
+    const real_t t248 = t247 + t112;
+    const real_t t249 = cf_wrap_cut(-angles[19]) + t112;
+    const real_t t250 = cf_wrap_cut(-angles[20]) + t112;
+    const real_t t251 = t247 + t146;
+    const real_t t252 = cf_wrap_cut(-angles[26]) + t146;
+    const real_t t253 = cf_wrap_cut(-angles[27]) + t146;
+    q[0] = t241;
+    q[1] = cf_wrap_cut(angles[1]) + t49;
+    q[2] = cf_wrap_cut(angles[2]) + t49;
+    q[3] = cf_wrap_cut(angles[3]) + t49;
+    q[4] = t242;
+    q[5] = t243;
+    q[6] = t241;
+    q[7] = cf_wrap_cut(angles[6]) + t49;
+    q[8] = cf_wrap_cut(-angles[2]) + t49;
+    q[9] = cf_wrap_cut(angles[7]) + t49;
+    q[10] = t242;
+    q[11] = t243;
+    q[12] = t244;
+    q[13] = cf_wrap_cut(angles[8]) + t79;
+    q[14] = cf_wrap_cut(angles[9]) + t79;
+    q[15] = cf_wrap_cut(angles[10]) + t79;
+    q[16] = t245;
+    q[17] = t246;
+    q[18] = t244;
+    q[19] = cf_wrap_cut(angles[13]) + t79;
+    q[20] = cf_wrap_cut(-angles[9]) + t79;
+    q[21] = cf_wrap_cut(angles[14]) + t79;
+    q[22] = t245;
+    q[23] = t246;
+    q[24] = t248;
+    q[25] = cf_wrap_cut(angles[16]) + t112;
+    q[26] = cf_wrap_cut(angles[17]) + t112;
+    q[27] = cf_wrap_cut(angles[18]) + t112;
+    q[28] = t249;
+    q[29] = t250;
+    q[30] = t248;
+    q[31] = cf_wrap_cut(angles[21]) + t112;
+    q[32] = cf_wrap_cut(-angles[17]) + t112;
+    q[33] = cf_wrap_cut(angles[22]) + t112;
+    q[34] = t249;
+    q[35] = t250;
+    q[36] = t251;
+    q[37] = cf_wrap_cut(angles[23]) + t146;
+    q[38] = cf_wrap_cut(angles[24]) + t146;
+    q[39] = cf_wrap_cut(angles[25]) + t146;
+    q[40] = t252;
+    q[41] = t253;
+    q[42] = t251;
+    q[43] = cf_wrap_cut(angles[28]) + t146;
+    q[44] = cf_wrap_cut(-angles[24]) + t146;
+    q[45] = cf_wrap_cut(angles[29]) + t146;
+    q[46] = t252;
+    q[47] = t253;
+    status[0] = t169;
+    status[1] = t169;
+    status[2] = t170;
+    status[3] = t170;
+    status[4] = t171;
+    status[5] = t171;
+    status[6] = t172;
+    status[7] = t172;
+    rare[0] = (t239 | (here_right_flip_up <= t174)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void ur_arm_ik_common_batch(size_t n, const ur_arm_params *params,
     const real_t *T, size_t T_stride,
     real_t *q, size_t q_stride,
-    uint8_t *status, size_t status_stride)
+    uint8_t *status, size_t status_stride,
+    uint8_t *rare, size_t rare_stride)
 {
+    (void)rare_stride;
     const ur_arm_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[8][CLOSEDFORM_BLOCK];
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t T_i[16] = { T[start + i], T[T_stride + start + i], T[2 * T_stride + start + i], T[3 * T_stride + start + i], T[4 * T_stride + start + i], T[5 * T_stride + start + i], T[6 * T_stride + start + i], T[7 * T_stride + start + i], T[8 * T_stride + start + i], T[9 * T_stride + start + i], T[10 * T_stride + start + i], T[11 * T_stride + start + i], T[12 * T_stride + start + i], T[13 * T_stride + start + i], T[14 * T_stride + start + i], T[15 * T_stride + start + i] };
             real_t q_i[48];
             real_t status_i[8];
-            ur_arm_ik_kernel(0, &local, T_i, q_i, status_i);
+            real_t rare_i[1];
+            ur_arm_ik_common_kernel(0, &local, T_i, q_i, status_i, rare_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -1460,6 +1933,7 @@ void ur_arm_ik_batch(size_t n, const ur_arm_params *params,
             status_real[5][i] = status_i[5];
             status_real[6][i] = status_i[6];
             status_real[7][i] = status_i[7];
+            rare_real[0][i] = rare_i[0];
         }
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
@@ -1485,5 +1959,228 @@ void ur_arm_ik_batch(size_t n, const ur_arm_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[7 * status_stride + start + i] = (uint8_t)status_real[7][i];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+/* One branch of that; all of them are the lanes of vectors. */
+CF_INLINE void ur_arm_ik_branch_kernel(const int single, const ur_arm_params *params,
+    const real_t T[16], const real_t signs[3],
+    real_t q[6], real_t status[1], real_t rare[1])
+{
+    const real_t d1 = params->d1;
+    const real_t L2 = params->L2;
+    const real_t L3 = params->L3;
+    const real_t d4 = params->d4;
+    const real_t d5 = params->d5;
+    const real_t d6 = params->d6;
+    const real_t T11 = T[0];
+    const real_t T12 = T[1];
+    const real_t T13 = T[2];
+    const real_t T14 = T[3];
+    const real_t T21 = T[4];
+    const real_t T22 = T[5];
+    const real_t T23 = T[6];
+    const real_t T24 = T[7];
+    const real_t T31 = T[8];
+    const real_t T32 = T[9];
+    const real_t T33 = T[10];
+    const real_t T34 = T[11];
+    const real_t T41 = T[12];
+    const real_t T42 = T[13];
+    const real_t T43 = T[14];
+    const real_t T44 = T[15];
+    const real_t sigma_1 = signs[0];
+    const real_t sigma_wrist = signs[1];
+    const real_t sigma_elbow = signs[2];
+    const real_t w_x = T14 - T13 * d6;
+    const real_t w_y = T24 - T23 * d6;
+    const real_t h1 = cf_sqrt(w_x * w_x + w_y * w_y);
+    const real_t t1 = h1 - d4;
+    const real_t below1 = cf_max(t1, CLOSEDFORM_C(0.0));
+    const real_t t2 = d4 + h1;
+    const real_t above1 = cf_max(t2, CLOSEDFORM_C(0.0));
+    const real_t t3 = below1 - above1;
+    const real_t t4 = CLOSEDFORM_C(1.0) / (h1 * (below1 + above1));
+    const real_t t5 = cf_sqrt(above1) * cf_sqrt(below1) * (sigma_1 * CLOSEDFORM_C(2.0));
+    const real_t t6 = w_x * t3 * t4 + t4 * (w_y * t5);
+    const real_t c1 = w_y * t3 * t4 - t4 * (w_x * t5);
+    const int t7 = cf_nought(d1) + cf_nought(L2) + cf_nought(L3) + cf_nought(d4) + cf_nought(d5) + cf_nought(d6) == 0;
+    const int t8 = t7 & (CLOSEDFORM_C(0.0) <= d1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t9 = t8 & (CLOSEDFORM_C(0.0) <= L3) & (CLOSEDFORM_C(0.0) <= d4);
+    const int t10 = t9 & (CLOSEDFORM_C(0.0) <= d5) & (CLOSEDFORM_C(0.0) <= d6);
+    const int t11 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
+    const int t12 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
+    const int t13 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
+    const int t14 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
+    const real_t t15 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
+    const int t16 = cf_abs(t15) <= CLOSEDFORM_ROTATION;
+    const real_t t17 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
+    const int t18 = cf_abs(t17) <= CLOSEDFORM_ROTATION;
+    const int t19 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
+    const int t20 = t10 & t11 & t12 & t13 & t14 & t16 & t18 & t19;
+    const int t21 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t22 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t23 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t24 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t20 & t21 & t22 & t23 & t24);
+    const real_t t25 = L2 / CLOSEDFORM_C(2.0) + L3 / CLOSEDFORM_C(2.0);
+    const real_t t26 = t25 + d1 / CLOSEDFORM_C(2.0) + d4 / CLOSEDFORM_C(2.0);
+    const real_t t27 = t26 + d5 / CLOSEDFORM_C(2.0) + d6 / CLOSEDFORM_C(2.0);
+    const real_t t28 = -(CLOSEDFORM_FEASIBILITY * t27);
+    const real_t t29 = L2 + L3;
+    const real_t t30 = w_x * c1 - w_y * t6;
+    const real_t t31 = T13 * c1 - T23 * t6;
+    const real_t h_wrist = cf_sqrt(T33 * T33 + t31 * t31);
+    const real_t t32 = CLOSEDFORM_C(1.0) / h_wrist;
+    const real_t s_phi = T33 * sigma_wrist * t32;
+    const real_t t33 = t30 - d5 * s_phi;
+    const real_t t34 = d1 - (T34 - T33 * d6);
+    const real_t t35 = t32 * (sigma_wrist * t31);
+    const real_t ey = t34 - d5 * t35;
+    const real_t here = cf_sqrt(t33 * t33 + ey * ey);
+    const real_t t36 = t29 - here;
+    const real_t t37 = L2 - L3;
+    const real_t t38 = t37 + here;
+    const int t39 = (t28 <= t1) & (t28 <= t2) & (t28 <= t36) & (t28 <= t38);
+    const real_t t40 = here - t37;
+    const int unreachable = !(t39 & (t28 <= t40));
+    const real_t t41 = cf_poison(single, invalid | unreachable);
+    const real_t t42 = CLOSEDFORM_C(1.0) / here;
+    const real_t A_elbow = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t C_elbow = cf_max(t40, CLOSEDFORM_C(0.0));
+    const real_t t43 = A_elbow * C_elbow;
+    const real_t S_elbow = t29 + here;
+    const real_t B_elbow = cf_max(t38, CLOSEDFORM_C(0.0));
+    const real_t t44 = S_elbow * B_elbow;
+    const real_t t45 = CLOSEDFORM_C(1.0) / (t43 + t44);
+    const real_t t46 = (t43 - t44) * t45;
+    const real_t t47 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow) * cf_sqrt(B_elbow);
+    const real_t t48 = sigma_elbow * (t47 * cf_sqrt(C_elbow) * cf_sqrt(S_elbow));
+    const real_t s_base_elbow = t45 * t48;
+    const real_t t49 = t42 * (ey * t46) - t42 * (t33 * s_base_elbow);
+    const real_t c2 = t42 * (t33 * t46) + t42 * (ey * s_base_elbow);
+    const real_t t50 = A_elbow * S_elbow;
+    const real_t t51 = C_elbow * B_elbow;
+    const real_t t52 = CLOSEDFORM_C(1.0) / (t50 + t51);
+    const real_t s3 = t48 * t52;
+    const real_t t53 = t52 * (t50 - t51);
+    const real_t t54 = s_phi * c2 + t35 * t49;
+    const real_t t55 = t35 * c2 - s_phi * t49;
+    const real_t t56 = d1 + d4 + d5 + d6 + t29;
+    const real_t t57 = CLOSEDFORM_VANISHING * t56;
+    const int aligned_wrist = h_wrist <= CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
+    const real_t in_reach = cf_min(t29, cf_max(here, cf_abs(t37)));
+    const real_t r_hub = cf_sqrt(t34 * t34 + t30 * t30);
+    const real_t t58 = d5 + r_hub;
+    const real_t k_near = cf_max(CLOSEDFORM_C(0.0), -((in_reach - t58) * (in_reach + t58)));
+    const real_t t59 = d5 - r_hub;
+    const real_t d_near = cf_max(CLOSEDFORM_C(0.0), (in_reach - t59) * (in_reach + t59));
+    const real_t n_near = k_near + d_near;
+    const int t60 = (h1 <= t57) | aligned_wrist | (n_near <= CLOSEDFORM_VANISHING * (t56 * t56));
+    const real_t t61 = t30 * t35 - t34 * s_phi;
+    const real_t t62 = cf_abs(t61);
+    const real_t t63 = CLOSEDFORM_C(1.0) / r_hub;
+    const real_t t64 = CLOSEDFORM_C(1.0) / n_near;
+    const real_t uc_near = (k_near - d_near) * t64;
+    const real_t t65 = CLOSEDFORM_C(2.0) * (t61 / t62) * cf_sqrt(d_near);
+    const real_t t66 = t64 * (t65 * cf_sqrt(k_near));
+    const real_t t67 = s_phi - t63 * (t30 * uc_near - t34 * t66);
+    const real_t t68 = t35 - t63 * (t30 * t66 + t34 * uc_near);
+    const int within_rounding = h_wrist * cf_sqrt(t67 * t67 + t68 * t68) <= CLOSEDFORM_VANISHING * CLOSEDFORM_C(4.0);
+    const int inside = cf_abs(here - in_reach) <= t57;
+    const int t69 = t60 | (t62 <= t57) | (r_hub <= t57) | (within_rounding & (!inside));
+    const int no_link_elbow = L2 * L3 <= CLOSEDFORM_VANISHING * (t29 * t29);
+    const real_t opposite[8] = { t6, -t49, s3, -(t53 * t54 + s3 * t55), t31 * t35 + T33 * s_phi, s_phi * (T11 * c1 - T21 * t6) - T31 * t35 };
+    const real_t adjacent[8] = { c1, c2, -t53, s3 * t54 - t53 * t55, -(T13 * t6 + T23 * c1), T32 * t35 - s_phi * (T12 * c1 - T22 * t6) };
+    real_t angles[8];
+    if (single) {
+        cf_atan2_lanes(8, opposite, adjacent, angles);
+    } else {
+        angles[0] = cf_atan2(opposite[0], adjacent[0]);
+        angles[1] = cf_atan2(opposite[1], adjacent[1]);
+        angles[2] = cf_atan2(opposite[2], adjacent[2]);
+        angles[3] = cf_atan2(opposite[3], adjacent[3]);
+        angles[4] = cf_atan2(opposite[4], adjacent[4]);
+        angles[5] = cf_atan2(opposite[5], adjacent[5]);
+    }
+    q[0] = cf_wrap_cut(-angles[0]) + t41;
+    q[1] = cf_wrap_cut(angles[1]) + t41;
+    q[2] = cf_wrap_cut(angles[2]) + t41;
+    q[3] = cf_wrap_cut(angles[3]) + t41;
+    q[4] = cf_wrap_cut(-angles[4]) + t41;
+    q[5] = cf_wrap_cut(-angles[5]) + t41;
+    status[0] = cf_status(single, invalid, unreachable, 0);
+    rare[0] = (t69 | no_link_elbow | (here <= t57)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void ur_arm_ik_branches(const ur_arm_params *params, const real_t T[16],
+    real_t q[48], uint8_t status[8], uint8_t rare[1])
+{
+    static const real_t signs[3][8] = { { CLOSEDFORM_C(1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(-1.0) }, { CLOSEDFORM_C(1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(-1.0) }, { CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0) } };
+    const ur_arm_params local = *params;
+    real_t q_lanes[6][8];
+    real_t status_lanes[1][8];
+    real_t rare_lanes[1][8];
+    CF_INDEPENDENT
+    for (size_t i = 0; i < 8; ++i) {
+        const real_t signs_i[3] = { signs[0][i], signs[1][i], signs[2][i] };
+        real_t q_i[6];
+        real_t status_i[1];
+        real_t rare_i[1];
+        ur_arm_ik_branch_kernel(0, &local, T, signs_i, q_i, status_i, rare_i);
+        q_lanes[0][i] = q_i[0];
+        q_lanes[1][i] = q_i[1];
+        q_lanes[2][i] = q_i[2];
+        q_lanes[3][i] = q_i[3];
+        q_lanes[4][i] = q_i[4];
+        q_lanes[5][i] = q_i[5];
+        status_lanes[0][i] = status_i[0];
+        rare_lanes[0][i] = rare_i[0];
+    }
+    rare[0] = 0;
+    for (size_t i = 0; i < 8; ++i) {
+        q[6 * i] = q_lanes[0][i];
+        q[6 * i + 1] = q_lanes[1][i];
+        q[6 * i + 2] = q_lanes[2][i];
+        q[6 * i + 3] = q_lanes[3][i];
+        q[6 * i + 4] = q_lanes[4][i];
+        q[6 * i + 5] = q_lanes[5][i];
+        status[i] = (uint8_t)status_lanes[0][i];
+        rare[0] |= (uint8_t)rare_lanes[0][i];
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void ur_arm_ik(const ur_arm_params *params, const real_t T[16],
+    real_t q[48], uint8_t status[8])
+{
+    uint8_t rare[1];
+    ur_arm_ik_branches(params, T, q, status, rare);
+    if (CF_UNLIKELY(rare[0])) ur_arm_ik_whole(params, T, q, status);
+}
+
+CLOSEDFORM_DISPATCHED
+void ur_arm_ik_batch(size_t n, const ur_arm_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        ur_arm_ik_common_batch(length, params, T + start, T_stride, q + start, q_stride, status + start, status_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t T_i[16];
+            for (size_t k = 0; k < 16; ++k) T_i[k] = T[k * T_stride + i];
+            real_t q_i[48];
+            uint8_t status_i[8];
+            ur_arm_ik_whole(params, T_i, q_i, status_i);
+            for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
+            for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+        }
     }
 }

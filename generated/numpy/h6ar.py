@@ -10,7 +10,7 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
-#   ik: 382 compare and select, 344 add, 26 atan2, 58 divide, 413 multiply, 3 sincos, 31 sqrt
+#   ik: 394 compare and select, 344 add, 26 atan2, 70 divide, 413 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -1124,141 +1124,145 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del ctheta2A, stheta2A
     t64 = v_2 * p_1 + v_1 * t63
     room_alpha = np.abs(whole_alpha) - np.abs(t64)
-    t65 = _runtime.VANISHING * t47
-    spent_alpha = room_alpha <= t65
-    t66 = size / 100000.0
-    t67 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t68 = 1.0 / (t66 + t67)
-    del t67
+    t65 = np.maximum(-(room_alpha / 1099511627776.0), room_alpha)
+    t66 = _runtime.VANISHING * t47
+    spent_alpha = t65 <= t66
+    del t65
+    t67 = size / 100000.0
+    t68 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t69 = 1.0 / (t67 + t68)
+    del t68
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
     del c_relative, s_relative
-    t69 = _runtime.sign(-t64) * (v_1 * p_1 - v_2 * t63)
+    t70 = _runtime.sign(-t64) * (v_1 * p_1 - v_2 * t63)
     del t64
-    t70 = v_2 * drawn * _runtime.sign(whole_alpha) - t69
-    del t69, whole_alpha
-    t71 = _runtime.select(spent_alpha, t68 * (size * np.abs(t70)), 0.0)
-    t72 = -(_runtime.FEASIBILITY * (t47 + t71)) <= room_alpha
-    del t71
-    t73 = size * size * size * size / 10000000000.0
-    t74 = t70 * (room_alpha - np.abs(-room_alpha)) / (2.0 * (t73 + t70 * t70))
-    del room_alpha, t70
-    turn_alpha = _runtime.select(spent_alpha, t74, 0.0)
-    del t74
-    t75 = 1.0 / L1
-    lean_alpha = _runtime.select(spent_alpha, turn_alpha - t75 * (drawn * turn_alpha), 0.0)
+    t71 = v_2 * drawn * _runtime.sign(whole_alpha) - t70
+    del t70, whole_alpha
+    t72 = _runtime.select(spent_alpha, t69 * (size * np.abs(t71)), 0.0)
+    t73 = -(_runtime.FEASIBILITY * (t47 + t72)) <= room_alpha
+    del t72
+    t74 = size * size * size * size / 10000000000.0
+    t75 = t71 * (room_alpha - np.abs(-room_alpha)) / (2.0 * (t74 + t71 * t71))
+    del room_alpha, t71
+    turn_alpha = _runtime.select(spent_alpha, t75, 0.0)
+    del t75
+    t76 = 1.0 / L1
+    lean_alpha = _runtime.select(spent_alpha, turn_alpha - t76 * (drawn * turn_alpha), 0.0)
     p_1_alpha = _runtime.select(spent_alpha, p_1 - t63 * lean_alpha, p_1)
     part_beta = L1 * p_1_alpha
-    t76 = turn_alpha - lean_alpha
-    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t76, v_1)
+    t77 = turn_alpha - lean_alpha
+    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t77, v_1)
     whole_beta = L1 * v_1_alpha
-    t77 = np.abs(part_beta) - np.abs(whole_beta)
-    spent_beta = -t77 <= t65
-    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t76, v_2)
-    del t76, v_1, v_2
-    t78 = drawn * v_2_alpha * _runtime.sign(whole_beta)
+    t78 = np.abs(part_beta) - np.abs(whole_beta)
+    spent_beta = np.maximum(t78 / 1099511627776.0, -t78) <= t66
+    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t77, v_2)
+    del t77, v_1, v_2
+    t79 = drawn * v_2_alpha * _runtime.sign(whole_beta)
     del whole_beta
-    t79 = _runtime.select(spent_alpha, t63 + p_1 * lean_alpha, t63)
+    t80 = _runtime.select(spent_alpha, t63 + p_1 * lean_alpha, t63)
     del p_1, spent_alpha, t63
-    t80 = (L1 - drawn) * t79 * _runtime.sign(part_beta)
+    t81 = (L1 - drawn) * t80 * _runtime.sign(part_beta)
     del part_beta
-    t81 = t78 - t80
-    del t78, t80
-    t82 = _runtime.select(spent_beta, t68 * (size * np.abs(t81)), 0.0)
-    del t68
-    t83 = -(_runtime.FEASIBILITY * (t47 + t82)) <= -t77
-    del t82
-    t84 = np.abs(higher)
-    t85 = np.abs(ahead)
-    t86 = d + t84 + t85
-    t87 = -(_runtime.FEASIBILITY * t86)
-    t88 = t81 * (t77 + np.abs(t77)) / (2.0 * (t73 + t81 * t81))
-    del t77, t81
-    turn_beta = _runtime.select(spent_beta, -t88, 0.0)
-    del t88
-    lean_beta = _runtime.select(spent_beta, turn_beta - t75 * (drawn * turn_beta), 0.0)
+    t82 = t79 - t81
+    del t79, t81
+    t83 = _runtime.select(spent_beta, t69 * (size * np.abs(t82)), 0.0)
+    del t69
+    t84 = -(_runtime.FEASIBILITY * (t47 + t83)) <= -t78
+    del t83
+    t85 = np.abs(higher)
+    t86 = np.abs(ahead)
+    t87 = d + t85 + t86
+    t88 = -(_runtime.FEASIBILITY * t87)
+    t89 = t82 * (t78 + np.abs(t78)) / (2.0 * (t74 + t82 * t82))
+    del t78, t82
+    turn_beta = _runtime.select(spent_beta, -t89, 0.0)
+    del t89
+    lean_beta = _runtime.select(spent_beta, turn_beta - t76 * (drawn * turn_beta), 0.0)
     del drawn
-    t89 = turn_beta - lean_beta
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t89, v_1_alpha)
+    t90 = turn_beta - lean_beta
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t90, v_1_alpha)
     sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t90 = v_1_beta * sigma_uv
+    t91 = v_1_beta * sigma_uv
     del v_1_beta
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t79 * lean_beta, p_1_alpha)
-    t91 = sigma_uv * p_1_beta
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t80 * lean_beta, p_1_alpha)
+    t92 = sigma_uv * p_1_beta
     del p_1_beta, sigma_uv
-    t92 = t46 & t72 & t83 & (t87 <= -(t90 + np.abs(t91)))
-    del t72, t83
-    t93 = _runtime.select(spent_beta, t79 + p_1_alpha * lean_beta, t79)
-    del p_1_alpha, t79
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t89, v_2_alpha)
-    del spent_beta, t89, v_1_alpha, v_2_alpha
-    t94 = np.abs(v_2_beta)
-    parallel = -t90 <= _runtime.VANISHING * (64.0 * t94)
-    t95 = _runtime.select(parallel, t93 * _runtime.sign(v_2_beta), t91)
-    del t91
-    whole_y = _runtime.select(parallel, L1 + t94, -t90)
-    t96 = t93 - v_2_beta * t95 / whole_y
-    left_along = L1 - np.abs(t96)
-    t97 = _runtime.VANISHING * t86
-    spent_along = left_along <= t97
-    t98 = L1 / 1000000000.0
-    t99 = _runtime.select(spent_along, t94 / (t98 - t90), 0.0)
-    del t94
-    t100 = -(_runtime.FEASIBILITY * (t86 * (1.0 + t99)))
-    del t99
-    t101 = v_2_beta * (left_along / 2.0 - np.abs(left_along) / 2.0)
-    t102 = t101 / (t90 * t90 + v_2_beta * v_2_beta) * _runtime.sign(-t96)
-    del t101, t90, t96
-    t103 = _runtime.select(spent_along, t95 + whole_y * t102, t95)
-    del spent_along, t102, t95
-    t104 = whole_y + t103
-    t105 = whole_y - t103
-    del t103, whole_y
-    t106 = t92 & (t100 <= left_along) & (t87 <= t104) & (t87 <= t105)
-    del left_along, t100, t92
-    t107 = _runtime.VANISHING * (d * 16.0 + t84 * 16.0 + 16.0 * t85)
-    del t84, t85
-    t108 = _runtime.VANISHING * t107
-    del t107
-    below_beta = np.maximum(t104, t108)
-    del t104
-    above_beta = np.maximum(t105, t108)
-    del t105
-    t109 = 1.0 / (below_beta + above_beta)
-    t110 = (below_beta - above_beta) * t109
-    t111 = t93 - v_2_beta * t110
-    del t93, v_2_beta
-    t112 = L1 + t111
-    t113 = L1 - t111
-    del t111
-    unreachable = np.logical_not(t106 & (t87 <= t112) & (t87 <= t113))
+    t93 = t46 & t73 & t84 & (t88 <= -(t91 + np.abs(t92)))
+    del t73, t84
+    t94 = _runtime.select(spent_beta, t80 + p_1_alpha * lean_beta, t80)
+    del p_1_alpha, t80
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t90, v_2_alpha)
+    del spent_beta, t90, v_1_alpha, v_2_alpha
+    t95 = np.abs(v_2_beta)
+    parallel = -t91 <= _runtime.VANISHING * (64.0 * t95)
+    t96 = _runtime.select(parallel, t94 * _runtime.sign(v_2_beta), t92)
+    del t92
+    whole_y = _runtime.select(parallel, L1 + t95, -t91)
+    t97 = t94 - v_2_beta * t96 / whole_y
+    left_along = L1 - np.abs(t97)
+    t98 = np.maximum(-(left_along / 1099511627776.0), left_along)
+    t99 = _runtime.VANISHING * t87
+    spent_along = t98 <= t99
+    del t98
+    t100 = L1 / 1000000000.0
+    t101 = _runtime.select(spent_along, t95 / (t100 - t91), 0.0)
+    del t95
+    t102 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t101)))
+    del t101
+    t103 = v_2_beta * (left_along / 2.0 - np.abs(left_along) / 2.0)
+    t104 = t103 / (t91 * t91 + v_2_beta * v_2_beta) * _runtime.sign(-t97)
+    del t103, t91, t97
+    t105 = _runtime.select(spent_along, t96 + whole_y * t104, t96)
+    del spent_along, t104, t96
+    t106 = whole_y + t105
+    t107 = whole_y - t105
+    del t105, whole_y
+    t108 = t93 & (t102 <= left_along) & (t88 <= t106) & (t88 <= t107)
+    del left_along, t102, t93
+    t109 = _runtime.VANISHING * (d * 16.0 + t85 * 16.0 + 16.0 * t86)
+    del t85, t86
+    t110 = _runtime.VANISHING * t109
+    del t109
+    below_beta = np.maximum(t106, t110)
     del t106
-    t114 = _runtime.poison(invalid | unreachable)
-    t115 = _runtime.select(folded, 0.0, np.arctan2(up, -t59))
-    del t59, up
-    t116 = np.arctan2(lean_alpha + lean_beta, 1.0)
-    del lean_alpha, lean_beta
-    t117 = t115 + t116
-    del t115
-    below_alpha = np.maximum(t112, t108)
-    del t112
-    above_alpha = np.maximum(t113, t108)
+    above_beta = np.maximum(t107, t110)
+    del t107
+    t111 = 1.0 / (below_beta + above_beta)
+    t112 = (below_beta - above_beta) * t111
+    t113 = t94 - v_2_beta * t112
+    del t94, v_2_beta
+    t114 = L1 + t113
+    t115 = L1 - t113
     del t113
-    t118 = 1.0 / (below_alpha + above_alpha)
-    t119 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t120 = np.arctan2((below_alpha - above_alpha) * t118, t118 * t119)
-    del above_alpha, below_alpha, t118, t119
-    t121 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    unreachable = np.logical_not(t108 & (t88 <= t114) & (t88 <= t115))
+    del t108
+    t116 = _runtime.poison(invalid | unreachable)
+    t117 = _runtime.select(folded, 0.0, np.arctan2(up, -t59))
+    del t59, up
+    t118 = np.arctan2(lean_alpha + lean_beta, 1.0)
+    del lean_alpha, lean_beta
+    t119 = t117 + t118
+    del t117
+    below_alpha = np.maximum(t114, t110)
+    del t114
+    above_alpha = np.maximum(t115, t110)
+    del t115
+    t120 = 1.0 / (below_alpha + above_alpha)
+    t121 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t122 = np.arctan2((below_alpha - above_alpha) * t120, t120 * t121)
+    del above_alpha, below_alpha, t120, t121
+    t123 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     del above_beta, below_beta
-    t122 = t120 - np.arctan2(t110, t109 * t121)
-    del t109, t110, t121
-    t123 = _runtime.select(short, 0.0, 2.0 * np.arctan2(rN, rM))
+    t124 = t122 - np.arctan2(t112, t111 * t123)
+    del t111, t112, t123
+    t125 = _runtime.select(short, 0.0, 2.0 * np.arctan2(rN, rM))
     del rM, rN
-    t124 = np.arctan2(s_lag, c_lag)
-    t125 = t124 + np.arctan2(turn_alpha + turn_beta, 1.0)
+    t126 = np.arctan2(s_lag, c_lag)
+    t127 = t126 + np.arctan2(turn_alpha + turn_beta, 1.0)
     del turn_alpha, turn_beta
-    t126 = t123 + t116 - t125
-    del t116, t125
-    t127 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t128 = t125 + t118 - t127
+    del t118, t127
+    t129 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
     del c_pitch, s_pitch
     c_relative_front_elbow_down = t51 - t52
     del t51, t52
@@ -1269,177 +1273,185 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     out_front_elbow_down = t57 + t58
     del t57, t58
-    t128 = t60 - t61
+    t130 = t60 - t61
     del t60, t61
-    t129 = out_front_elbow_down * out_front_elbow_down + t128 * t128
-    t130 = 1.0 / np.sqrt(t129)
-    del t129
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down * t130)
-    t131 = _runtime.select(folded, 0.0, t128 * t130)
-    del t130
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t131
-    t132 = ahead * t131 + higher * ctheta2A_front_elbow_down
-    del ctheta2A_front_elbow_down, t131
-    t133 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t132
-    room_alpha_front_elbow_down = np.abs(whole_alpha_front_elbow_down) - np.abs(t133)
-    spent_alpha_front_elbow_down = room_alpha_front_elbow_down <= t65
+    t131 = out_front_elbow_down * out_front_elbow_down + t130 * t130
+    t132 = 1.0 / np.sqrt(t131)
+    del t131
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down * t132)
+    t133 = _runtime.select(folded, 0.0, t130 * t132)
+    del t132
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t133
+    t134 = ahead * t133 + higher * ctheta2A_front_elbow_down
+    del ctheta2A_front_elbow_down, t133
+    t135 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t134
+    room_alpha_front_elbow_down = np.abs(whole_alpha_front_elbow_down) - np.abs(t135)
+    t136 = room_alpha_front_elbow_down / 1099511627776.0
+    t137 = np.maximum(-t136, room_alpha_front_elbow_down)
+    del t136
+    spent_alpha_front_elbow_down = t137 <= t66
+    del t137
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t134 = 1.0 / (t66 + np.abs(tilt_front_elbow_down))
+    t138 = 1.0 / (t67 + np.abs(tilt_front_elbow_down))
     del tilt_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
-    t135 = v_2_front_elbow_down * drawn_front_elbow_down
-    t136 = t135 * _runtime.sign(whole_alpha_front_elbow_down)
-    del t135, whole_alpha_front_elbow_down
-    t137 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t132
-    t138 = t136 - _runtime.sign(-t133) * t137
-    del t133, t136, t137
-    t139 = _runtime.select(spent_alpha_front_elbow_down, t134 * (size * np.abs(t138)), 0.0)
-    t140 = -(_runtime.FEASIBILITY * (t47 + t139)) <= room_alpha_front_elbow_down
-    del t139
-    t141 = room_alpha_front_elbow_down - np.abs(-room_alpha_front_elbow_down)
-    del room_alpha_front_elbow_down
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t138 * t141 / (2.0 * (t73 + t138 * t138)), 0.0)
-    del t138, t141
-    t142 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t75 * t142, 0.0)
-    del t142
-    t143 = p_1_front_elbow_down + t132 * lean_alpha_front_elbow_down
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t143, p_1_front_elbow_down)
+    t139 = v_2_front_elbow_down * drawn_front_elbow_down
+    t140 = t139 * _runtime.sign(whole_alpha_front_elbow_down)
+    del t139, whole_alpha_front_elbow_down
+    t141 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t134
+    t142 = t140 - _runtime.sign(-t135) * t141
+    del t135, t140, t141
+    t143 = _runtime.select(spent_alpha_front_elbow_down, t138 * (size * np.abs(t142)), 0.0)
+    t144 = -(_runtime.FEASIBILITY * (t47 + t143)) <= room_alpha_front_elbow_down
     del t143
+    t145 = room_alpha_front_elbow_down - np.abs(-room_alpha_front_elbow_down)
+    del room_alpha_front_elbow_down
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t142 * t145 / (2.0 * (t74 + t142 * t142)), 0.0)
+    del t142, t145
+    t146 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t76 * t146, 0.0)
+    del t146
+    t147 = p_1_front_elbow_down + t134 * lean_alpha_front_elbow_down
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t147, p_1_front_elbow_down)
+    del t147
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t144 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
-    t145 = v_1_front_elbow_down - v_2_front_elbow_down * t144
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t145, v_1_front_elbow_down)
-    del t145
+    t148 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
+    t149 = v_1_front_elbow_down - v_2_front_elbow_down * t148
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t149, v_1_front_elbow_down)
+    del t149
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t146 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    spent_beta_front_elbow_down = -t146 <= t65
-    t147 = v_2_front_elbow_down + v_1_front_elbow_down * t144
-    del t144, v_1_front_elbow_down
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t147, v_2_front_elbow_down)
-    del t147, v_2_front_elbow_down
-    t148 = drawn_front_elbow_down * v_2_alpha_front_elbow_down
-    t149 = t148 * _runtime.sign(whole_beta_front_elbow_down)
-    del t148, whole_beta_front_elbow_down
-    t150 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t150 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    spent_beta_front_elbow_down = np.maximum(t150 / 1099511627776.0, -t150) <= t66
+    t151 = v_2_front_elbow_down + v_1_front_elbow_down * t148
+    del t148, v_1_front_elbow_down
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t151, v_2_front_elbow_down)
+    del t151, v_2_front_elbow_down
+    t152 = drawn_front_elbow_down * v_2_alpha_front_elbow_down
+    t153 = t152 * _runtime.sign(whole_beta_front_elbow_down)
+    del t152, whole_beta_front_elbow_down
+    t154 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t151 = _runtime.select(spent_alpha_front_elbow_down, t132 - t150, t132)
-    del spent_alpha_front_elbow_down, t132, t150
-    t152 = (L1 - drawn_front_elbow_down) * t151 * _runtime.sign(part_beta_front_elbow_down)
+    t155 = _runtime.select(spent_alpha_front_elbow_down, t134 - t154, t134)
+    del spent_alpha_front_elbow_down, t134, t154
+    t156 = (L1 - drawn_front_elbow_down) * t155 * _runtime.sign(part_beta_front_elbow_down)
     del part_beta_front_elbow_down
-    t153 = t149 + t152
-    del t149, t152
-    t154 = _runtime.select(spent_beta_front_elbow_down, t134 * (size * np.abs(t153)), 0.0)
-    del t134
-    t155 = -(_runtime.FEASIBILITY * (t47 + t154)) <= -t146
-    del t154
-    t156 = t153 * (t146 + np.abs(t146)) / (2.0 * (t73 + t153 * t153))
-    del t146, t153
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t156, 0.0)
-    del t156
-    t157 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    t157 = t153 + t156
+    del t153, t156
+    t158 = _runtime.select(spent_beta_front_elbow_down, t138 * (size * np.abs(t157)), 0.0)
+    del t138
+    t159 = -(_runtime.FEASIBILITY * (t47 + t158)) <= -t150
+    del t158
+    t160 = t157 * (t150 + np.abs(t150)) / (2.0 * (t74 + t157 * t157))
+    del t150, t157
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t160, 0.0)
+    del t160
+    t161 = drawn_front_elbow_down * turn_beta_front_elbow_down
     del drawn_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t75 * t157, 0.0)
-    del t157
-    t158 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
-    t159 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t158
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t159, v_1_alpha_front_elbow_down)
-    del t159
-    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t160 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    del v_1_beta_front_elbow_down
-    t161 = p_1_alpha_front_elbow_down + t151 * lean_beta_front_elbow_down
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t161, p_1_alpha_front_elbow_down)
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t76 * t161, 0.0)
     del t161
-    t162 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t162 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
+    t163 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t162
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t163, v_1_alpha_front_elbow_down)
+    del t163
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t164 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    del v_1_beta_front_elbow_down
+    t165 = p_1_alpha_front_elbow_down + t155 * lean_beta_front_elbow_down
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t165, p_1_alpha_front_elbow_down)
+    del t165
+    t166 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
     del p_1_beta_front_elbow_down, sigma_uv_front_elbow_down
-    t163 = t46 & t140 & t155 & (t87 <= -(t160 + np.abs(t162)))
-    del t140, t155, t46
-    t164 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t167 = t46 & t144 & t159 & (t88 <= -(t164 + np.abs(t166)))
+    del t144, t159, t46
+    t168 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    t165 = _runtime.select(spent_beta_front_elbow_down, t151 - t164, t151)
-    del t151, t164
-    t166 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t158
-    del t158, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t166, v_2_alpha_front_elbow_down)
-    del spent_beta_front_elbow_down, t166, v_2_alpha_front_elbow_down
-    t167 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t160 <= _runtime.VANISHING * (64.0 * t167)
-    t168 = t165 * _runtime.sign(v_2_beta_front_elbow_down)
-    t169 = _runtime.select(parallel_front_elbow_down, -t168, t162)
-    del t162, t168
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t167, -t160)
-    t170 = v_2_beta_front_elbow_down * t169 / whole_y_front_elbow_down
-    rest_front_elbow_down = t165 + t170
-    del t170
+    t169 = _runtime.select(spent_beta_front_elbow_down, t155 - t168, t155)
+    del t155, t168
+    t170 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t162
+    del t162, v_1_alpha_front_elbow_down
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t170, v_2_alpha_front_elbow_down)
+    del spent_beta_front_elbow_down, t170, v_2_alpha_front_elbow_down
+    t171 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t164 <= _runtime.VANISHING * (64.0 * t171)
+    t172 = t169 * _runtime.sign(v_2_beta_front_elbow_down)
+    t173 = _runtime.select(parallel_front_elbow_down, -t172, t166)
+    del t166, t172
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t171, -t164)
+    t174 = v_2_beta_front_elbow_down * t173 / whole_y_front_elbow_down
+    rest_front_elbow_down = t169 + t174
+    del t174
     left_along_front_elbow_down = L1 - np.abs(-rest_front_elbow_down)
-    spent_along_front_elbow_down = left_along_front_elbow_down <= t97
-    t171 = _runtime.select(spent_along_front_elbow_down, t167 / (t98 - t160), 0.0)
-    del t167
-    t172 = -(_runtime.FEASIBILITY * (t86 * (1.0 + t171)))
+    t175 = left_along_front_elbow_down / 1099511627776.0
+    t176 = np.maximum(-t175, left_along_front_elbow_down)
+    del t175
+    spent_along_front_elbow_down = t176 <= t99
+    del t176
+    t177 = _runtime.select(spent_along_front_elbow_down, t171 / (t100 - t164), 0.0)
     del t171
-    t173 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
-    t174 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t175 = v_2_beta_front_elbow_down * t173 / (t160 * t160 + t174)
-    del t160, t173, t174
-    t176 = whole_y_front_elbow_down * (t175 * _runtime.sign(rest_front_elbow_down))
-    del rest_front_elbow_down, t175
-    t177 = _runtime.select(spent_along_front_elbow_down, t169 + t176, t169)
-    del spent_along_front_elbow_down, t169, t176
-    t178 = whole_y_front_elbow_down + t177
-    t179 = t163 & (t172 <= left_along_front_elbow_down) & (t87 <= t178)
-    del left_along_front_elbow_down, t163, t172
-    t180 = whole_y_front_elbow_down - t177
-    del t177, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t178, t108)
-    del t178
-    above_beta_front_elbow_down = np.maximum(t180, t108)
-    t181 = below_beta_front_elbow_down - above_beta_front_elbow_down
-    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t182 = 1.0 / total_beta_front_elbow_down
-    del total_beta_front_elbow_down
-    t183 = t181 * t182
-    del t181
-    along_u_front_elbow_down = t165 + v_2_beta_front_elbow_down * t183
-    del t165, v_2_beta_front_elbow_down
-    t184 = L1 - along_u_front_elbow_down
-    t185 = L1 + along_u_front_elbow_down
-    del along_u_front_elbow_down
-    t186 = t179 & (t87 <= t180) & (t87 <= t184) & (t87 <= t185)
-    del t179, t180
-    unreachable_2 = np.logical_not(t186)
-    del t186
-    t187 = _runtime.poison(invalid | unreachable_2)
-    t188 = _runtime.select(folded, 0.0, np.arctan2(-t128, out_front_elbow_down))
-    del out_front_elbow_down, t128
-    t189 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t190 = np.arctan2(t189, 1.0)
-    del t189
-    t191 = t188 + t190
-    del t188
-    below_alpha_front_elbow_down = np.maximum(t184, t108)
+    t178 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t177)))
+    del t177
+    t179 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
+    t180 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t181 = v_2_beta_front_elbow_down * t179 / (t164 * t164 + t180)
+    del t164, t179, t180
+    t182 = whole_y_front_elbow_down * (t181 * _runtime.sign(rest_front_elbow_down))
+    del rest_front_elbow_down, t181
+    t183 = _runtime.select(spent_along_front_elbow_down, t173 + t182, t173)
+    del spent_along_front_elbow_down, t173, t182
+    t184 = whole_y_front_elbow_down + t183
+    t185 = t167 & (t178 <= left_along_front_elbow_down) & (t88 <= t184)
+    del left_along_front_elbow_down, t167, t178
+    t186 = whole_y_front_elbow_down - t183
+    del t183, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t184, t110)
     del t184
-    above_alpha_front_elbow_down = np.maximum(t185, t108)
-    del t185
-    t192 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    above_beta_front_elbow_down = np.maximum(t186, t110)
+    t187 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
+    t188 = 1.0 / total_beta_front_elbow_down
+    del total_beta_front_elbow_down
+    t189 = t187 * t188
+    del t187
+    along_u_front_elbow_down = t169 + v_2_beta_front_elbow_down * t189
+    del t169, v_2_beta_front_elbow_down
+    t190 = L1 - along_u_front_elbow_down
+    t191 = L1 + along_u_front_elbow_down
+    del along_u_front_elbow_down
+    t192 = t185 & (t88 <= t186) & (t88 <= t190) & (t88 <= t191)
+    del t185, t186
+    unreachable_2 = np.logical_not(t192)
+    del t192
+    t193 = _runtime.poison(invalid | unreachable_2)
+    t194 = _runtime.select(folded, 0.0, np.arctan2(-t130, out_front_elbow_down))
+    del out_front_elbow_down, t130
+    t195 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
+    t196 = np.arctan2(t195, 1.0)
+    del t195
+    t197 = t194 + t196
+    del t194
+    below_alpha_front_elbow_down = np.maximum(t190, t110)
+    del t190
+    above_alpha_front_elbow_down = np.maximum(t191, t110)
+    del t191
+    t198 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t193 = 1.0 / total_alpha_front_elbow_down
+    t199 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t194 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t200 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t195 = np.arctan2(t192 * t193, t193 * t194)
-    del t192, t193, t194
-    t196 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t201 = np.arctan2(t198 * t199, t199 * t200)
+    del t198, t199, t200
+    t202 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t197 = t123 + t124 - (t190 - np.arctan2(t196, 1.0))
-    del t123, t190, t196
-    t198 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t203 = t125 + t126 - (t196 - np.arctan2(t202, 1.0))
+    del t125, t196, t202
+    t204 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t199 = t195 - np.arctan2(t183, t182 * t198)
-    del t182, t183, t198
-    t200 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t15))
+    t205 = t201 - np.arctan2(t189, t188 * t204)
+    del t188, t189, t204
+    t206 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t15))
     del t15, t2
     c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -(t33 * (t36 + t37)))
     del t36, t37
@@ -1447,439 +1459,446 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t33, t38, t39
     outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
     del c1_rear_elbow_up, s1_rear_elbow_up
-    t201 = outward_rear_elbow_up * outward_rear_elbow_up
-    square_rear_elbow_up = t32 + t201
-    del t201, t32
-    t202 = t30 - square_rear_elbow_up
+    t207 = outward_rear_elbow_up * outward_rear_elbow_up
+    square_rear_elbow_up = t32 + t207
+    del t207, t32
+    t208 = t30 - square_rear_elbow_up
     del t30
-    t203 = square_rear_elbow_up - t44
+    t209 = square_rear_elbow_up - t44
     del square_rear_elbow_up, t44
-    t204 = t26 & (-t29 <= t202) & (-t43 <= t203)
+    t210 = t26 & (-t29 <= t208) & (-t43 <= t209)
     del t26, t29, t43
-    M_rear_elbow_up = np.maximum(t203, 0.0)
-    del t203
-    N_rear_elbow_up = np.maximum(t202, 0.0)
-    del t202
-    t205 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t205 * (M_rear_elbow_up - N_rear_elbow_up))
-    t206 = c_lag * c_bend_rear_elbow_up
+    M_rear_elbow_up = np.maximum(t209, 0.0)
+    del t209
+    N_rear_elbow_up = np.maximum(t208, 0.0)
+    del t208
+    t211 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
+    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t211 * (M_rear_elbow_up - N_rear_elbow_up))
+    t212 = c_lag * c_bend_rear_elbow_up
     rN_rear_elbow_up = np.sqrt(N_rear_elbow_up)
     del N_rear_elbow_up
     rM_rear_elbow_up = np.sqrt(M_rear_elbow_up)
-    t207 = t205 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
-    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t207)
-    del t207
-    t208 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t206 - t208
-    t209 = s_lag * c_bend_rear_elbow_up
+    t213 = t211 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
+    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t213)
+    del t213
+    t214 = s_lag * s_bend_rear_elbow_up
+    c_relative_rear_elbow_up = t212 - t214
+    t215 = s_lag * c_bend_rear_elbow_up
     del c_bend_rear_elbow_up, s_lag
-    t210 = c_lag * s_bend_rear_elbow_up
+    t216 = c_lag * s_bend_rear_elbow_up
     del c_lag
-    s_relative_rear_elbow_up = t209 + t210
+    s_relative_rear_elbow_up = t215 + t216
     v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
     whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
     v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
     folded_rear_elbow_up = t55 + np.abs(outward_rear_elbow_up) <= t49
     del t49, t55
-    t211 = t56 * s_bend_rear_elbow_up
+    t217 = t56 * s_bend_rear_elbow_up
     del t56
-    ahead_1_rear_elbow_up = _runtime.select(short, t27, t42 + t28 * M_rear_elbow_up * t205)
-    del M_rear_elbow_up, t205, t27, t28, t42
-    t212 = outward_rear_elbow_up * ahead_1_rear_elbow_up
-    out_rear_elbow_up = t211 + t212
-    t213 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
+    ahead_1_rear_elbow_up = _runtime.select(short, t27, t42 + t28 * M_rear_elbow_up * t211)
+    del M_rear_elbow_up, t211, t27, t28, t42
+    t218 = outward_rear_elbow_up * ahead_1_rear_elbow_up
+    out_rear_elbow_up = t217 + t218
+    t219 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
     del fore, outward_rear_elbow_up, s_bend_rear_elbow_up
-    t214 = t31 * ahead_1_rear_elbow_up
+    t220 = t31 * ahead_1_rear_elbow_up
     del ahead_1_rear_elbow_up, t31
-    t215 = t213 - t214
-    t216 = out_rear_elbow_up * out_rear_elbow_up + t215 * t215
-    t217 = 1.0 / np.sqrt(t216)
-    del t216
-    ctheta2A_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, out_rear_elbow_up * t217)
-    t218 = _runtime.select(folded_rear_elbow_up, 0.0, t215 * t217)
-    del t217
-    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up - higher * t218
-    t219 = ahead * t218 + higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t218
-    t220 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t219
-    room_alpha_rear_elbow_up = np.abs(whole_alpha_rear_elbow_up) - np.abs(t220)
-    spent_alpha_rear_elbow_up = room_alpha_rear_elbow_up <= t65
+    t221 = t219 - t220
+    t222 = out_rear_elbow_up * out_rear_elbow_up + t221 * t221
+    t223 = 1.0 / np.sqrt(t222)
+    del t222
+    ctheta2A_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, out_rear_elbow_up * t223)
+    t224 = _runtime.select(folded_rear_elbow_up, 0.0, t221 * t223)
+    del t223
+    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up - higher * t224
+    t225 = ahead * t224 + higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t224
+    t226 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t225
+    room_alpha_rear_elbow_up = np.abs(whole_alpha_rear_elbow_up) - np.abs(t226)
+    t227 = -(room_alpha_rear_elbow_up / 1099511627776.0)
+    spent_alpha_rear_elbow_up = np.maximum(t227, room_alpha_rear_elbow_up) <= t66
+    del t227
     tilt_rear_elbow_up = L_2W * c_relative_rear_elbow_up - a_3W * s_relative_rear_elbow_up
-    t221 = 1.0 / (t66 + np.abs(tilt_rear_elbow_up))
+    t228 = 1.0 / (t67 + np.abs(tilt_rear_elbow_up))
     del tilt_rear_elbow_up
     drawn_rear_elbow_up = L1 + L_2W * s_relative_rear_elbow_up + a_3W * c_relative_rear_elbow_up
     del c_relative_rear_elbow_up, s_relative_rear_elbow_up
-    t222 = v_2_rear_elbow_up * drawn_rear_elbow_up * _runtime.sign(whole_alpha_rear_elbow_up)
+    t229 = v_2_rear_elbow_up * drawn_rear_elbow_up * _runtime.sign(whole_alpha_rear_elbow_up)
     del whole_alpha_rear_elbow_up
-    t223 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t219
-    t224 = t222 - _runtime.sign(-t220) * t223
-    del t220, t222, t223
-    t225 = _runtime.select(spent_alpha_rear_elbow_up, t221 * (size * np.abs(t224)), 0.0)
-    t226 = -(_runtime.FEASIBILITY * (t47 + t225)) <= room_alpha_rear_elbow_up
-    del t225
-    t227 = room_alpha_rear_elbow_up - np.abs(-room_alpha_rear_elbow_up)
+    t230 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t225
+    t231 = t229 - _runtime.sign(-t226) * t230
+    del t226, t229, t230
+    t232 = _runtime.select(spent_alpha_rear_elbow_up, t228 * (size * np.abs(t231)), 0.0)
+    t233 = -(_runtime.FEASIBILITY * (t47 + t232)) <= room_alpha_rear_elbow_up
+    del t232
+    t234 = room_alpha_rear_elbow_up - np.abs(-room_alpha_rear_elbow_up)
     del room_alpha_rear_elbow_up
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t224 * t227 / (2.0 * (t73 + t224 * t224)), 0.0)
-    del t224, t227
-    t228 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t75 * t228, 0.0)
-    del t228
-    t229 = p_1_rear_elbow_up + t219 * lean_alpha_rear_elbow_up
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t229, p_1_rear_elbow_up)
-    del t229
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t231 * t234 / (2.0 * (t74 + t231 * t231)), 0.0)
+    del t231, t234
+    t235 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t76 * t235, 0.0)
+    del t235
+    t236 = p_1_rear_elbow_up + t225 * lean_alpha_rear_elbow_up
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t236, p_1_rear_elbow_up)
+    del t236
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t230 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t230, v_1_rear_elbow_up)
+    t237 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t237, v_1_rear_elbow_up)
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t231 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    spent_beta_rear_elbow_up = -t231 <= t65
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t230, v_2_rear_elbow_up)
-    del t230, v_1_rear_elbow_up, v_2_rear_elbow_up
-    t232 = drawn_rear_elbow_up * v_2_alpha_rear_elbow_up
-    t233 = t232 * _runtime.sign(whole_beta_rear_elbow_up)
-    del t232, whole_beta_rear_elbow_up
-    t234 = t219 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    t238 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    spent_beta_rear_elbow_up = np.maximum(t238 / 1099511627776.0, -t238) <= t66
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t237, v_2_rear_elbow_up)
+    del t237, v_1_rear_elbow_up, v_2_rear_elbow_up
+    t239 = drawn_rear_elbow_up * v_2_alpha_rear_elbow_up
+    t240 = t239 * _runtime.sign(whole_beta_rear_elbow_up)
+    del t239, whole_beta_rear_elbow_up
+    t241 = t225 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
     del p_1_rear_elbow_up
-    t235 = _runtime.select(spent_alpha_rear_elbow_up, t234, t219)
-    del spent_alpha_rear_elbow_up, t219, t234
-    t236 = (L1 - drawn_rear_elbow_up) * t235 * _runtime.sign(part_beta_rear_elbow_up)
+    t242 = _runtime.select(spent_alpha_rear_elbow_up, t241, t225)
+    del spent_alpha_rear_elbow_up, t225, t241
+    t243 = (L1 - drawn_rear_elbow_up) * t242 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t237 = t233 + t236
-    del t233, t236
-    t238 = _runtime.select(spent_beta_rear_elbow_up, t221 * (size * np.abs(t237)), 0.0)
-    del t221
-    t239 = -(_runtime.FEASIBILITY * (t47 + t238)) <= -t231
-    del t238
-    t240 = t237 * (t231 + np.abs(t231)) / (2.0 * (t73 + t237 * t237))
-    del t231, t237
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t240, 0.0)
-    del t240
-    t241 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
-    del drawn_rear_elbow_up
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t75 * t241, 0.0)
-    del t241
-    t242 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
-    t243 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t242
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t243, v_1_alpha_rear_elbow_up)
-    del t243
-    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t244 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    del v_1_beta_rear_elbow_up
-    t245 = p_1_alpha_rear_elbow_up + t235 * lean_beta_rear_elbow_up
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t245, p_1_alpha_rear_elbow_up)
+    t244 = t240 + t243
+    del t240, t243
+    t245 = _runtime.select(spent_beta_rear_elbow_up, t228 * (size * np.abs(t244)), 0.0)
+    del t228
+    t246 = -(_runtime.FEASIBILITY * (t47 + t245)) <= -t238
     del t245
-    t246 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t247 = t244 * (t238 + np.abs(t238)) / (2.0 * (t74 + t244 * t244))
+    del t238, t244
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t247, 0.0)
+    del t247
+    t248 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
+    del drawn_rear_elbow_up
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t76 * t248, 0.0)
+    del t248
+    t249 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
+    t250 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t249
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t250, v_1_alpha_rear_elbow_up)
+    del t250
+    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
+    t251 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    del v_1_beta_rear_elbow_up
+    t252 = p_1_alpha_rear_elbow_up + t242 * lean_beta_rear_elbow_up
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t252, p_1_alpha_rear_elbow_up)
+    del t252
+    t253 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
     del p_1_beta_rear_elbow_up, sigma_uv_rear_elbow_up
-    t247 = t204 & t226 & t239 & (t87 <= -(t244 + np.abs(t246)))
-    del t226, t239
-    t248 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t254 = t210 & t233 & t246 & (t88 <= -(t251 + np.abs(t253)))
+    del t233, t246
+    t255 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del p_1_alpha_rear_elbow_up
-    t249 = _runtime.select(spent_beta_rear_elbow_up, t235 - t248, t235)
-    del t235, t248
-    t250 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t242
-    del t242, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t250, v_2_alpha_rear_elbow_up)
-    del spent_beta_rear_elbow_up, t250, v_2_alpha_rear_elbow_up
-    t251 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t244 <= _runtime.VANISHING * (64.0 * t251)
-    t252 = -(t249 * _runtime.sign(v_2_beta_rear_elbow_up))
-    t253 = _runtime.select(parallel_rear_elbow_up, t252, t246)
-    del t246, t252
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t251, -t244)
-    t254 = v_2_beta_rear_elbow_up * t253 / whole_y_rear_elbow_up
-    rest_rear_elbow_up = t249 + t254
-    del t254
+    t256 = _runtime.select(spent_beta_rear_elbow_up, t242 - t255, t242)
+    del t242, t255
+    t257 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t249
+    del t249, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t257, v_2_alpha_rear_elbow_up)
+    del spent_beta_rear_elbow_up, t257, v_2_alpha_rear_elbow_up
+    t258 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t251 <= _runtime.VANISHING * (64.0 * t258)
+    t259 = -(t256 * _runtime.sign(v_2_beta_rear_elbow_up))
+    t260 = _runtime.select(parallel_rear_elbow_up, t259, t253)
+    del t253, t259
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t258, -t251)
+    t261 = v_2_beta_rear_elbow_up * t260 / whole_y_rear_elbow_up
+    rest_rear_elbow_up = t256 + t261
+    del t261
     left_along_rear_elbow_up = L1 - np.abs(-rest_rear_elbow_up)
-    spent_along_rear_elbow_up = left_along_rear_elbow_up <= t97
-    t255 = _runtime.select(spent_along_rear_elbow_up, t251 / (t98 - t244), 0.0)
-    del t251
-    t256 = -(_runtime.FEASIBILITY * (t86 * (1.0 + t255)))
-    del t255
-    t257 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
-    t258 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t259 = v_2_beta_rear_elbow_up * t257 / (t244 * t244 + t258)
-    del t244, t257, t258
-    t260 = whole_y_rear_elbow_up * (t259 * _runtime.sign(rest_rear_elbow_up))
-    del rest_rear_elbow_up, t259
-    t261 = _runtime.select(spent_along_rear_elbow_up, t253 + t260, t253)
-    del spent_along_rear_elbow_up, t253, t260
-    t262 = whole_y_rear_elbow_up + t261
-    t263 = t247 & (t256 <= left_along_rear_elbow_up) & (t87 <= t262)
-    del left_along_rear_elbow_up, t247, t256
-    t264 = whole_y_rear_elbow_up - t261
-    del t261, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t262, t108)
+    t262 = -(left_along_rear_elbow_up / 1099511627776.0)
+    spent_along_rear_elbow_up = np.maximum(t262, left_along_rear_elbow_up) <= t99
     del t262
-    above_beta_rear_elbow_up = np.maximum(t264, t108)
-    t265 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
-    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t266 = 1.0 / total_beta_rear_elbow_up
-    del total_beta_rear_elbow_up
-    t267 = t265 * t266
-    del t265
-    along_u_rear_elbow_up = t249 + v_2_beta_rear_elbow_up * t267
-    del t249, v_2_beta_rear_elbow_up
-    t268 = L1 - along_u_rear_elbow_up
-    t269 = L1 + along_u_rear_elbow_up
-    del along_u_rear_elbow_up
-    t270 = t263 & (t87 <= t264) & (t87 <= t268) & (t87 <= t269)
-    del t263, t264
-    unreachable_3 = np.logical_not(t270)
+    t263 = _runtime.select(spent_along_rear_elbow_up, t258 / (t100 - t251), 0.0)
+    del t258
+    t264 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t263)))
+    del t263
+    t265 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
+    t266 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t267 = v_2_beta_rear_elbow_up * t265 / (t251 * t251 + t266)
+    del t251, t265, t266
+    t268 = whole_y_rear_elbow_up * (t267 * _runtime.sign(rest_rear_elbow_up))
+    del rest_rear_elbow_up, t267
+    t269 = _runtime.select(spent_along_rear_elbow_up, t260 + t268, t260)
+    del spent_along_rear_elbow_up, t260, t268
+    t270 = whole_y_rear_elbow_up + t269
+    t271 = t254 & (t264 <= left_along_rear_elbow_up) & (t88 <= t270)
+    del left_along_rear_elbow_up, t254, t264
+    t272 = whole_y_rear_elbow_up - t269
+    del t269, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t270, t110)
     del t270
-    t271 = _runtime.poison(invalid | unreachable_3)
-    t272 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t215, out_rear_elbow_up))
-    del out_rear_elbow_up, t215
-    t273 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t274 = np.arctan2(t273, 1.0)
+    above_beta_rear_elbow_up = np.maximum(t272, t110)
+    t273 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
+    t274 = 1.0 / total_beta_rear_elbow_up
+    del total_beta_rear_elbow_up
+    t275 = t273 * t274
     del t273
-    t275 = t272 + t274
-    del t272
-    below_alpha_rear_elbow_up = np.maximum(t268, t108)
-    del t268
-    above_alpha_rear_elbow_up = np.maximum(t269, t108)
-    del t269
-    t276 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t277 = 1.0 / total_alpha_rear_elbow_up
-    del total_alpha_rear_elbow_up
-    t278 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t279 = np.arctan2(t276 * t277, t277 * t278)
-    del t276, t277, t278
-    t280 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
-    del rM_rear_elbow_up, rN_rear_elbow_up
-    t281 = _runtime.select(short, 0.0, 2.0 * t280)
+    along_u_rear_elbow_up = t256 + v_2_beta_rear_elbow_up * t275
+    del t256, v_2_beta_rear_elbow_up
+    t276 = L1 - along_u_rear_elbow_up
+    t277 = L1 + along_u_rear_elbow_up
+    del along_u_rear_elbow_up
+    t278 = t271 & (t88 <= t272) & (t88 <= t276) & (t88 <= t277)
+    del t271, t272
+    unreachable_3 = np.logical_not(t278)
+    del t278
+    t279 = _runtime.poison(invalid | unreachable_3)
+    t280 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t221, out_rear_elbow_up))
+    del out_rear_elbow_up, t221
+    t281 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
+    t282 = np.arctan2(t281, 1.0)
+    del t281
+    t283 = t280 + t282
     del t280
-    t282 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    below_alpha_rear_elbow_up = np.maximum(t276, t110)
+    del t276
+    above_alpha_rear_elbow_up = np.maximum(t277, t110)
+    del t277
+    t284 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
+    t285 = 1.0 / total_alpha_rear_elbow_up
+    del total_alpha_rear_elbow_up
+    t286 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t287 = np.arctan2(t284 * t285, t285 * t286)
+    del t284, t285, t286
+    t288 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
+    del rM_rear_elbow_up, rN_rear_elbow_up
+    t289 = _runtime.select(short, 0.0, 2.0 * t288)
+    del t288
+    t290 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t283 = t124 - t274 + (t281 + np.arctan2(t282, 1.0))
-    del t274, t282
-    t284 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t291 = t126 - t282 + (t289 + np.arctan2(t290, 1.0))
+    del t282, t290
+    t292 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t285 = t279 - np.arctan2(t267, t266 * t284)
-    del t266, t267, t284
-    c_relative_rear_elbow_down = t206 + t208
-    del t206, t208
-    s_relative_rear_elbow_down = t209 - t210
-    del t209, t210
+    t293 = t287 - np.arctan2(t275, t274 * t292)
+    del t274, t275, t292
+    c_relative_rear_elbow_down = t212 + t214
+    del t212, t214
+    s_relative_rear_elbow_down = t215 - t216
+    del t215, t216
     v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
     whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
     v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
-    t286 = t211 - t212
-    del t211, t212
-    up_rear_elbow_down = t213 + t214
-    del t213, t214
-    t287 = t286 * t286 + up_rear_elbow_down * up_rear_elbow_down
-    t288 = 1.0 / np.sqrt(t287)
-    del t287
-    ctheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 1.0, -(t286 * t288))
-    stheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 0.0, up_rear_elbow_down * t288)
-    del t288
+    t294 = t217 - t218
+    del t217, t218
+    up_rear_elbow_down = t219 + t220
+    del t219, t220
+    t295 = t294 * t294 + up_rear_elbow_down * up_rear_elbow_down
+    t296 = 1.0 / np.sqrt(t295)
+    del t295
+    ctheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 1.0, -(t294 * t296))
+    stheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 0.0, up_rear_elbow_down * t296)
+    del t296
     p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
-    t289 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
+    t297 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
     del ahead, ctheta2A_rear_elbow_down, higher, stheta2A_rear_elbow_down
-    t290 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t289
-    room_alpha_rear_elbow_down = np.abs(whole_alpha_rear_elbow_down) - np.abs(t290)
-    spent_alpha_rear_elbow_down = room_alpha_rear_elbow_down <= t65
+    t298 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t297
+    room_alpha_rear_elbow_down = np.abs(whole_alpha_rear_elbow_down) - np.abs(t298)
+    t299 = -(room_alpha_rear_elbow_down / 1099511627776.0)
+    spent_alpha_rear_elbow_down = np.maximum(t299, room_alpha_rear_elbow_down) <= t66
+    del t299
     tilt_rear_elbow_down = L_2W * c_relative_rear_elbow_down - a_3W * s_relative_rear_elbow_down
-    t291 = 1.0 / (t66 + np.abs(tilt_rear_elbow_down))
-    del t66, tilt_rear_elbow_down
+    t300 = 1.0 / (t67 + np.abs(tilt_rear_elbow_down))
+    del t67, tilt_rear_elbow_down
     drawn_rear_elbow_down = L1 + L_2W * s_relative_rear_elbow_down + a_3W * c_relative_rear_elbow_down
     del L_2W, a_3W, c_relative_rear_elbow_down, s_relative_rear_elbow_down
-    t292 = v_2_rear_elbow_down * drawn_rear_elbow_down * _runtime.sign(whole_alpha_rear_elbow_down)
+    t301 = v_2_rear_elbow_down * drawn_rear_elbow_down * _runtime.sign(whole_alpha_rear_elbow_down)
     del whole_alpha_rear_elbow_down
-    t293 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t289
-    t294 = t292 - _runtime.sign(-t290) * t293
-    del t290, t292, t293
-    t295 = _runtime.select(spent_alpha_rear_elbow_down, t291 * (size * np.abs(t294)), 0.0)
-    t296 = -(_runtime.FEASIBILITY * (t47 + t295)) <= room_alpha_rear_elbow_down
-    del t295
-    t297 = room_alpha_rear_elbow_down - np.abs(-room_alpha_rear_elbow_down)
+    t302 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t297
+    t303 = t301 - _runtime.sign(-t298) * t302
+    del t298, t301, t302
+    t304 = _runtime.select(spent_alpha_rear_elbow_down, t300 * (size * np.abs(t303)), 0.0)
+    t305 = -(_runtime.FEASIBILITY * (t47 + t304)) <= room_alpha_rear_elbow_down
+    del t304
+    t306 = room_alpha_rear_elbow_down - np.abs(-room_alpha_rear_elbow_down)
     del room_alpha_rear_elbow_down
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t294 * t297 / (2.0 * (t73 + t294 * t294)), 0.0)
-    del t294, t297
-    t298 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t75 * t298, 0.0)
-    del t298
-    t299 = p_1_rear_elbow_down - t289 * lean_alpha_rear_elbow_down
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t299, p_1_rear_elbow_down)
-    del t299
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t303 * t306 / (2.0 * (t74 + t303 * t303)), 0.0)
+    del t303, t306
+    t307 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t76 * t307, 0.0)
+    del t307
+    t308 = p_1_rear_elbow_down - t297 * lean_alpha_rear_elbow_down
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t308, p_1_rear_elbow_down)
+    del t308
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t300 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
-    t301 = v_1_rear_elbow_down - v_2_rear_elbow_down * t300
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t301, v_1_rear_elbow_down)
-    del t301
+    t309 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
+    t310 = v_1_rear_elbow_down - v_2_rear_elbow_down * t309
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t310, v_1_rear_elbow_down)
+    del t310
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t302 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    spent_beta_rear_elbow_down = -t302 <= t65
-    del t65
-    t303 = v_2_rear_elbow_down + v_1_rear_elbow_down * t300
-    del t300, v_1_rear_elbow_down
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t303, v_2_rear_elbow_down)
-    del t303, v_2_rear_elbow_down
-    t304 = drawn_rear_elbow_down * v_2_alpha_rear_elbow_down
-    t305 = t304 * _runtime.sign(whole_beta_rear_elbow_down)
-    del t304, whole_beta_rear_elbow_down
-    t306 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t311 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    spent_beta_rear_elbow_down = np.maximum(t311 / 1099511627776.0, -t311) <= t66
+    del t66
+    t312 = v_2_rear_elbow_down + v_1_rear_elbow_down * t309
+    del t309, v_1_rear_elbow_down
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t312, v_2_rear_elbow_down)
+    del t312, v_2_rear_elbow_down
+    t313 = drawn_rear_elbow_down * v_2_alpha_rear_elbow_down
+    t314 = t313 * _runtime.sign(whole_beta_rear_elbow_down)
+    del t313, whole_beta_rear_elbow_down
+    t315 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t307 = _runtime.select(spent_alpha_rear_elbow_down, t289 + t306, t289)
-    del spent_alpha_rear_elbow_down, t289, t306
-    t308 = (L1 - drawn_rear_elbow_down) * t307 * _runtime.sign(part_beta_rear_elbow_down)
+    t316 = _runtime.select(spent_alpha_rear_elbow_down, t297 + t315, t297)
+    del spent_alpha_rear_elbow_down, t297, t315
+    t317 = (L1 - drawn_rear_elbow_down) * t316 * _runtime.sign(part_beta_rear_elbow_down)
     del part_beta_rear_elbow_down
-    t309 = t305 - t308
-    del t305, t308
-    t310 = _runtime.select(spent_beta_rear_elbow_down, t291 * (size * np.abs(t309)), 0.0)
-    del size, t291
-    t311 = -(_runtime.FEASIBILITY * (t47 + t310)) <= -t302
-    del t310, t47
-    t312 = t309 * (t302 + np.abs(t302)) / (2.0 * (t73 + t309 * t309))
-    del t302, t309, t73
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t312, 0.0)
-    del t312
-    t313 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
+    t318 = t314 - t317
+    del t314, t317
+    t319 = _runtime.select(spent_beta_rear_elbow_down, t300 * (size * np.abs(t318)), 0.0)
+    del size, t300
+    t320 = -(_runtime.FEASIBILITY * (t47 + t319)) <= -t311
+    del t319, t47
+    t321 = t318 * (t311 + np.abs(t311)) / (2.0 * (t74 + t318 * t318))
+    del t311, t318, t74
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t321, 0.0)
+    del t321
+    t322 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
     del drawn_rear_elbow_down
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t75 * t313, 0.0)
-    del t313, t75
-    t314 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
-    t315 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t314
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t315, v_1_alpha_rear_elbow_down)
-    del t315
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t76 * t322, 0.0)
+    del t322, t76
+    t323 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
+    t324 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t323
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t324, v_1_alpha_rear_elbow_down)
+    del t324
     sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t316 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t325 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     del v_1_beta_rear_elbow_down
-    t317 = p_1_alpha_rear_elbow_down - t307 * lean_beta_rear_elbow_down
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t317, p_1_alpha_rear_elbow_down)
-    del t317
-    t318 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    del p_1_beta_rear_elbow_down, sigma_uv_rear_elbow_down
-    t319 = t204 & t296 & t311 & (t87 <= -(t316 + np.abs(t318)))
-    del t204, t296, t311
-    t320 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    del p_1_alpha_rear_elbow_down
-    t321 = _runtime.select(spent_beta_rear_elbow_down, t307 + t320, t307)
-    del t307, t320
-    t322 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t314
-    del t314, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t322, v_2_alpha_rear_elbow_down)
-    del spent_beta_rear_elbow_down, t322, v_2_alpha_rear_elbow_down
-    t323 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t316 <= _runtime.VANISHING * (64.0 * t323)
-    t324 = t321 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t325 = _runtime.select(parallel_rear_elbow_down, t324, t318)
-    del t318, t324
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t323, -t316)
-    t326 = v_2_beta_rear_elbow_down * t325 / whole_y_rear_elbow_down
-    t327 = t321 - t326
+    t326 = p_1_alpha_rear_elbow_down - t316 * lean_beta_rear_elbow_down
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t326, p_1_alpha_rear_elbow_down)
     del t326
-    left_along_rear_elbow_down = L1 - np.abs(t327)
-    spent_along_rear_elbow_down = left_along_rear_elbow_down <= t97
-    del t97
-    t328 = _runtime.select(spent_along_rear_elbow_down, t323 / (t98 - t316), 0.0)
-    del t323, t98
-    t329 = -(_runtime.FEASIBILITY * (t86 * (1.0 + t328)))
-    del t328, t86
-    t330 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
-    t331 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t332 = v_2_beta_rear_elbow_down * t330 / (t316 * t316 + t331)
-    del t316, t330, t331
-    t333 = whole_y_rear_elbow_down * (t332 * _runtime.sign(-t327))
-    del t327, t332
-    t334 = _runtime.select(spent_along_rear_elbow_down, t325 + t333, t325)
-    del spent_along_rear_elbow_down, t325, t333
-    t335 = whole_y_rear_elbow_down + t334
-    t336 = t319 & (t329 <= left_along_rear_elbow_down) & (t87 <= t335)
-    del left_along_rear_elbow_down, t319, t329
-    t337 = whole_y_rear_elbow_down - t334
-    del t334, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t335, t108)
+    t327 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    del p_1_beta_rear_elbow_down, sigma_uv_rear_elbow_down
+    t328 = t210 & t305 & t320 & (t88 <= -(t325 + np.abs(t327)))
+    del t210, t305, t320
+    t329 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    del p_1_alpha_rear_elbow_down
+    t330 = _runtime.select(spent_beta_rear_elbow_down, t316 + t329, t316)
+    del t316, t329
+    t331 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t323
+    del t323, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t331, v_2_alpha_rear_elbow_down)
+    del spent_beta_rear_elbow_down, t331, v_2_alpha_rear_elbow_down
+    t332 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t325 <= _runtime.VANISHING * (64.0 * t332)
+    t333 = t330 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t334 = _runtime.select(parallel_rear_elbow_down, t333, t327)
+    del t327, t333
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t332, -t325)
+    t335 = v_2_beta_rear_elbow_down * t334 / whole_y_rear_elbow_down
+    t336 = t330 - t335
     del t335
-    above_beta_rear_elbow_down = np.maximum(t337, t108)
-    t338 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    left_along_rear_elbow_down = L1 - np.abs(t336)
+    t337 = -(left_along_rear_elbow_down / 1099511627776.0)
+    spent_along_rear_elbow_down = np.maximum(t337, left_along_rear_elbow_down) <= t99
+    del t337, t99
+    t338 = _runtime.select(spent_along_rear_elbow_down, t332 / (t100 - t325), 0.0)
+    del t100, t332
+    t339 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t338)))
+    del t338, t87
+    t340 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
+    t341 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t342 = v_2_beta_rear_elbow_down * t340 / (t325 * t325 + t341)
+    del t325, t340, t341
+    t343 = whole_y_rear_elbow_down * (t342 * _runtime.sign(-t336))
+    del t336, t342
+    t344 = _runtime.select(spent_along_rear_elbow_down, t334 + t343, t334)
+    del spent_along_rear_elbow_down, t334, t343
+    t345 = whole_y_rear_elbow_down + t344
+    t346 = t328 & (t339 <= left_along_rear_elbow_down) & (t88 <= t345)
+    del left_along_rear_elbow_down, t328, t339
+    t347 = whole_y_rear_elbow_down - t344
+    del t344, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t345, t110)
+    del t345
+    above_beta_rear_elbow_down = np.maximum(t347, t110)
+    t348 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t339 = 1.0 / total_beta_rear_elbow_down
+    t349 = 1.0 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t340 = t338 * t339
-    del t338
-    t341 = t321 - v_2_beta_rear_elbow_down * t340
-    del t321, v_2_beta_rear_elbow_down
-    t342 = L1 + t341
-    t343 = L1 - t341
-    del t341
-    t344 = t336 & (t87 <= t337) & (t87 <= t342) & (t87 <= t343)
-    del t336, t337, t87
-    unreachable_4 = np.logical_not(t344)
-    del t344
-    t345 = _runtime.poison(invalid | unreachable_4)
-    t346 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t286))
-    del t286, up_rear_elbow_down
-    t347 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t350 = t348 * t349
+    del t348
+    t351 = t330 - v_2_beta_rear_elbow_down * t350
+    del t330, v_2_beta_rear_elbow_down
+    t352 = L1 + t351
+    t353 = L1 - t351
+    del t351
+    t354 = t346 & (t88 <= t347) & (t88 <= t352) & (t88 <= t353)
+    del t346, t347, t88
+    unreachable_4 = np.logical_not(t354)
+    del t354
+    t355 = _runtime.poison(invalid | unreachable_4)
+    t356 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t294))
+    del t294, up_rear_elbow_down
+    t357 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t348 = np.arctan2(t347, 1.0)
-    del t347
-    t349 = t346 + t348
-    del t346
-    below_alpha_rear_elbow_down = np.maximum(t342, t108)
-    del t342
-    above_alpha_rear_elbow_down = np.maximum(t343, t108)
-    del t108, t343
-    t350 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t358 = np.arctan2(t357, 1.0)
+    del t357
+    t359 = t356 + t358
+    del t356
+    below_alpha_rear_elbow_down = np.maximum(t352, t110)
+    del t352
+    above_alpha_rear_elbow_down = np.maximum(t353, t110)
+    del t110, t353
+    t360 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t351 = 1.0 / total_alpha_rear_elbow_down
+    t361 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t352 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t362 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t353 = np.arctan2(t350 * t351, t351 * t352)
-    del t350, t351, t352
-    t354 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t363 = np.arctan2(t360 * t361, t361 * t362)
+    del t360, t361, t362
+    t364 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t355 = t124 - t281 - (t348 - np.arctan2(t354, 1.0))
-    del t124, t281, t348, t354
-    t356 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t365 = t126 - t289 - (t358 - np.arctan2(t364, 1.0))
+    del t126, t289, t358, t364
+    t366 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t357 = t353 - np.arctan2(t340, t339 * t356)
-    del t339, t340, t356
-    t358 = nowhere | folded | short
+    t367 = t363 - np.arctan2(t350, t349 * t366)
+    del t349, t350, t366
+    t368 = nowhere | folded | short
     del folded
-    t359 = _runtime.status(invalid, unreachable, t358 | parallel)
+    t369 = _runtime.status(invalid, unreachable, t368 | parallel)
     del parallel, unreachable
-    t360 = _runtime.status(invalid, unreachable_2, t358 | parallel_front_elbow_down)
-    del parallel_front_elbow_down, t358, unreachable_2
-    t361 = nowhere | folded_rear_elbow_up | short
+    t370 = _runtime.status(invalid, unreachable_2, t368 | parallel_front_elbow_down)
+    del parallel_front_elbow_down, t368, unreachable_2
+    t371 = nowhere | folded_rear_elbow_up | short
     del folded_rear_elbow_up, nowhere, short
-    t362 = _runtime.status(invalid, unreachable_3, t361 | parallel_rear_elbow_up)
+    t372 = _runtime.status(invalid, unreachable_3, t371 | parallel_rear_elbow_up)
     del parallel_rear_elbow_up, unreachable_3
-    t363 = _runtime.status(invalid, unreachable_4, t361 | parallel_rear_elbow_down)
-    del invalid, parallel_rear_elbow_down, t361, unreachable_4
+    t373 = _runtime.status(invalid, unreachable_4, t371 | parallel_rear_elbow_down)
+    del invalid, parallel_rear_elbow_down, t371, unreachable_4
     return (
-        t16 + t114,
-        _runtime.wrap(t117 - t120) + t114,
-        _runtime.wrap(t122 - t126) + t114,
-        _runtime.wrap(t117 + t120) + t114,
-        _runtime.wrap(-(t126 + t122)) + t114,
-        t127 + t114,
-        t16 + t187,
-        _runtime.wrap(t191 - t195) + t187,
-        _runtime.wrap(t197 + t199) + t187,
-        _runtime.wrap(t191 + t195) + t187,
-        _runtime.wrap(t197 - t199) + t187,
-        t127 + t187,
-        t200 + t271,
-        _runtime.wrap(t275 - t279) + t271,
-        _runtime.wrap(t283 + t285) + t271,
-        _runtime.wrap(t275 + t279) + t271,
-        _runtime.wrap(t283 - t285) + t271,
-        t127 + t271,
-        t200 + t345,
-        _runtime.wrap(t349 - t353) + t345,
-        _runtime.wrap(t355 + t357) + t345,
-        _runtime.wrap(t349 + t353) + t345,
-        _runtime.wrap(t355 - t357) + t345,
-        t127 + t345,
-        t359,
-        t360,
-        t362,
-        t363,
+        t16 + t116,
+        _runtime.wrap(t119 - t122) + t116,
+        _runtime.wrap(t124 - t128) + t116,
+        _runtime.wrap(t119 + t122) + t116,
+        _runtime.wrap(-(t128 + t124)) + t116,
+        t129 + t116,
+        t16 + t193,
+        _runtime.wrap(t197 - t201) + t193,
+        _runtime.wrap(t203 + t205) + t193,
+        _runtime.wrap(t197 + t201) + t193,
+        _runtime.wrap(t203 - t205) + t193,
+        t129 + t193,
+        t206 + t279,
+        _runtime.wrap(t283 - t287) + t279,
+        _runtime.wrap(t291 + t293) + t279,
+        _runtime.wrap(t283 + t287) + t279,
+        _runtime.wrap(t291 - t293) + t279,
+        t129 + t279,
+        t206 + t355,
+        _runtime.wrap(t359 - t363) + t355,
+        _runtime.wrap(t365 + t367) + t355,
+        _runtime.wrap(t359 + t363) + t355,
+        _runtime.wrap(t365 - t367) + t355,
+        t129 + t355,
+        t369,
+        t370,
+        t372,
+        t373,
     )
 
 
@@ -2366,34 +2385,64 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t27
     t211 = t208 | (t209 + np.abs(-t40) <= t210) | (fore <= t210)
     del fore, t208, t40
-    t212 = _runtime.VANISHING * play_alpha
+    t212 = np.maximum(-(room_alpha / 1099511627776.0), room_alpha)
+    del room_alpha
+    t213 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t213 = t211 | (room_alpha <= t212) | (room_beta <= t212)
-    del room_alpha, room_beta, t211
+    t214 = np.maximum(-(room_beta / 1099511627776.0), room_beta)
+    del room_beta
     parallel = -t72 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
     del t72, v_2
-    t214 = _runtime.VANISHING * play_along
+    t215 = t211 | (t212 <= t213) | (t214 <= t213) | parallel
+    del parallel, t211, t212, t214
+    t216 = np.maximum(-(left_along / 1099511627776.0), left_along)
+    del left_along
+    t217 = _runtime.VANISHING * play_along
     del play_along
-    t215 = t213 | parallel | (left_along <= t214) | (room_alpha_front_elbow_down <= t212)
-    del left_along, parallel, room_alpha_front_elbow_down, t213
-    t216 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t218 = room_alpha_front_elbow_down / 1099511627776.0
+    t219 = np.maximum(-t218, room_alpha_front_elbow_down)
+    del room_alpha_front_elbow_down, t218
+    t220 = -(room_beta_front_elbow_down / 1099511627776.0)
+    spent_beta_front_elbow_down = np.maximum(t220, room_beta_front_elbow_down) <= t213
+    del room_beta_front_elbow_down, t220
+    t221 = t215 | (t216 <= t217) | (t219 <= t213) | spent_beta_front_elbow_down
+    del spent_beta_front_elbow_down, t215, t216, t219
+    t222 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t217 = t215 | (room_beta_front_elbow_down <= t212) | (-t103 <= t216)
-    del room_beta_front_elbow_down, t103, t215, t216
-    t218 = t217 | (left_along_front_elbow_down <= t214) | (t209 + np.abs(-t127) <= t210)
-    del left_along_front_elbow_down, t127, t209, t210, t217
-    t219 = t218 | (room_alpha_rear_elbow_up <= t212) | (room_beta_rear_elbow_up <= t212)
-    del room_alpha_rear_elbow_up, room_beta_rear_elbow_up, t218
-    t220 = _runtime.VANISHING * (64.0 * np.abs(v_2_rear_elbow_up))
+    t223 = left_along_front_elbow_down / 1099511627776.0
+    t224 = np.maximum(-t223, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t223
+    t225 = t221 | (-t103 <= t222) | (t224 <= t217) | (t209 + np.abs(-t127) <= t210)
+    del t103, t127, t209, t210, t221, t222, t224
+    t226 = -(room_alpha_rear_elbow_up / 1099511627776.0)
+    spent_alpha_rear_elbow_up = np.maximum(t226, room_alpha_rear_elbow_up) <= t213
+    del room_alpha_rear_elbow_up, t226
+    t227 = np.maximum(-(room_beta_rear_elbow_up / 1099511627776.0), room_beta_rear_elbow_up)
+    del room_beta_rear_elbow_up
+    t228 = t225 | spent_alpha_rear_elbow_up | (t227 <= t213)
+    del spent_alpha_rear_elbow_up, t225, t227
+    t229 = _runtime.VANISHING * (64.0 * np.abs(v_2_rear_elbow_up))
     del v_2_rear_elbow_up
-    t221 = t219 | (-t148 <= t220) | (left_along_rear_elbow_up <= t214)
-    del left_along_rear_elbow_up, t148, t219, t220
-    t222 = t221 | (room_alpha_rear_elbow_down <= t212) | (room_beta_rear_elbow_down <= t212)
-    del room_alpha_rear_elbow_down, room_beta_rear_elbow_down, t212, t221
-    t223 = _runtime.VANISHING * (64.0 * np.abs(v_2_rear_elbow_down))
+    t230 = -(left_along_rear_elbow_up / 1099511627776.0)
+    spent_along_rear_elbow_up = np.maximum(t230, left_along_rear_elbow_up) <= t217
+    del left_along_rear_elbow_up, t230
+    t231 = t228 | (-t148 <= t229) | spent_along_rear_elbow_up
+    del spent_along_rear_elbow_up, t148, t228, t229
+    t232 = -(room_alpha_rear_elbow_down / 1099511627776.0)
+    spent_alpha_rear_elbow_down = np.maximum(t232, room_alpha_rear_elbow_down) <= t213
+    del room_alpha_rear_elbow_down, t232
+    t233 = -(room_beta_rear_elbow_down / 1099511627776.0)
+    spent_beta_rear_elbow_down = np.maximum(t233, room_beta_rear_elbow_down) <= t213
+    del room_beta_rear_elbow_down, t213, t233
+    t234 = t231 | spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
+    del spent_alpha_rear_elbow_down, spent_beta_rear_elbow_down, t231
+    t235 = _runtime.VANISHING * (64.0 * np.abs(v_2_rear_elbow_down))
     del v_2_rear_elbow_down
-    t224 = t222 | (-t183 <= t223) | (left_along_rear_elbow_down <= t214)
-    del left_along_rear_elbow_down, t183, t214, t222, t223
+    t236 = -(left_along_rear_elbow_down / 1099511627776.0)
+    spent_along_rear_elbow_down = np.maximum(t236, left_along_rear_elbow_down) <= t217
+    del left_along_rear_elbow_down, t217, t236
+    t237 = t234 | (-t183 <= t235) | spent_along_rear_elbow_down
+    del spent_along_rear_elbow_down, t183, t234, t235
     return (
         t15 + t83,
         _runtime.wrap(t85 - t88) + t83,
@@ -2423,7 +2472,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t205,
         t206,
         t207,
-        t224,
+        t237,
     )
 
 

@@ -10,7 +10,7 @@
 #   jacobian: 55 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
-#   ik: 366 compare and select, 374 add, 28 atan2, 41 divide, 517 multiply, 3 sincos, 31 sqrt
+#   ik: 374 compare and select, 374 add, 28 atan2, 49 divide, 517 multiply, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -1629,356 +1629,368 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del ctheta23A, stheta23A
     t73 = 2.0 * t69 * point_11 + 2.0 * t71 * point_21
     room_right = t72 + t73
-    t74 = _runtime.VANISHING * t49
-    spent_right = room_right <= t74
-    t75 = size / 100000.0
-    t76 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t77 = 1.0 / (t75 + t76)
-    del t76
+    t74 = np.maximum(-(room_right / 1099511627776.0), room_right)
+    t75 = _runtime.VANISHING * t49
+    spent_right = t74 <= t75
+    del t74
+    t76 = size / 100000.0
+    t77 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t78 = 1.0 / (t76 + t77)
+    del t77
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
     del c_relative, s_relative
-    t78 = 2.0 * drawn
-    t79 = t71 - point_21
-    t80 = t69 - point_11
-    t81 = t78 * (ctheta2A * t79 - stheta2A * t80)
-    t82 = _runtime.select(spent_right, t77 * (size * np.abs(-t81)), 0.0)
-    t83 = -(_runtime.FEASIBILITY * (t49 + t82)) <= room_right
-    del t82
+    t79 = 2.0 * drawn
+    t80 = t71 - point_21
+    t81 = t69 - point_11
+    t82 = t79 * (ctheta2A * t80 - stheta2A * t81)
+    t83 = _runtime.select(spent_right, t78 * (size * np.abs(-t82)), 0.0)
+    t84 = -(_runtime.FEASIBILITY * (t49 + t83)) <= room_right
+    del t83
     room_left = t72 - t73
     del t72
-    spent_left = room_left <= t74
+    t85 = np.maximum(-(room_left / 1099511627776.0), room_left)
+    spent_left = t85 <= t75
+    del t85
     h_left_0 = t71 + point_21
     del point_21, t71
     r_left_0 = t69 + point_11
     del point_11, t69
-    slope_left = t78 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    slope_left = t79 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    del t79
+    t86 = _runtime.select(spent_left, t78 * (size * np.abs(slope_left)), 0.0)
     del t78
-    t84 = _runtime.select(spent_left, t77 * (size * np.abs(slope_left)), 0.0)
-    del t77
-    t85 = -(_runtime.FEASIBILITY * (t49 + t84)) <= room_left
-    del t84
-    t86 = -(_runtime.FEASIBILITY * t49)
-    t87 = size * size
-    t88 = t87 * t87 / 10000000000.0
-    t89 = t81 * (room_right - np.abs(room_right)) / (2.0 * (t88 + t81 * t81))
-    t90 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t88 + slope_left * slope_left))
-    turn = _runtime.select(spent_right, t89, 0.0) + _runtime.select(spent_left, -t90, 0.0)
-    del spent_left, spent_right, t89, t90
-    t91 = t81 * turn
-    del t81
-    t92 = room_right - t91
+    t87 = -(_runtime.FEASIBILITY * (t49 + t86)) <= room_left
+    del t86
+    t88 = -(_runtime.FEASIBILITY * t49)
+    t89 = size * size
+    t90 = t89 * t89 / 10000000000.0
+    t91 = t82 * (room_right - np.abs(room_right)) / (2.0 * (t90 + t82 * t82))
+    t92 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t90 + slope_left * slope_left))
+    turn = _runtime.select(spent_right, t91, 0.0) + _runtime.select(spent_left, -t92, 0.0)
+    del spent_left, spent_right, t91, t92
+    t93 = t82 * turn
+    del t82
+    t94 = room_right - t93
     del room_right
-    t93 = drawn * turn
+    t95 = drawn * turn
     del drawn
-    t94 = ctheta2A * t93
-    t95 = t79 + t94 + t80 * turn
-    t96 = stheta2A * t93
-    del t93
-    t97 = t80 - t79 * turn - t96
-    del t79, t80
-    t98 = t95 * t95 + t97 * t97
-    t99 = gap * gap
-    t100 = L1 - fore_arm
-    t101 = t100 * t100
+    t96 = ctheta2A * t95
+    t97 = t80 + t96 + t81 * turn
+    t98 = stheta2A * t95
+    del t95
+    t99 = t81 - t80 * turn - t98
+    del t80, t81
+    t100 = t97 * t97 + t99 * t99
+    t101 = gap * gap
+    t102 = L1 - fore_arm
+    t103 = t102 * t102
     M_mid = t29 * _runtime.select(t57, large_mid, small_mid)
     del large_mid, small_mid, t57
-    t102 = M_mid + gap
-    t103 = _runtime.select(t87 * t98 < t99, t101 - t98, t73 - t91 - t102)
-    del t91, t98
-    t104 = t48 & t83 & t85 & (t86 <= t92) & (t86 <= -t103)
-    del t83, t85
-    t105 = slope_left * turn
+    t104 = M_mid + gap
+    t105 = _runtime.select(t89 * t100 < t101, t103 - t100, t73 - t93 - t104)
+    del t100, t93
+    t106 = t48 & t84 & t87 & (t88 <= t94) & (t88 <= -t105)
+    del t84, t87
+    t107 = slope_left * turn
     del slope_left
-    t106 = room_left + t105
+    t108 = room_left + t107
     del room_left
-    h_left = h_left_0 - t94 + r_left_0 * turn
-    del t94
-    r_left = r_left_0 + t96 - h_left_0 * turn
-    del h_left_0, r_left_0, t96, turn
-    t107 = h_left * h_left + r_left * r_left
-    t108 = _runtime.select(t87 * t107 < t99, t107 - t101, t73 + t102 - t105)
-    del t102, t105, t107, t73, t99
-    unreachable = np.logical_not(t104 & (t86 <= t106) & (t86 <= t108))
-    del t104
-    t109 = _runtime.poison(invalid | unreachable)
-    t110 = t17 + t109
-    t111 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.abs(-t95) + np.abs(-t97) <= t111
-    t112 = np.arctan2(stheta2A, ctheta2A)
+    h_left = h_left_0 - t96 + r_left_0 * turn
+    del t96
+    r_left = r_left_0 + t98 - h_left_0 * turn
+    del h_left_0, r_left_0, t98, turn
+    t109 = h_left * h_left + r_left * r_left
+    t110 = _runtime.select(t89 * t109 < t101, t109 - t103, t73 + t104 - t107)
+    del t101, t104, t107, t109, t73
+    unreachable = np.logical_not(t106 & (t88 <= t108) & (t88 <= t110))
+    del t106
+    t111 = _runtime.poison(invalid | unreachable)
+    t112 = t17 + t111
+    t113 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.abs(-t97) + np.abs(-t99) <= t113
+    t114 = np.arctan2(stheta2A, ctheta2A)
     del ctheta2A, stheta2A
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t87
-    t113 = _runtime.VANISHING * (_runtime.VANISHING * (t49 * 16.0))
-    M_right = np.maximum(-t103, t113)
-    del t103
-    N_right = np.maximum(t92, t113)
-    del t92
-    t114 = 1.0 / (M_right + N_right)
-    t115 = 2.0 * _runtime.sign(-t58)
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t89
+    t115 = _runtime.VANISHING * (_runtime.VANISHING * (t49 * 16.0))
+    M_right = np.maximum(-t105, t115)
+    del t105
+    N_right = np.maximum(t94, t115)
+    del t94
+    t116 = 1.0 / (M_right + N_right)
+    t117 = 2.0 * _runtime.sign(-t58)
     del t58
     rN_right = np.sqrt(N_right)
     del N_right
     rM_right = np.sqrt(M_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t114 * (t115 * rN_right * rM_right))
-    t116 = fore_arm * s_bend_right
+    s_bend_right = _runtime.select(short_right, 0.0, t116 * (t117 * rN_right * rM_right))
+    t118 = fore_arm * s_bend_right
     del s_bend_right
-    t117 = 2.0 * fore_arm
-    ahead_1_right = _runtime.select(short_right, size, t100 + t117 * M_right * t114)
-    del M_right, t114
-    t118 = np.arctan2(t97 * t116 - t95 * ahead_1_right, -(t97 * ahead_1_right + t95 * t116))
-    del ahead_1_right, t116, t95, t97
-    t119 = _runtime.wrap_cut(_runtime.select(folded_right, t112, t118))
-    del t118
-    t120 = t119 + t109
-    del t119
+    t119 = 2.0 * fore_arm
+    ahead_1_right = _runtime.select(short_right, size, t102 + t119 * M_right * t116)
+    del M_right, t116
+    t120 = np.arctan2(t99 * t118 - t97 * ahead_1_right, -(t99 * ahead_1_right + t97 * t118))
+    del ahead_1_right, t118, t97, t99
+    t121 = _runtime.wrap_cut(_runtime.select(folded_right, t114, t120))
+    del t120
+    t122 = t121 + t111
+    del t121
     bare_right = fore_arm <= _runtime.VANISHING * size
-    t121 = 1.0 / fore_arm
-    t122 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t121), _runtime.select(bare_right, 1.0, a3 * t121))
-    del bare_right, t121
-    t123 = _runtime.select(short_right, 0.0, t115 * np.arctan2(rN_right, rM_right))
+    t123 = 1.0 / fore_arm
+    t124 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t123), _runtime.select(bare_right, 1.0, a3 * t123))
+    del bare_right, t123
+    t125 = _runtime.select(short_right, 0.0, t117 * np.arctan2(rN_right, rM_right))
     del rM_right, rN_right
-    t124 = _runtime.wrap(t122 + t123) + t109
-    del t123
-    folded_left = np.abs(h_left) + np.abs(r_left) <= t111
-    M_left = np.maximum(t108, 0.0)
+    t126 = _runtime.wrap(t124 + t125) + t111
+    del t125
+    folded_left = np.abs(h_left) + np.abs(r_left) <= t113
+    M_left = np.maximum(t110, 0.0)
+    del t110
+    N_left = np.maximum(t108, 0.0)
     del t108
-    N_left = np.maximum(t106, 0.0)
-    del t106
-    t125 = 1.0 / (M_left + N_left)
-    ahead_1_left = _runtime.select(short_right, size, t100 + t117 * M_left * t125)
-    t126 = h_left * ahead_1_left
+    t127 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t102 + t119 * M_left * t127)
+    t128 = h_left * ahead_1_left
     rN_left = np.sqrt(N_left)
     del N_left
     rM_left = np.sqrt(M_left)
     del M_left
-    s_bend_left = _runtime.select(short_right, 0.0, t125 * (t115 * rN_left * rM_left))
-    del t125
-    t127 = fore_arm * s_bend_left
+    s_bend_left = _runtime.select(short_right, 0.0, t127 * (t117 * rN_left * rM_left))
+    del t127
+    t129 = fore_arm * s_bend_left
     del s_bend_left
-    t128 = r_left * t127
-    t129 = r_left * ahead_1_left
+    t130 = r_left * t129
+    t131 = r_left * ahead_1_left
     del ahead_1_left, r_left
-    t130 = h_left * t127
-    del h_left, t127
-    t131 = _runtime.select(folded_left, t112, np.arctan2(t126 - t128, t129 + t130))
-    t132 = _runtime.select(short_right, 0.0, t115 * np.arctan2(rN_left, rM_left))
-    del rM_left, rN_left, t115
-    t133 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
+    t132 = h_left * t129
+    del h_left, t129
+    t133 = _runtime.select(folded_left, t114, np.arctan2(t128 - t130, t131 + t132))
+    t134 = _runtime.select(short_right, 0.0, t117 * np.arctan2(rN_left, rM_left))
+    del rM_left, rN_left, t117
+    t135 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
     del c_pitch, s_pitch
-    t134 = t133 + t109
-    t135 = _runtime.select(folded_left, t112, np.arctan2(t126 + t128, t129 - t130))
-    del t112, t126, t128, t129, t130
+    t136 = t135 + t111
+    t137 = _runtime.select(folded_left, t114, np.arctan2(t128 + t130, t131 - t132))
+    del t114, t128, t130, t131, t132
     s_relative_front_elbow_down_alike = t53 + t54
     del t53, t54
     c_relative_front_elbow_down_alike = t55 - t56
     del t55, t56
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t136 = 0.0 <= straight_mid_front_elbow_down_alike
-    t137 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    t138 = 0.0 <= straight_mid_front_elbow_down_alike
+    t139 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
     del straight_mid_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t137 * t137 / large_mid_front_elbow_down_alike
-    t138 = _runtime.select(t136, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    small_mid_front_elbow_down_alike = t139 * t139 / large_mid_front_elbow_down_alike
+    t140 = _runtime.select(t138, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
     out_front_elbow_down_alike = t62 + t63
     del t62, t63
-    t139 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t140 = t65 - t66
+    t141 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t142 = t65 - t66
     del t65, t66
-    t141 = 1.0 / np.sqrt(t139 + t140 * t140)
-    del t139
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, out_front_elbow_down_alike * t141)
+    t143 = 1.0 / np.sqrt(t141 + t142 * t142)
+    del t141
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, out_front_elbow_down_alike * t143)
     del out_front_elbow_down_alike
-    t142 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t143 = _runtime.select(folded, 0.0, t140 * t141)
-    del t140, t141
-    ctheta23A_front_elbow_down_alike = t142 + s_relative_front_elbow_down_alike * t143
-    del t142
-    t144 = t59 * (s_phi * ctheta23A_front_elbow_down_alike)
-    t145 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t146 = c_relative_front_elbow_down_alike * t143 - t145
-    del t145
-    t147 = d * (t144 + t5 * (s_psi * t146))
+    t144 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t145 = _runtime.select(folded, 0.0, t142 * t143)
+    del t142, t143
+    ctheta23A_front_elbow_down_alike = t144 + s_relative_front_elbow_down_alike * t145
     del t144
-    t148 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
-    t149 = d * (t148 - t59 * (s_phi * t146))
-    del t148
-    gap_front_elbow_down_alike = t147 * t147 + t149 * t149
-    t150 = t29 * t138 - gap_front_elbow_down_alike
-    del t138
-    t151 = L1 * ctheta2A_front_elbow_down_alike - L2 * t146
-    point_11_front_elbow_down_alike = t151 + a3 * ctheta23A_front_elbow_down_alike
-    del t151
-    t152 = L1 * t143 + L2 * ctheta23A_front_elbow_down_alike
-    del ctheta23A_front_elbow_down_alike
-    t153 = t152 + a3 * t146
-    del t146, t152
-    t154 = 2.0 * t147 * point_11_front_elbow_down_alike - 2.0 * t149 * t153
-    room_right_front_elbow_down_alike = t150 + t154
-    spent_right_front_elbow_down_alike = room_right_front_elbow_down_alike <= t74
-    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t155 = 1.0 / (t75 + np.abs(tilt_front_elbow_down_alike))
-    del tilt_front_elbow_down_alike
-    t156 = L1 + L_2W * s_relative_front_elbow_down_alike
-    del s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t156 + a_3W * c_relative_front_elbow_down_alike
-    del c_relative_front_elbow_down_alike, t156
-    t157 = 2.0 * drawn_front_elbow_down_alike
-    t158 = t149 + t153
-    t159 = t147 - point_11_front_elbow_down_alike
-    t160 = ctheta2A_front_elbow_down_alike * t158 + t143 * t159
-    t161 = t157 * t160
-    del t160
-    t162 = _runtime.select(spent_right_front_elbow_down_alike, t155 * (size * np.abs(-t161)), 0.0)
-    t163 = -(_runtime.FEASIBILITY * (t49 + t162)) <= room_right_front_elbow_down_alike
-    del t162
-    room_left_front_elbow_down_alike = t150 - t154
+    t146 = t59 * (s_phi * ctheta23A_front_elbow_down_alike)
+    t147 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t148 = c_relative_front_elbow_down_alike * t145 - t147
+    del t147
+    t149 = d * (t146 + t5 * (s_psi * t148))
+    del t146
+    t150 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
+    t151 = d * (t150 - t59 * (s_phi * t148))
     del t150
-    spent_left_front_elbow_down_alike = room_left_front_elbow_down_alike <= t74
-    h_left_0_front_elbow_down_alike = t149 - t153
-    del t149, t153
-    t164 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = t147 + point_11_front_elbow_down_alike
-    del point_11_front_elbow_down_alike, t147
-    t165 = t164 + t143 * r_left_0_front_elbow_down_alike
+    gap_front_elbow_down_alike = t149 * t149 + t151 * t151
+    t152 = t29 * t140 - gap_front_elbow_down_alike
+    del t140
+    t153 = L1 * ctheta2A_front_elbow_down_alike - L2 * t148
+    point_11_front_elbow_down_alike = t153 + a3 * ctheta23A_front_elbow_down_alike
+    del t153
+    t154 = L1 * t145 + L2 * ctheta23A_front_elbow_down_alike
+    del ctheta23A_front_elbow_down_alike
+    t155 = t154 + a3 * t148
+    del t148, t154
+    t156 = 2.0 * t149 * point_11_front_elbow_down_alike - 2.0 * t151 * t155
+    room_right_front_elbow_down_alike = t152 + t156
+    t157 = room_right_front_elbow_down_alike / 1099511627776.0
+    t158 = np.maximum(-t157, room_right_front_elbow_down_alike)
+    del t157
+    spent_right_front_elbow_down_alike = t158 <= t75
+    del t158
+    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
+    t159 = 1.0 / (t76 + np.abs(tilt_front_elbow_down_alike))
+    del tilt_front_elbow_down_alike
+    t160 = L1 + L_2W * s_relative_front_elbow_down_alike
+    del s_relative_front_elbow_down_alike
+    drawn_front_elbow_down_alike = t160 + a_3W * c_relative_front_elbow_down_alike
+    del c_relative_front_elbow_down_alike, t160
+    t161 = 2.0 * drawn_front_elbow_down_alike
+    t162 = t151 + t155
+    t163 = t149 - point_11_front_elbow_down_alike
+    t164 = ctheta2A_front_elbow_down_alike * t162 + t145 * t163
+    t165 = t161 * t164
     del t164
-    slope_left_front_elbow_down_alike = t157 * t165
-    del t157, t165
-    t166 = size * np.abs(slope_left_front_elbow_down_alike)
-    t167 = _runtime.select(spent_left_front_elbow_down_alike, t155 * t166, 0.0)
-    del t155, t166
-    t168 = -(_runtime.FEASIBILITY * (t49 + t167)) <= room_left_front_elbow_down_alike
-    del t167
-    t169 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
-    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t161 * t169 / (2.0 * (t88 + t161 * t161)), 0.0)
-    del spent_right_front_elbow_down_alike, t169
-    t170 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
-    t171 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t172 = slope_left_front_elbow_down_alike * t170 / (2.0 * (t88 + t171))
-    del t170, t171
-    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t172, 0.0)
-    del spent_left_front_elbow_down_alike, t172
+    t166 = _runtime.select(spent_right_front_elbow_down_alike, t159 * (size * np.abs(-t165)), 0.0)
+    t167 = -(_runtime.FEASIBILITY * (t49 + t166)) <= room_right_front_elbow_down_alike
+    del t166
+    room_left_front_elbow_down_alike = t152 - t156
+    del t152
+    t168 = room_left_front_elbow_down_alike / 1099511627776.0
+    t169 = np.maximum(-t168, room_left_front_elbow_down_alike)
+    del t168
+    spent_left_front_elbow_down_alike = t169 <= t75
+    del t169
+    h_left_0_front_elbow_down_alike = t151 - t155
+    del t151, t155
+    t170 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = t149 + point_11_front_elbow_down_alike
+    del point_11_front_elbow_down_alike, t149
+    t171 = t170 + t145 * r_left_0_front_elbow_down_alike
+    del t170
+    slope_left_front_elbow_down_alike = t161 * t171
+    del t161, t171
+    t172 = size * np.abs(slope_left_front_elbow_down_alike)
+    t173 = _runtime.select(spent_left_front_elbow_down_alike, t159 * t172, 0.0)
+    del t159, t172
+    t174 = -(_runtime.FEASIBILITY * (t49 + t173)) <= room_left_front_elbow_down_alike
+    del t173
+    t175 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
+    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t165 * t175 / (2.0 * (t90 + t165 * t165)), 0.0)
+    del spent_right_front_elbow_down_alike, t175
+    t176 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
+    t177 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t178 = slope_left_front_elbow_down_alike * t176 / (2.0 * (t90 + t177))
+    del t176, t177
+    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t178, 0.0)
+    del spent_left_front_elbow_down_alike, t178
     turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
     del turn_left_front_elbow_down_alike, turn_right_front_elbow_down_alike
-    t173 = t161 * turn_front_elbow_down_alike
-    del t161
-    t174 = room_right_front_elbow_down_alike - t173
+    t179 = t165 * turn_front_elbow_down_alike
+    del t165
+    t180 = room_right_front_elbow_down_alike - t179
     del room_right_front_elbow_down_alike
-    t175 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    t181 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
     del drawn_front_elbow_down_alike
-    t176 = ctheta2A_front_elbow_down_alike * t175
-    t177 = t158 + t176 + t159 * turn_front_elbow_down_alike
-    t178 = t143 * t175
-    del t175
-    t179 = t159 - t158 * turn_front_elbow_down_alike + t178
-    del t158, t159
-    t180 = t177 * t177 + t179 * t179
-    t181 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t182 = _runtime.select(t136, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t136
-    M_mid_front_elbow_down_alike = t29 * t182
-    del t182
-    t183 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t184 = _runtime.select(t87 * t180 < t181, t101 - t180, t154 - t173 - t183)
-    del t173, t180
-    t185 = t48 & t163 & t168 & (t86 <= t174) & (t86 <= -t184)
-    del t163, t168, t48
-    t186 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
+    t182 = ctheta2A_front_elbow_down_alike * t181
+    t183 = t162 + t182 + t163 * turn_front_elbow_down_alike
+    t184 = t145 * t181
+    del t181
+    t185 = t163 - t162 * turn_front_elbow_down_alike + t184
+    del t162, t163
+    t186 = t183 * t183 + t185 * t185
+    t187 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t188 = _runtime.select(t138, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t138
+    M_mid_front_elbow_down_alike = t29 * t188
+    del t188
+    t189 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t190 = _runtime.select(t89 * t186 < t187, t103 - t186, t156 - t179 - t189)
+    del t179, t186
+    t191 = t48 & t167 & t174 & (t88 <= t180) & (t88 <= -t190)
+    del t167, t174, t48
+    t192 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
     del slope_left_front_elbow_down_alike
-    t187 = room_left_front_elbow_down_alike + t186
+    t193 = room_left_front_elbow_down_alike + t192
     del room_left_front_elbow_down_alike
-    t188 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t176 + t188
-    del t176, t188
-    t189 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    t190 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    t194 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t182 + t194
+    del t182, t194
+    t195 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    t196 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
     del h_left_0_front_elbow_down_alike, turn_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t178 - t190
-    del r_left_0_front_elbow_down_alike, t178, t190
-    t191 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t192 = t189 + t191
-    del t189, t191
-    t193 = _runtime.select(t87 * t192 < t181, t192 - t101, t154 + t183 - t186)
-    del t154, t181, t183, t186, t192
-    unreachable_2 = np.logical_not(t185 & (t86 <= t187) & (t86 <= t193))
-    del t185
-    t194 = _runtime.poison(invalid | unreachable_2)
-    t195 = t17 + t194
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t184 - t196
+    del r_left_0_front_elbow_down_alike, t184, t196
+    t197 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t198 = t195 + t197
+    del t195, t197
+    t199 = _runtime.select(t89 * t198 < t187, t198 - t103, t156 + t189 - t192)
+    del t156, t187, t189, t192, t198
+    unreachable_2 = np.logical_not(t191 & (t88 <= t193) & (t88 <= t199))
+    del t191
+    t200 = _runtime.poison(invalid | unreachable_2)
+    t201 = t17 + t200
     del t17
-    folded_right_front_elbow_down_alike = np.abs(-t177) + np.abs(-t179) <= t111
-    t196 = np.arctan2(-t143, ctheta2A_front_elbow_down_alike)
-    del ctheta2A_front_elbow_down_alike, t143
-    M_right_front_elbow_down_alike = np.maximum(-t184, t113)
-    del t184
-    N_right_front_elbow_down_alike = np.maximum(t174, t113)
-    del t174
+    folded_right_front_elbow_down_alike = np.abs(-t183) + np.abs(-t185) <= t113
+    t202 = np.arctan2(-t145, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike, t145
+    M_right_front_elbow_down_alike = np.maximum(-t190, t115)
+    del t190
+    N_right_front_elbow_down_alike = np.maximum(t180, t115)
+    del t180
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t197 = 1.0 / whole_right_front_elbow_down_alike
+    t203 = 1.0 / whole_right_front_elbow_down_alike
     del whole_right_front_elbow_down_alike
-    t198 = 2.0 * _runtime.sign(-t137)
-    del t137
+    t204 = 2.0 * _runtime.sign(-t139)
+    del t139
     rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
     del N_right_front_elbow_down_alike
     rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t199 = t198 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t197 * t199)
-    del t199
-    t200 = fore_arm * s_bend_right_front_elbow_down_alike
+    t205 = t204 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t203 * t205)
+    del t205
+    t206 = fore_arm * s_bend_right_front_elbow_down_alike
     del s_bend_right_front_elbow_down_alike
-    t201 = t100 + t117 * M_right_front_elbow_down_alike * t197
-    del M_right_front_elbow_down_alike, t197
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t201)
-    del t201
-    up_right_front_elbow_down_alike = t179 * t200 - t177 * ahead_1_right_front_elbow_down_alike
-    t202 = t179 * ahead_1_right_front_elbow_down_alike + t177 * t200
-    del ahead_1_right_front_elbow_down_alike, t177, t179, t200
-    t203 = np.arctan2(up_right_front_elbow_down_alike, -t202)
-    del t202, up_right_front_elbow_down_alike
-    t204 = _runtime.select(folded_right_front_elbow_down_alike, t196, t203)
-    del t203
-    t205 = _runtime.wrap_cut(t204) + t194
-    del t204
-    t206 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    del rM_right_front_elbow_down_alike, rN_right_front_elbow_down_alike
-    t207 = _runtime.select(short_right, 0.0, t198 * t206)
-    del t206
-    t208 = _runtime.wrap(t122 + t207) + t194
+    t207 = t102 + t119 * M_right_front_elbow_down_alike * t203
+    del M_right_front_elbow_down_alike, t203
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t207)
     del t207
-    t209 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t209 <= t111
+    up_right_front_elbow_down_alike = t185 * t206 - t183 * ahead_1_right_front_elbow_down_alike
+    t208 = t185 * ahead_1_right_front_elbow_down_alike + t183 * t206
+    del ahead_1_right_front_elbow_down_alike, t183, t185, t206
+    t209 = np.arctan2(up_right_front_elbow_down_alike, -t208)
+    del t208, up_right_front_elbow_down_alike
+    t210 = _runtime.select(folded_right_front_elbow_down_alike, t202, t209)
     del t209
-    M_left_front_elbow_down_alike = np.maximum(t193, 0.0)
+    t211 = _runtime.wrap_cut(t210) + t200
+    del t210
+    t212 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
+    del rM_right_front_elbow_down_alike, rN_right_front_elbow_down_alike
+    t213 = _runtime.select(short_right, 0.0, t204 * t212)
+    del t212
+    t214 = _runtime.wrap(t124 + t213) + t200
+    del t213
+    t215 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t215 <= t113
+    del t215
+    M_left_front_elbow_down_alike = np.maximum(t199, 0.0)
+    del t199
+    N_left_front_elbow_down_alike = np.maximum(t193, 0.0)
     del t193
-    N_left_front_elbow_down_alike = np.maximum(t187, 0.0)
-    del t187
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t210 = 1.0 / whole_left_front_elbow_down_alike
+    t216 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    t211 = t100 + t117 * M_left_front_elbow_down_alike * t210
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t211)
-    del t211
-    t212 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t217 = t102 + t119 * M_left_front_elbow_down_alike * t216
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t217)
+    del t217
+    t218 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
     del N_left_front_elbow_down_alike
     rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
     del M_left_front_elbow_down_alike
-    t213 = t198 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t210 * t213)
-    del t210, t213
-    t214 = fore_arm * s_bend_left_front_elbow_down_alike
+    t219 = t204 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t216 * t219)
+    del t216, t219
+    t220 = fore_arm * s_bend_left_front_elbow_down_alike
     del s_bend_left_front_elbow_down_alike
-    t215 = r_left_front_elbow_down_alike * t214
-    t216 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t221 = r_left_front_elbow_down_alike * t220
+    t222 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
-    t217 = h_left_front_elbow_down_alike * t214
-    del h_left_front_elbow_down_alike, t214
-    t218 = _runtime.select(folded_left_front_elbow_down_alike, t196, np.arctan2(t212 - t215, t216 + t217))
-    t219 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
+    t223 = h_left_front_elbow_down_alike * t220
+    del h_left_front_elbow_down_alike, t220
+    t224 = _runtime.select(folded_left_front_elbow_down_alike, t202, np.arctan2(t218 - t221, t222 + t223))
+    t225 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
     del rM_left_front_elbow_down_alike, rN_left_front_elbow_down_alike
-    t220 = _runtime.select(short_right, 0.0, t198 * t219)
-    del t198, t219
-    t221 = t133 + t194
-    t222 = _runtime.select(folded_left_front_elbow_down_alike, t196, np.arctan2(t212 + t215, t216 - t217))
-    del t196, t212, t215, t216, t217
-    t223 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t16))
+    t226 = _runtime.select(short_right, 0.0, t204 * t225)
+    del t204, t225
+    t227 = t135 + t200
+    t228 = _runtime.select(folded_left_front_elbow_down_alike, t202, np.arctan2(t218 + t221, t222 - t223))
+    del t202, t218, t221, t222, t223
+    t229 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t16))
     del t16, t2
     c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -(t35 * (t38 + t39)))
     del t38, t39
@@ -1986,570 +1998,585 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t35, t40, t41
     outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
     del c1_rear_elbow_up_alike, s1_rear_elbow_up_alike
-    t224 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    square_rear_elbow_up_alike = t34 + t224
-    del t224, t34
-    t225 = t32 - square_rear_elbow_up_alike
+    t230 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
+    square_rear_elbow_up_alike = t34 + t230
+    del t230, t34
+    t231 = t32 - square_rear_elbow_up_alike
     del t32
-    t226 = square_rear_elbow_up_alike - t46
+    t232 = square_rear_elbow_up_alike - t46
     del square_rear_elbow_up_alike, t46
-    t227 = t27 & (t31 <= t225) & (-t45 <= t226)
+    t233 = t27 & (t31 <= t231) & (-t45 <= t232)
     del t27, t31, t45
-    N_rear_elbow_up_alike = np.maximum(t225, 0.0)
-    del t225
-    M_rear_elbow_up_alike = np.maximum(t226, 0.0)
-    del t226
-    t228 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
-    whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
-    t229 = 1.0 / whole_rear_elbow_up_alike
-    del whole_rear_elbow_up_alike
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t228 * t229))
-    del t228
-    t230 = s_lag * c_bend_rear_elbow_up_alike
-    t231 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
-    del N_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t229 * t231)
+    N_rear_elbow_up_alike = np.maximum(t231, 0.0)
     del t231
-    t232 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t230 + t232
-    t233 = c_lag * c_bend_rear_elbow_up_alike
+    M_rear_elbow_up_alike = np.maximum(t232, 0.0)
+    del t232
+    t234 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
+    whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
+    t235 = 1.0 / whole_rear_elbow_up_alike
+    del whole_rear_elbow_up_alike
+    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t234 * t235))
+    del t234
+    t236 = s_lag * c_bend_rear_elbow_up_alike
+    t237 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
+    del N_rear_elbow_up_alike
+    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t235 * t237)
+    del t237
+    t238 = c_lag * s_bend_rear_elbow_up_alike
+    s_relative_rear_elbow_up_alike = t236 + t238
+    t239 = c_lag * c_bend_rear_elbow_up_alike
     del c_bend_rear_elbow_up_alike, c_lag
-    t234 = s_lag * s_bend_rear_elbow_up_alike
+    t240 = s_lag * s_bend_rear_elbow_up_alike
     del s_lag
-    c_relative_rear_elbow_up_alike = t233 - t234
+    c_relative_rear_elbow_up_alike = t239 - t240
     straight_mid_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
-    t235 = 0.0 <= straight_mid_rear_elbow_up_alike
-    t236 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
+    t241 = 0.0 <= straight_mid_rear_elbow_up_alike
+    t242 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
     large_mid_rear_elbow_up_alike = fore_arm + np.abs(straight_mid_rear_elbow_up_alike)
     del straight_mid_rear_elbow_up_alike
-    small_mid_rear_elbow_up_alike = t236 * t236 / large_mid_rear_elbow_up_alike
-    t237 = _runtime.select(t235, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
+    small_mid_rear_elbow_up_alike = t242 * t242 / large_mid_rear_elbow_up_alike
+    t243 = _runtime.select(t241, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
     folded_rear_elbow_up_alike = t60 + np.abs(outward_rear_elbow_up_alike) <= t51
     del t51, t60
-    t238 = t61 * s_bend_rear_elbow_up_alike
+    t244 = t61 * s_bend_rear_elbow_up_alike
     del t61
-    ahead_1_rear_elbow_up_alike = _runtime.select(short, t28, t44 + t229 * (t30 * M_rear_elbow_up_alike))
-    del M_rear_elbow_up_alike, t229, t28, t30, t44
-    t239 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
-    out_rear_elbow_up_alike = t238 + t239
-    t240 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
-    t241 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
+    ahead_1_rear_elbow_up_alike = _runtime.select(short, t28, t44 + t235 * (t30 * M_rear_elbow_up_alike))
+    del M_rear_elbow_up_alike, t235, t28, t30, t44
+    t245 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
+    out_rear_elbow_up_alike = t244 + t245
+    t246 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
+    t247 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
     del fore, outward_rear_elbow_up_alike, s_bend_rear_elbow_up_alike
-    t242 = t33 * ahead_1_rear_elbow_up_alike
+    t248 = t33 * ahead_1_rear_elbow_up_alike
     del ahead_1_rear_elbow_up_alike, t33
-    t243 = t241 - t242
-    t244 = 1.0 / np.sqrt(t240 + t243 * t243)
-    del t240
-    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, out_rear_elbow_up_alike * t244)
+    t249 = t247 - t248
+    t250 = 1.0 / np.sqrt(t246 + t249 * t249)
+    del t246
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, out_rear_elbow_up_alike * t250)
     del out_rear_elbow_up_alike
-    t245 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t246 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t243 * t244)
-    del t243, t244
-    ctheta23A_rear_elbow_up_alike = t245 + s_relative_rear_elbow_up_alike * t246
-    del t245
-    t247 = t59 * (s_phi * ctheta23A_rear_elbow_up_alike)
-    t248 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t249 = c_relative_rear_elbow_up_alike * t246 - t248
-    del t248
-    t250 = d * (t247 + t5 * (s_psi * t249))
-    del t247
-    t251 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) - t59 * (s_phi * t249)
-    t252 = d * t251
+    t251 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t252 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t249 * t250)
+    del t249, t250
+    ctheta23A_rear_elbow_up_alike = t251 + s_relative_rear_elbow_up_alike * t252
     del t251
-    gap_rear_elbow_up_alike = t250 * t250 + t252 * t252
-    t253 = t29 * t237 - gap_rear_elbow_up_alike
-    del t237
-    t254 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t249
-    point_11_rear_elbow_up_alike = t254 + a3 * ctheta23A_rear_elbow_up_alike
+    t253 = t59 * (s_phi * ctheta23A_rear_elbow_up_alike)
+    t254 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
+    t255 = c_relative_rear_elbow_up_alike * t252 - t254
     del t254
-    t255 = L1 * t246 + L2 * ctheta23A_rear_elbow_up_alike
+    t256 = d * (t253 + t5 * (s_psi * t255))
+    del t253
+    t257 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) - t59 * (s_phi * t255)
+    t258 = d * t257
+    del t257
+    gap_rear_elbow_up_alike = t256 * t256 + t258 * t258
+    t259 = t29 * t243 - gap_rear_elbow_up_alike
+    del t243
+    t260 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t255
+    point_11_rear_elbow_up_alike = t260 + a3 * ctheta23A_rear_elbow_up_alike
+    del t260
+    t261 = L1 * t252 + L2 * ctheta23A_rear_elbow_up_alike
     del ctheta23A_rear_elbow_up_alike
-    t256 = t255 + a3 * t249
-    del t249, t255
-    t257 = 2.0 * t250 * point_11_rear_elbow_up_alike - 2.0 * t252 * t256
-    room_right_rear_elbow_up_alike = t253 + t257
-    spent_right_rear_elbow_up_alike = room_right_rear_elbow_up_alike <= t74
+    t262 = t261 + a3 * t255
+    del t255, t261
+    t263 = 2.0 * t256 * point_11_rear_elbow_up_alike - 2.0 * t258 * t262
+    room_right_rear_elbow_up_alike = t259 + t263
+    t264 = room_right_rear_elbow_up_alike / 1099511627776.0
+    t265 = np.maximum(-t264, room_right_rear_elbow_up_alike)
+    del t264
+    spent_right_rear_elbow_up_alike = t265 <= t75
+    del t265
     tilt_rear_elbow_up_alike = L_2W * c_relative_rear_elbow_up_alike - a_3W * s_relative_rear_elbow_up_alike
-    t258 = 1.0 / (t75 + np.abs(tilt_rear_elbow_up_alike))
+    t266 = 1.0 / (t76 + np.abs(tilt_rear_elbow_up_alike))
     del tilt_rear_elbow_up_alike
     drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
     del c_relative_rear_elbow_up_alike, s_relative_rear_elbow_up_alike
-    t259 = 2.0 * drawn_rear_elbow_up_alike
-    t260 = t252 + t256
-    t261 = t250 - point_11_rear_elbow_up_alike
-    t262 = ctheta2A_rear_elbow_up_alike * t260 + t246 * t261
-    t263 = t259 * t262
-    del t262
-    t264 = _runtime.select(spent_right_rear_elbow_up_alike, t258 * (size * np.abs(-t263)), 0.0)
-    t265 = -(_runtime.FEASIBILITY * (t49 + t264)) <= room_right_rear_elbow_up_alike
-    del t264
-    room_left_rear_elbow_up_alike = t253 - t257
-    del t253
-    spent_left_rear_elbow_up_alike = room_left_rear_elbow_up_alike <= t74
-    h_left_0_rear_elbow_up_alike = t252 - t256
-    del t252, t256
-    t266 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t250 + point_11_rear_elbow_up_alike
-    del point_11_rear_elbow_up_alike, t250
-    slope_left_rear_elbow_up_alike = t259 * (t266 + t246 * r_left_0_rear_elbow_up_alike)
-    del t259, t266
-    t267 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t268 = _runtime.select(spent_left_rear_elbow_up_alike, t258 * t267, 0.0)
-    del t258, t267
-    t269 = -(_runtime.FEASIBILITY * (t49 + t268)) <= room_left_rear_elbow_up_alike
-    del t268
-    t270 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
-    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t263 * t270 / (2.0 * (t88 + t263 * t263)), 0.0)
-    del spent_right_rear_elbow_up_alike, t270
-    t271 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
-    t272 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t273 = slope_left_rear_elbow_up_alike * t271 / (2.0 * (t88 + t272))
-    del t271, t272
-    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t273, 0.0)
-    del spent_left_rear_elbow_up_alike, t273
+    t267 = 2.0 * drawn_rear_elbow_up_alike
+    t268 = t258 + t262
+    t269 = t256 - point_11_rear_elbow_up_alike
+    t270 = ctheta2A_rear_elbow_up_alike * t268 + t252 * t269
+    t271 = t267 * t270
+    del t270
+    t272 = _runtime.select(spent_right_rear_elbow_up_alike, t266 * (size * np.abs(-t271)), 0.0)
+    t273 = -(_runtime.FEASIBILITY * (t49 + t272)) <= room_right_rear_elbow_up_alike
+    del t272
+    room_left_rear_elbow_up_alike = t259 - t263
+    del t259
+    t274 = room_left_rear_elbow_up_alike / 1099511627776.0
+    t275 = np.maximum(-t274, room_left_rear_elbow_up_alike)
+    del t274
+    spent_left_rear_elbow_up_alike = t275 <= t75
+    del t275
+    h_left_0_rear_elbow_up_alike = t258 - t262
+    del t258, t262
+    t276 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t256 + point_11_rear_elbow_up_alike
+    del point_11_rear_elbow_up_alike, t256
+    slope_left_rear_elbow_up_alike = t267 * (t276 + t252 * r_left_0_rear_elbow_up_alike)
+    del t267, t276
+    t277 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t278 = _runtime.select(spent_left_rear_elbow_up_alike, t266 * t277, 0.0)
+    del t266, t277
+    t279 = -(_runtime.FEASIBILITY * (t49 + t278)) <= room_left_rear_elbow_up_alike
+    del t278
+    t280 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
+    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t271 * t280 / (2.0 * (t90 + t271 * t271)), 0.0)
+    del spent_right_rear_elbow_up_alike, t280
+    t281 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
+    t282 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t283 = slope_left_rear_elbow_up_alike * t281 / (2.0 * (t90 + t282))
+    del t281, t282
+    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t283, 0.0)
+    del spent_left_rear_elbow_up_alike, t283
     turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
     del turn_left_rear_elbow_up_alike, turn_right_rear_elbow_up_alike
-    t274 = t263 * turn_rear_elbow_up_alike
-    del t263
-    t275 = room_right_rear_elbow_up_alike - t274
+    t284 = t271 * turn_rear_elbow_up_alike
+    del t271
+    t285 = room_right_rear_elbow_up_alike - t284
     del room_right_rear_elbow_up_alike
-    t276 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t286 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
     del drawn_rear_elbow_up_alike
-    t277 = ctheta2A_rear_elbow_up_alike * t276
-    t278 = t260 + t277 + t261 * turn_rear_elbow_up_alike
-    t279 = t246 * t276
-    del t276
-    t280 = t261 - t260 * turn_rear_elbow_up_alike + t279
-    del t260, t261
-    t281 = t278 * t278 + t280 * t280
-    t282 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t283 = _runtime.select(t235, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
-    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t235
-    M_mid_rear_elbow_up_alike = t29 * t283
-    del t283
-    t284 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
-    t285 = _runtime.select(t87 * t281 < t282, t101 - t281, t257 - t274 - t284)
-    del t274, t281
-    t286 = t227 & t265 & t269 & (t86 <= t275) & (t86 <= -t285)
-    del t265, t269
-    t287 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    del slope_left_rear_elbow_up_alike
-    t288 = room_left_rear_elbow_up_alike + t287
-    del room_left_rear_elbow_up_alike
-    t289 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t277 + t289
-    del t277, t289
-    t290 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    t291 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    del h_left_0_rear_elbow_up_alike, turn_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t279 - t291
-    del r_left_0_rear_elbow_up_alike, t279, t291
-    t292 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t293 = t290 + t292
-    del t290, t292
-    t294 = _runtime.select(t87 * t293 < t282, t293 - t101, t257 + t284 - t287)
-    del t257, t282, t284, t287, t293
-    unreachable_3 = np.logical_not(t286 & (t86 <= t288) & (t86 <= t294))
+    t287 = ctheta2A_rear_elbow_up_alike * t286
+    t288 = t268 + t287 + t269 * turn_rear_elbow_up_alike
+    t289 = t252 * t286
     del t286
-    t295 = _runtime.poison(invalid | unreachable_3)
-    t296 = t223 + t295
-    folded_right_rear_elbow_up_alike = np.abs(-t278) + np.abs(-t280) <= t111
-    t297 = np.arctan2(-t246, ctheta2A_rear_elbow_up_alike)
-    del ctheta2A_rear_elbow_up_alike, t246
-    M_right_rear_elbow_up_alike = np.maximum(-t285, t113)
+    t290 = t269 - t268 * turn_rear_elbow_up_alike + t289
+    del t268, t269
+    t291 = t288 * t288 + t290 * t290
+    t292 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t293 = _runtime.select(t241, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
+    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t241
+    M_mid_rear_elbow_up_alike = t29 * t293
+    del t293
+    t294 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
+    t295 = _runtime.select(t89 * t291 < t292, t103 - t291, t263 - t284 - t294)
+    del t284, t291
+    t296 = t233 & t273 & t279 & (t88 <= t285) & (t88 <= -t295)
+    del t273, t279
+    t297 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    del slope_left_rear_elbow_up_alike
+    t298 = room_left_rear_elbow_up_alike + t297
+    del room_left_rear_elbow_up_alike
+    t299 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t287 + t299
+    del t287, t299
+    t300 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    t301 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    del h_left_0_rear_elbow_up_alike, turn_rear_elbow_up_alike
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t289 - t301
+    del r_left_0_rear_elbow_up_alike, t289, t301
+    t302 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t303 = t300 + t302
+    del t300, t302
+    t304 = _runtime.select(t89 * t303 < t292, t303 - t103, t263 + t294 - t297)
+    del t263, t292, t294, t297, t303
+    unreachable_3 = np.logical_not(t296 & (t88 <= t298) & (t88 <= t304))
+    del t296
+    t305 = _runtime.poison(invalid | unreachable_3)
+    t306 = t229 + t305
+    folded_right_rear_elbow_up_alike = np.abs(-t288) + np.abs(-t290) <= t113
+    t307 = np.arctan2(-t252, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, t252
+    M_right_rear_elbow_up_alike = np.maximum(-t295, t115)
+    del t295
+    N_right_rear_elbow_up_alike = np.maximum(t285, t115)
     del t285
-    N_right_rear_elbow_up_alike = np.maximum(t275, t113)
-    del t275
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t298 = 1.0 / whole_right_rear_elbow_up_alike
+    t308 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    t299 = 2.0 * _runtime.sign(-t236)
-    del t236
+    t309 = 2.0 * _runtime.sign(-t242)
+    del t242
     rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
     del N_right_rear_elbow_up_alike
     rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t300 = t299 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t298 * t300)
-    del t300
-    t301 = fore_arm * s_bend_right_rear_elbow_up_alike
-    del s_bend_right_rear_elbow_up_alike
-    t302 = t100 + t117 * M_right_rear_elbow_up_alike * t298
-    del M_right_rear_elbow_up_alike, t298
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t302)
-    del t302
-    up_right_rear_elbow_up_alike = t280 * t301 - t278 * ahead_1_right_rear_elbow_up_alike
-    t303 = t280 * ahead_1_right_rear_elbow_up_alike + t278 * t301
-    del ahead_1_right_rear_elbow_up_alike, t278, t280, t301
-    t304 = np.arctan2(up_right_rear_elbow_up_alike, -t303)
-    del t303, up_right_rear_elbow_up_alike
-    t305 = _runtime.select(folded_right_rear_elbow_up_alike, t297, t304)
-    del t304
-    t306 = _runtime.wrap_cut(t305) + t295
-    del t305
-    t307 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    del rM_right_rear_elbow_up_alike, rN_right_rear_elbow_up_alike
-    t308 = _runtime.select(short_right, 0.0, t299 * t307)
-    del t307
-    t309 = _runtime.wrap(t122 + t308) + t295
-    del t308
-    t310 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t310 <= t111
+    t310 = t309 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t308 * t310)
     del t310
-    M_left_rear_elbow_up_alike = np.maximum(t294, 0.0)
-    del t294
-    N_left_rear_elbow_up_alike = np.maximum(t288, 0.0)
-    del t288
-    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t311 = 1.0 / whole_left_rear_elbow_up_alike
-    del whole_left_rear_elbow_up_alike
-    t312 = t100 + t117 * M_left_rear_elbow_up_alike * t311
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t312)
+    t311 = fore_arm * s_bend_right_rear_elbow_up_alike
+    del s_bend_right_rear_elbow_up_alike
+    t312 = t102 + t119 * M_right_rear_elbow_up_alike * t308
+    del M_right_rear_elbow_up_alike, t308
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t312)
     del t312
-    t313 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    up_right_rear_elbow_up_alike = t290 * t311 - t288 * ahead_1_right_rear_elbow_up_alike
+    t313 = t290 * ahead_1_right_rear_elbow_up_alike + t288 * t311
+    del ahead_1_right_rear_elbow_up_alike, t288, t290, t311
+    t314 = np.arctan2(up_right_rear_elbow_up_alike, -t313)
+    del t313, up_right_rear_elbow_up_alike
+    t315 = _runtime.select(folded_right_rear_elbow_up_alike, t307, t314)
+    del t314
+    t316 = _runtime.wrap_cut(t315) + t305
+    del t315
+    t317 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
+    del rM_right_rear_elbow_up_alike, rN_right_rear_elbow_up_alike
+    t318 = _runtime.select(short_right, 0.0, t309 * t317)
+    del t317
+    t319 = _runtime.wrap(t124 + t318) + t305
+    del t318
+    t320 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t320 <= t113
+    del t320
+    M_left_rear_elbow_up_alike = np.maximum(t304, 0.0)
+    del t304
+    N_left_rear_elbow_up_alike = np.maximum(t298, 0.0)
+    del t298
+    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
+    t321 = 1.0 / whole_left_rear_elbow_up_alike
+    del whole_left_rear_elbow_up_alike
+    t322 = t102 + t119 * M_left_rear_elbow_up_alike * t321
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t322)
+    del t322
+    t323 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
     del N_left_rear_elbow_up_alike
     rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
     del M_left_rear_elbow_up_alike
-    t314 = t299 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t311 * t314)
-    del t311, t314
-    t315 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t324 = t309 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t321 * t324)
+    del t321, t324
+    t325 = fore_arm * s_bend_left_rear_elbow_up_alike
     del s_bend_left_rear_elbow_up_alike
-    t316 = r_left_rear_elbow_up_alike * t315
-    t317 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t326 = r_left_rear_elbow_up_alike * t325
+    t327 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
-    t318 = h_left_rear_elbow_up_alike * t315
-    del h_left_rear_elbow_up_alike, t315
-    t319 = _runtime.select(folded_left_rear_elbow_up_alike, t297, np.arctan2(t313 - t316, t317 + t318))
-    t320 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
+    t328 = h_left_rear_elbow_up_alike * t325
+    del h_left_rear_elbow_up_alike, t325
+    t329 = _runtime.select(folded_left_rear_elbow_up_alike, t307, np.arctan2(t323 - t326, t327 + t328))
+    t330 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
     del rM_left_rear_elbow_up_alike, rN_left_rear_elbow_up_alike
-    t321 = _runtime.select(short_right, 0.0, t299 * t320)
-    del t299, t320
-    t322 = t133 + t295
-    t323 = _runtime.select(folded_left_rear_elbow_up_alike, t297, np.arctan2(t313 + t316, t317 - t318))
-    del t297, t313, t316, t317, t318
-    s_relative_rear_elbow_down_alike = t230 - t232
-    del t230, t232
-    c_relative_rear_elbow_down_alike = t233 + t234
-    del t233, t234
+    t331 = _runtime.select(short_right, 0.0, t309 * t330)
+    del t309, t330
+    t332 = t135 + t305
+    t333 = _runtime.select(folded_left_rear_elbow_up_alike, t307, np.arctan2(t323 + t326, t327 - t328))
+    del t307, t323, t326, t327, t328
+    s_relative_rear_elbow_down_alike = t236 - t238
+    del t236, t238
+    c_relative_rear_elbow_down_alike = t239 + t240
+    del t239, t240
     straight_mid_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
-    t324 = 0.0 <= straight_mid_rear_elbow_down_alike
-    t325 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
+    t334 = 0.0 <= straight_mid_rear_elbow_down_alike
+    t335 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
     large_mid_rear_elbow_down_alike = fore_arm + np.abs(straight_mid_rear_elbow_down_alike)
     del straight_mid_rear_elbow_down_alike
-    small_mid_rear_elbow_down_alike = t325 * t325 / large_mid_rear_elbow_down_alike
-    t326 = _runtime.select(t324, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
-    t327 = t238 - t239
-    del t238, t239
-    up_rear_elbow_down_alike = t241 + t242
-    del t241, t242
-    t328 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
-    t329 = 1.0 / np.sqrt(t327 * t327 + t328)
-    del t328
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t327 * t329))
-    del t327
-    t330 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, up_rear_elbow_down_alike * t329)
-    del t329, up_rear_elbow_down_alike
-    t331 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t330 - t331
-    del t330, t331
-    t332 = t59 * (s_phi * ctheta23A_rear_elbow_down_alike)
-    t333 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    t334 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t333 + t334
-    del t333, t334
-    t335 = t5 * (s_psi * stheta23A_rear_elbow_down_alike)
-    t336 = d * (t332 - t335)
-    del t332, t335
-    t337 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
+    small_mid_rear_elbow_down_alike = t335 * t335 / large_mid_rear_elbow_down_alike
+    t336 = _runtime.select(t334, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
+    t337 = t244 - t245
+    del t244, t245
+    up_rear_elbow_down_alike = t247 + t248
+    del t247, t248
+    t338 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
+    t339 = 1.0 / np.sqrt(t337 * t337 + t338)
+    del t338
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t337 * t339))
+    del t337
+    t340 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, up_rear_elbow_down_alike * t339)
+    del t339, up_rear_elbow_down_alike
+    t341 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    ctheta23A_rear_elbow_down_alike = t340 - t341
+    del t340, t341
+    t342 = t59 * (s_phi * ctheta23A_rear_elbow_down_alike)
+    t343 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
+    t344 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = t343 + t344
+    del t343, t344
+    t345 = t5 * (s_psi * stheta23A_rear_elbow_down_alike)
+    t346 = d * (t342 - t345)
+    del t342, t345
+    t347 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
     del s_psi, t5
-    t338 = t59 * (s_phi * stheta23A_rear_elbow_down_alike)
+    t348 = t59 * (s_phi * stheta23A_rear_elbow_down_alike)
     del s_phi, t59
-    t339 = d * (t337 + t338)
-    del t337, t338
-    gap_rear_elbow_down_alike = t336 * t336 + t339 * t339
-    t340 = t29 * t326 - gap_rear_elbow_down_alike
-    del t326
-    t341 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t341 + a3 * ctheta23A_rear_elbow_down_alike
-    del t341
-    t342 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    t349 = d * (t347 + t348)
+    del t347, t348
+    gap_rear_elbow_down_alike = t346 * t346 + t349 * t349
+    t350 = t29 * t336 - gap_rear_elbow_down_alike
+    del t336
+    t351 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t351 + a3 * ctheta23A_rear_elbow_down_alike
+    del t351
+    t352 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
     del ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t342 + a3 * stheta23A_rear_elbow_down_alike
-    del stheta23A_rear_elbow_down_alike, t342
-    t343 = 2.0 * t336 * point_11_rear_elbow_down_alike + 2.0 * t339 * point_21_rear_elbow_down_alike
-    room_right_rear_elbow_down_alike = t340 + t343
-    spent_right_rear_elbow_down_alike = room_right_rear_elbow_down_alike <= t74
+    point_21_rear_elbow_down_alike = t352 + a3 * stheta23A_rear_elbow_down_alike
+    del stheta23A_rear_elbow_down_alike, t352
+    t353 = 2.0 * t346 * point_11_rear_elbow_down_alike + 2.0 * t349 * point_21_rear_elbow_down_alike
+    room_right_rear_elbow_down_alike = t350 + t353
+    t354 = room_right_rear_elbow_down_alike / 1099511627776.0
+    t355 = np.maximum(-t354, room_right_rear_elbow_down_alike)
+    del t354
+    spent_right_rear_elbow_down_alike = t355 <= t75
+    del t355
     tilt_rear_elbow_down_alike = L_2W * c_relative_rear_elbow_down_alike - a_3W * s_relative_rear_elbow_down_alike
-    t344 = 1.0 / (t75 + np.abs(tilt_rear_elbow_down_alike))
-    del t75, tilt_rear_elbow_down_alike
+    t356 = 1.0 / (t76 + np.abs(tilt_rear_elbow_down_alike))
+    del t76, tilt_rear_elbow_down_alike
     drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
     del L_2W, a_3W, c_relative_rear_elbow_down_alike, s_relative_rear_elbow_down_alike
-    t345 = 2.0 * drawn_rear_elbow_down_alike
-    t346 = t339 - point_21_rear_elbow_down_alike
-    t347 = t336 - point_11_rear_elbow_down_alike
-    t348 = ctheta2A_rear_elbow_down_alike * t346 - stheta2A_rear_elbow_down_alike * t347
-    t349 = t345 * t348
-    del t348
-    t350 = _runtime.select(spent_right_rear_elbow_down_alike, t344 * (size * np.abs(-t349)), 0.0)
-    t351 = -(_runtime.FEASIBILITY * (t49 + t350)) <= room_right_rear_elbow_down_alike
+    t357 = 2.0 * drawn_rear_elbow_down_alike
+    t358 = t349 - point_21_rear_elbow_down_alike
+    t359 = t346 - point_11_rear_elbow_down_alike
+    t360 = ctheta2A_rear_elbow_down_alike * t358 - stheta2A_rear_elbow_down_alike * t359
+    t361 = t357 * t360
+    del t360
+    t362 = _runtime.select(spent_right_rear_elbow_down_alike, t356 * (size * np.abs(-t361)), 0.0)
+    t363 = -(_runtime.FEASIBILITY * (t49 + t362)) <= room_right_rear_elbow_down_alike
+    del t362
+    room_left_rear_elbow_down_alike = t350 - t353
     del t350
-    room_left_rear_elbow_down_alike = t340 - t343
-    del t340
-    spent_left_rear_elbow_down_alike = room_left_rear_elbow_down_alike <= t74
-    del t74
-    h_left_0_rear_elbow_down_alike = t339 + point_21_rear_elbow_down_alike
-    del point_21_rear_elbow_down_alike, t339
-    t352 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t336 + point_11_rear_elbow_down_alike
-    del point_11_rear_elbow_down_alike, t336
-    t353 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t345 * (t352 - t353)
-    del t345, t352, t353
-    t354 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t355 = _runtime.select(spent_left_rear_elbow_down_alike, t344 * t354, 0.0)
-    del t344, t354
-    t356 = -(_runtime.FEASIBILITY * (t49 + t355)) <= room_left_rear_elbow_down_alike
-    del t355, t49
-    t357 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
-    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t349 * t357 / (2.0 * (t88 + t349 * t349)), 0.0)
-    del spent_right_rear_elbow_down_alike, t357
-    t358 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
-    t359 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t360 = slope_left_rear_elbow_down_alike * t358 / (2.0 * (t88 + t359))
-    del t358, t359, t88
-    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t360, 0.0)
-    del spent_left_rear_elbow_down_alike, t360
+    t364 = room_left_rear_elbow_down_alike / 1099511627776.0
+    t365 = np.maximum(-t364, room_left_rear_elbow_down_alike)
+    del t364
+    spent_left_rear_elbow_down_alike = t365 <= t75
+    del t365, t75
+    h_left_0_rear_elbow_down_alike = t349 + point_21_rear_elbow_down_alike
+    del point_21_rear_elbow_down_alike, t349
+    t366 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t346 + point_11_rear_elbow_down_alike
+    del point_11_rear_elbow_down_alike, t346
+    t367 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    slope_left_rear_elbow_down_alike = t357 * (t366 - t367)
+    del t357, t366, t367
+    t368 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t369 = _runtime.select(spent_left_rear_elbow_down_alike, t356 * t368, 0.0)
+    del t356, t368
+    t370 = -(_runtime.FEASIBILITY * (t49 + t369)) <= room_left_rear_elbow_down_alike
+    del t369, t49
+    t371 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
+    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t361 * t371 / (2.0 * (t90 + t361 * t361)), 0.0)
+    del spent_right_rear_elbow_down_alike, t371
+    t372 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
+    t373 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t374 = slope_left_rear_elbow_down_alike * t372 / (2.0 * (t90 + t373))
+    del t372, t373, t90
+    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t374, 0.0)
+    del spent_left_rear_elbow_down_alike, t374
     turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
     del turn_left_rear_elbow_down_alike, turn_right_rear_elbow_down_alike
-    t361 = t349 * turn_rear_elbow_down_alike
-    del t349
-    t362 = room_right_rear_elbow_down_alike - t361
+    t375 = t361 * turn_rear_elbow_down_alike
+    del t361
+    t376 = room_right_rear_elbow_down_alike - t375
     del room_right_rear_elbow_down_alike
-    t363 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t377 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del drawn_rear_elbow_down_alike
-    t364 = ctheta2A_rear_elbow_down_alike * t363
-    t365 = t346 + t364 + t347 * turn_rear_elbow_down_alike
-    t366 = stheta2A_rear_elbow_down_alike * t363
-    del t363
-    t367 = t347 - t346 * turn_rear_elbow_down_alike - t366
-    del t346, t347
-    t368 = t365 * t365 + t367 * t367
-    t369 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t370 = _runtime.select(t324, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
-    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t324
-    M_mid_rear_elbow_down_alike = t29 * t370
-    del t29, t370
-    t371 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
-    t372 = _runtime.select(t87 * t368 < t369, t101 - t368, t343 - t361 - t371)
-    del t361, t368
-    t373 = t227 & t351 & t356 & (t86 <= t362) & (t86 <= -t372)
-    del t227, t351, t356
-    t374 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t378 = ctheta2A_rear_elbow_down_alike * t377
+    t379 = t358 + t378 + t359 * turn_rear_elbow_down_alike
+    t380 = stheta2A_rear_elbow_down_alike * t377
+    del t377
+    t381 = t359 - t358 * turn_rear_elbow_down_alike - t380
+    del t358, t359
+    t382 = t379 * t379 + t381 * t381
+    t383 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t384 = _runtime.select(t334, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
+    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t334
+    M_mid_rear_elbow_down_alike = t29 * t384
+    del t29, t384
+    t385 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
+    t386 = _runtime.select(t89 * t382 < t383, t103 - t382, t353 - t375 - t385)
+    del t375, t382
+    t387 = t233 & t363 & t370 & (t88 <= t376) & (t88 <= -t386)
+    del t233, t363, t370
+    t388 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del slope_left_rear_elbow_down_alike
-    t375 = room_left_rear_elbow_down_alike + t374
+    t389 = room_left_rear_elbow_down_alike + t388
     del room_left_rear_elbow_down_alike
-    t376 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t364 + t376
-    del t364, t376
-    t377 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    t378 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t390 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t378 + t390
+    del t378, t390
+    t391 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    t392 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del h_left_0_rear_elbow_down_alike, turn_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t366 - t378
-    del r_left_0_rear_elbow_down_alike, t366, t378
-    t379 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t380 = t377 + t379
-    del t377, t379
-    t381 = _runtime.select(t87 * t380 < t369, t380 - t101, t343 + t371 - t374)
-    del t343, t369, t371, t374, t380
-    unreachable_4 = np.logical_not(t373 & (t86 <= t375) & (t86 <= t381))
-    del t373, t86
-    t382 = _runtime.poison(invalid | unreachable_4)
-    t383 = t223 + t382
-    del t223
-    folded_right_rear_elbow_down_alike = np.abs(-t365) + np.abs(-t367) <= t111
-    t384 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t380 - t392
+    del r_left_0_rear_elbow_down_alike, t380, t392
+    t393 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t394 = t391 + t393
+    del t391, t393
+    t395 = _runtime.select(t89 * t394 < t383, t394 - t103, t353 + t385 - t388)
+    del t353, t383, t385, t388, t394
+    unreachable_4 = np.logical_not(t387 & (t88 <= t389) & (t88 <= t395))
+    del t387, t88
+    t396 = _runtime.poison(invalid | unreachable_4)
+    t397 = t229 + t396
+    del t229
+    folded_right_rear_elbow_down_alike = np.abs(-t379) + np.abs(-t381) <= t113
+    t398 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
     del ctheta2A_rear_elbow_down_alike, stheta2A_rear_elbow_down_alike
-    M_right_rear_elbow_down_alike = np.maximum(-t372, t113)
-    del t372
-    N_right_rear_elbow_down_alike = np.maximum(t362, t113)
-    del t113, t362
+    M_right_rear_elbow_down_alike = np.maximum(-t386, t115)
+    del t386
+    N_right_rear_elbow_down_alike = np.maximum(t376, t115)
+    del t115, t376
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t385 = 1.0 / whole_right_rear_elbow_down_alike
+    t399 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t386 = 2.0 * _runtime.sign(-t325)
-    del t325
+    t400 = 2.0 * _runtime.sign(-t335)
+    del t335
     rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
     del N_right_rear_elbow_down_alike
     rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t387 = t386 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t385 * t387)
-    del t387
-    t388 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t401 = t400 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t399 * t401)
+    del t401
+    t402 = fore_arm * s_bend_right_rear_elbow_down_alike
     del s_bend_right_rear_elbow_down_alike
-    t389 = t100 + t117 * M_right_rear_elbow_down_alike * t385
-    del M_right_rear_elbow_down_alike, t385
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t389)
-    del t389
-    up_right_rear_elbow_down_alike = t367 * t388 - t365 * ahead_1_right_rear_elbow_down_alike
-    t390 = t367 * ahead_1_right_rear_elbow_down_alike + t365 * t388
-    del ahead_1_right_rear_elbow_down_alike, t365, t367, t388
-    t391 = np.arctan2(up_right_rear_elbow_down_alike, -t390)
-    del t390, up_right_rear_elbow_down_alike
-    t392 = _runtime.select(folded_right_rear_elbow_down_alike, t384, t391)
-    del t391
-    t393 = _runtime.wrap_cut(t392) + t382
-    del t392
-    t394 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
+    t403 = t102 + t119 * M_right_rear_elbow_down_alike * t399
+    del M_right_rear_elbow_down_alike, t399
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t403)
+    del t403
+    up_right_rear_elbow_down_alike = t381 * t402 - t379 * ahead_1_right_rear_elbow_down_alike
+    t404 = t381 * ahead_1_right_rear_elbow_down_alike + t379 * t402
+    del ahead_1_right_rear_elbow_down_alike, t379, t381, t402
+    t405 = np.arctan2(up_right_rear_elbow_down_alike, -t404)
+    del t404, up_right_rear_elbow_down_alike
+    t406 = _runtime.select(folded_right_rear_elbow_down_alike, t398, t405)
+    del t405
+    t407 = _runtime.wrap_cut(t406) + t396
+    del t406
+    t408 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
     del rM_right_rear_elbow_down_alike, rN_right_rear_elbow_down_alike
-    t395 = _runtime.select(short_right, 0.0, t386 * t394)
-    del t394
-    t396 = _runtime.wrap(t122 + t395) + t382
+    t409 = _runtime.select(short_right, 0.0, t400 * t408)
+    del t408
+    t410 = _runtime.wrap(t124 + t409) + t396
+    del t409
+    t411 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t411 <= t113
+    del t113, t411
+    M_left_rear_elbow_down_alike = np.maximum(t395, 0.0)
     del t395
-    t397 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t397 <= t111
-    del t111, t397
-    M_left_rear_elbow_down_alike = np.maximum(t381, 0.0)
-    del t381
-    N_left_rear_elbow_down_alike = np.maximum(t375, 0.0)
-    del t375
+    N_left_rear_elbow_down_alike = np.maximum(t389, 0.0)
+    del t389
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t398 = 1.0 / whole_left_rear_elbow_down_alike
+    t412 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t399 = t100 + t117 * M_left_rear_elbow_down_alike * t398
-    del t100, t117
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t399)
-    del size, t399
-    t400 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t413 = t102 + t119 * M_left_rear_elbow_down_alike * t412
+    del t102, t119
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t413)
+    del size, t413
+    t414 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
     del N_left_rear_elbow_down_alike
     rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
     del M_left_rear_elbow_down_alike
-    t401 = t386 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t398 * t401)
-    del t398, t401
-    t402 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t415 = t400 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t412 * t415)
+    del t412, t415
+    t416 = fore_arm * s_bend_left_rear_elbow_down_alike
     del fore_arm, s_bend_left_rear_elbow_down_alike
-    t403 = r_left_rear_elbow_down_alike * t402
-    t404 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t417 = r_left_rear_elbow_down_alike * t416
+    t418 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
-    t405 = h_left_rear_elbow_down_alike * t402
-    del h_left_rear_elbow_down_alike, t402
-    t406 = _runtime.select(folded_left_rear_elbow_down_alike, t384, np.arctan2(t400 - t403, t404 + t405))
-    t407 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
+    t419 = h_left_rear_elbow_down_alike * t416
+    del h_left_rear_elbow_down_alike, t416
+    t420 = _runtime.select(folded_left_rear_elbow_down_alike, t398, np.arctan2(t414 - t417, t418 + t419))
+    t421 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
     del rM_left_rear_elbow_down_alike, rN_left_rear_elbow_down_alike
-    t408 = _runtime.select(short_right, 0.0, t386 * t407)
-    del t386, t407
-    t409 = t133 + t382
-    del t133
-    t410 = _runtime.select(folded_left_rear_elbow_down_alike, t384, np.arctan2(t400 + t403, t404 - t405))
-    del t384, t400, t403, t404, t405
-    t411 = nowhere | folded | short
+    t422 = _runtime.select(short_right, 0.0, t400 * t421)
+    del t400, t421
+    t423 = t135 + t396
+    del t135
+    t424 = _runtime.select(folded_left_rear_elbow_down_alike, t398, np.arctan2(t414 + t417, t418 - t419))
+    del t398, t414, t417, t418, t419
+    t425 = nowhere | folded | short
     del folded
-    square_mid = t101 + M_mid
-    t412 = 10000.0 * t87
-    del t87
-    pole = M_mid * square_mid <= _runtime.VANISHING * (t412 * gap)
+    square_mid = t103 + M_mid
+    t426 = 10000.0 * t89
+    del t89
+    pole = M_mid * square_mid <= _runtime.VANISHING * (t426 * gap)
     del M_mid, gap
-    t413 = _runtime.VANISHING * t412
-    t414 = t411 | pole | (square_mid <= t413) | folded_right
+    t427 = _runtime.VANISHING * t426
+    t428 = t425 | pole | (square_mid <= t427) | folded_right
     del folded_right, pole, square_mid
-    t415 = _runtime.status(invalid, unreachable, t414 | short_right | folded_left)
-    del folded_left, t414, unreachable
-    square_mid_front_elbow_down_alike = t101 + M_mid_front_elbow_down_alike
-    t416 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t429 = _runtime.status(invalid, unreachable, t428 | short_right | folded_left)
+    del folded_left, t428, unreachable
+    square_mid_front_elbow_down_alike = t103 + M_mid_front_elbow_down_alike
+    t430 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t417 = _runtime.VANISHING * (t412 * gap_front_elbow_down_alike)
+    t431 = _runtime.VANISHING * (t426 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t418 = t411 | (t416 <= t417) | (square_mid_front_elbow_down_alike <= t413)
-    del square_mid_front_elbow_down_alike, t411, t416, t417
-    t419 = t418 | folded_right_front_elbow_down_alike | short_right
-    del folded_right_front_elbow_down_alike, t418
-    t420 = _runtime.status(invalid, unreachable_2, t419 | folded_left_front_elbow_down_alike)
-    del folded_left_front_elbow_down_alike, t419, unreachable_2
-    t421 = nowhere | folded_rear_elbow_up_alike | short
+    t432 = t425 | (t430 <= t431) | (square_mid_front_elbow_down_alike <= t427)
+    del square_mid_front_elbow_down_alike, t425, t430, t431
+    t433 = t432 | folded_right_front_elbow_down_alike | short_right
+    del folded_right_front_elbow_down_alike, t432
+    t434 = _runtime.status(invalid, unreachable_2, t433 | folded_left_front_elbow_down_alike)
+    del folded_left_front_elbow_down_alike, t433, unreachable_2
+    t435 = nowhere | folded_rear_elbow_up_alike | short
     del folded_rear_elbow_up_alike, nowhere, short
-    square_mid_rear_elbow_up_alike = t101 + M_mid_rear_elbow_up_alike
-    t422 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
+    square_mid_rear_elbow_up_alike = t103 + M_mid_rear_elbow_up_alike
+    t436 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
     del M_mid_rear_elbow_up_alike
-    t423 = _runtime.VANISHING * (t412 * gap_rear_elbow_up_alike)
+    t437 = _runtime.VANISHING * (t426 * gap_rear_elbow_up_alike)
     del gap_rear_elbow_up_alike
-    t424 = t421 | (t422 <= t423) | (square_mid_rear_elbow_up_alike <= t413)
-    del square_mid_rear_elbow_up_alike, t422, t423
-    t425 = t424 | folded_right_rear_elbow_up_alike | short_right
-    del folded_right_rear_elbow_up_alike, t424
-    t426 = _runtime.status(invalid, unreachable_3, t425 | folded_left_rear_elbow_up_alike)
-    del folded_left_rear_elbow_up_alike, t425, unreachable_3
-    square_mid_rear_elbow_down_alike = t101 + M_mid_rear_elbow_down_alike
-    del t101
-    t427 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
+    t438 = t435 | (t436 <= t437) | (square_mid_rear_elbow_up_alike <= t427)
+    del square_mid_rear_elbow_up_alike, t436, t437
+    t439 = t438 | folded_right_rear_elbow_up_alike | short_right
+    del folded_right_rear_elbow_up_alike, t438
+    t440 = _runtime.status(invalid, unreachable_3, t439 | folded_left_rear_elbow_up_alike)
+    del folded_left_rear_elbow_up_alike, t439, unreachable_3
+    square_mid_rear_elbow_down_alike = t103 + M_mid_rear_elbow_down_alike
+    del t103
+    t441 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
     del M_mid_rear_elbow_down_alike
-    t428 = _runtime.VANISHING * (t412 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t412
-    t429 = t421 | (t427 <= t428) | (square_mid_rear_elbow_down_alike <= t413)
-    del square_mid_rear_elbow_down_alike, t413, t421, t427, t428
-    t430 = t429 | folded_right_rear_elbow_down_alike | short_right
-    del folded_right_rear_elbow_down_alike, short_right, t429
-    t431 = _runtime.status(invalid, unreachable_4, t430 | folded_left_rear_elbow_down_alike)
-    del folded_left_rear_elbow_down_alike, invalid, t430, unreachable_4
+    t442 = _runtime.VANISHING * (t426 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t426
+    t443 = t435 | (t441 <= t442) | (square_mid_rear_elbow_down_alike <= t427)
+    del square_mid_rear_elbow_down_alike, t427, t435, t441, t442
+    t444 = t443 | folded_right_rear_elbow_down_alike | short_right
+    del folded_right_rear_elbow_down_alike, short_right, t443
+    t445 = _runtime.status(invalid, unreachable_4, t444 | folded_left_rear_elbow_down_alike)
+    del folded_left_rear_elbow_down_alike, invalid, t444, unreachable_4
     return (
-        t110,
-        t120,
-        t124,
-        _runtime.wrap_cut(t131) + t109,
-        _runtime.wrap(t122 + t132) + t109,
-        t134,
-        t110,
-        t120,
-        t124,
-        _runtime.wrap_cut(t135) + t109,
-        _runtime.wrap(t122 - t132) + t109,
-        t134,
-        t195,
-        t205,
-        t208,
-        _runtime.wrap_cut(t218) + t194,
-        _runtime.wrap(t122 + t220) + t194,
-        t221,
-        t195,
-        t205,
-        t208,
-        _runtime.wrap_cut(t222) + t194,
-        _runtime.wrap(t122 - t220) + t194,
-        t221,
-        t296,
+        t112,
+        t122,
+        t126,
+        _runtime.wrap_cut(t133) + t111,
+        _runtime.wrap(t124 + t134) + t111,
+        t136,
+        t112,
+        t122,
+        t126,
+        _runtime.wrap_cut(t137) + t111,
+        _runtime.wrap(t124 - t134) + t111,
+        t136,
+        t201,
+        t211,
+        t214,
+        _runtime.wrap_cut(t224) + t200,
+        _runtime.wrap(t124 + t226) + t200,
+        t227,
+        t201,
+        t211,
+        t214,
+        _runtime.wrap_cut(t228) + t200,
+        _runtime.wrap(t124 - t226) + t200,
+        t227,
         t306,
-        t309,
-        _runtime.wrap_cut(t319) + t295,
-        _runtime.wrap(t122 + t321) + t295,
-        t322,
-        t296,
+        t316,
+        t319,
+        _runtime.wrap_cut(t329) + t305,
+        _runtime.wrap(t124 + t331) + t305,
+        t332,
         t306,
-        t309,
-        _runtime.wrap_cut(t323) + t295,
-        _runtime.wrap(t122 - t321) + t295,
-        t322,
-        t383,
-        t393,
-        t396,
-        _runtime.wrap_cut(t406) + t382,
-        _runtime.wrap(t122 + t408) + t382,
-        t409,
-        t383,
-        t393,
-        t396,
-        _runtime.wrap_cut(t410) + t382,
-        _runtime.wrap(t122 - t408) + t382,
-        t409,
-        t415,
-        t415,
-        t420,
-        t420,
-        t426,
-        t426,
-        t431,
-        t431,
+        t316,
+        t319,
+        _runtime.wrap_cut(t333) + t305,
+        _runtime.wrap(t124 - t331) + t305,
+        t332,
+        t397,
+        t407,
+        t410,
+        _runtime.wrap_cut(t420) + t396,
+        _runtime.wrap(t124 + t422) + t396,
+        t423,
+        t397,
+        t407,
+        t410,
+        _runtime.wrap_cut(t424) + t396,
+        _runtime.wrap(t124 - t422) + t396,
+        t423,
+        t429,
+        t429,
+        t434,
+        t434,
+        t440,
+        t440,
+        t445,
+        t445,
     )
 
 
@@ -3225,71 +3252,83 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t33
     t304 = t301 | (fore <= t302) | (t303 + np.abs(-t42) <= t302)
     del fore, t301, t42
-    t305 = _runtime.VANISHING * play_right
+    t305 = np.maximum(-(room_right / 1099511627776.0), room_right)
+    del room_right
+    t306 = _runtime.VANISHING * play_right
     del play_right
-    t306 = t304 | (room_right <= t305) | (room_left <= t305)
-    del room_left, room_right, t304
-    t307 = t306 | (L1 * fore_arm <= _runtime.VANISHING * t82)
-    del t306
-    t308 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    t309 = t307 | (np.abs(-t83) + np.abs(-t84) <= t308) | (fore_arm <= _runtime.VANISHING * size)
-    del fore_arm, size, t307, t83, t84
-    t310 = t309 | (np.abs(h_left_0) + np.abs(r_left_0) <= t308)
-    del h_left_0, r_left_0, t309
-    t311 = t310 | (room_right_front_elbow_down_alike <= t305)
-    del room_right_front_elbow_down_alike, t310
-    t312 = t311 | (room_left_front_elbow_down_alike <= t305)
-    del room_left_front_elbow_down_alike, t311
-    t313 = np.abs(h_right_0_front_elbow_down_alike) + np.abs(r_right_0_front_elbow_down_alike)
+    t307 = np.maximum(-(room_left / 1099511627776.0), room_left)
+    del room_left
+    t308 = t304 | (t305 <= t306) | (t307 <= t306) | (L1 * fore_arm <= _runtime.VANISHING * t82)
+    del t304, t305, t307
+    t309 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    t310 = t308 | (np.abs(-t83) + np.abs(-t84) <= t309) | (fore_arm <= _runtime.VANISHING * size)
+    del fore_arm, size, t308, t83, t84
+    t311 = t310 | (np.abs(h_left_0) + np.abs(r_left_0) <= t309)
+    del h_left_0, r_left_0, t310
+    t312 = room_right_front_elbow_down_alike / 1099511627776.0
+    t313 = np.maximum(-t312, room_right_front_elbow_down_alike)
+    del room_right_front_elbow_down_alike, t312
+    t314 = room_left_front_elbow_down_alike / 1099511627776.0
+    t315 = np.maximum(-t314, room_left_front_elbow_down_alike)
+    del room_left_front_elbow_down_alike, t314
+    t316 = np.abs(h_right_0_front_elbow_down_alike) + np.abs(r_right_0_front_elbow_down_alike)
     del h_right_0_front_elbow_down_alike, r_right_0_front_elbow_down_alike
-    t314 = t312 | (t313 <= t308) | (np.abs(-t143) + np.abs(-t144) <= t308)
-    del t143, t144, t312, t313
-    t315 = t314 | (t303 + np.abs(-t172) <= t302) | (room_right_rear_elbow_up_alike <= t305)
-    del room_right_rear_elbow_up_alike, t172, t302, t303, t314
-    t316 = t315 | (room_left_rear_elbow_up_alike <= t305)
-    del room_left_rear_elbow_up_alike, t315
-    t317 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    t317 = t311 | (t313 <= t306) | (t315 <= t306) | (t316 <= t309)
+    del t311, t313, t315, t316
+    t318 = t317 | (np.abs(-t143) + np.abs(-t144) <= t309)
+    del t143, t144, t317
+    t319 = room_right_rear_elbow_up_alike / 1099511627776.0
+    t320 = np.maximum(-t319, room_right_rear_elbow_up_alike)
+    del room_right_rear_elbow_up_alike, t319
+    t321 = t318 | (t303 + np.abs(-t172) <= t302) | (t320 <= t306)
+    del t172, t302, t303, t318, t320
+    t322 = room_left_rear_elbow_up_alike / 1099511627776.0
+    t323 = np.maximum(-t322, room_left_rear_elbow_up_alike)
+    del room_left_rear_elbow_up_alike, t322
+    t324 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
     del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
-    t318 = t316 | (t317 <= t308) | (np.abs(-t213) + np.abs(-t214) <= t308)
-    del t213, t214, t316, t317
-    t319 = t318 | (room_right_rear_elbow_down_alike <= t305)
-    del room_right_rear_elbow_down_alike, t318
-    t320 = t319 | (room_left_rear_elbow_down_alike <= t305)
-    del room_left_rear_elbow_down_alike, t305, t319
-    t321 = t320 | (np.abs(-t262) + np.abs(-t263) <= t308)
-    del t262, t263, t320
-    t322 = np.abs(h_left_0_rear_elbow_down_alike) + np.abs(r_left_0_rear_elbow_down_alike)
+    t325 = t321 | (t323 <= t306) | (t324 <= t309) | (np.abs(-t213) + np.abs(-t214) <= t309)
+    del t213, t214, t321, t323, t324
+    t326 = room_right_rear_elbow_down_alike / 1099511627776.0
+    t327 = np.maximum(-t326, room_right_rear_elbow_down_alike)
+    del room_right_rear_elbow_down_alike, t326
+    t328 = room_left_rear_elbow_down_alike / 1099511627776.0
+    t329 = np.maximum(-t328, room_left_rear_elbow_down_alike)
+    del room_left_rear_elbow_down_alike, t328
+    t330 = t325 | (t327 <= t306) | (t329 <= t306) | (np.abs(-t262) + np.abs(-t263) <= t309)
+    del t262, t263, t306, t325, t327, t329
+    t331 = np.abs(h_left_0_rear_elbow_down_alike) + np.abs(r_left_0_rear_elbow_down_alike)
     del h_left_0_rear_elbow_down_alike, r_left_0_rear_elbow_down_alike
     square_mid = t88 + M_mid
-    t323 = 10000.0 * t82
+    t332 = 10000.0 * t82
     del t82
-    pole = M_mid * square_mid <= _runtime.VANISHING * (t323 * gap)
+    pole = M_mid * square_mid <= _runtime.VANISHING * (t332 * gap)
     del M_mid, gap
-    t324 = _runtime.VANISHING * t323
-    t325 = t321 | (t322 <= t308) | pole | (square_mid <= t324)
-    del pole, square_mid, t308, t321, t322
+    t333 = _runtime.VANISHING * t332
+    t334 = t330 | (t331 <= t309) | pole | (square_mid <= t333)
+    del pole, square_mid, t309, t330, t331
     square_mid_front_elbow_down_alike = t88 + M_mid_front_elbow_down_alike
-    t326 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t335 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t327 = _runtime.VANISHING * (t323 * gap_front_elbow_down_alike)
+    t336 = _runtime.VANISHING * (t332 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t328 = t325 | (t326 <= t327) | (square_mid_front_elbow_down_alike <= t324)
-    del square_mid_front_elbow_down_alike, t325, t326, t327
+    t337 = t334 | (t335 <= t336) | (square_mid_front_elbow_down_alike <= t333)
+    del square_mid_front_elbow_down_alike, t334, t335, t336
     square_mid_rear_elbow_up_alike = t88 + M_mid_rear_elbow_up_alike
-    t329 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
+    t338 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
     del M_mid_rear_elbow_up_alike
-    t330 = _runtime.VANISHING * (t323 * gap_rear_elbow_up_alike)
+    t339 = _runtime.VANISHING * (t332 * gap_rear_elbow_up_alike)
     del gap_rear_elbow_up_alike
-    t331 = t328 | (t329 <= t330) | (square_mid_rear_elbow_up_alike <= t324)
-    del square_mid_rear_elbow_up_alike, t328, t329, t330
+    t340 = t337 | (t338 <= t339) | (square_mid_rear_elbow_up_alike <= t333)
+    del square_mid_rear_elbow_up_alike, t337, t338, t339
     square_mid_rear_elbow_down_alike = t88 + M_mid_rear_elbow_down_alike
     del t88
-    t332 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
+    t341 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
     del M_mid_rear_elbow_down_alike
-    t333 = _runtime.VANISHING * (t323 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t323
-    t334 = t331 | (t332 <= t333) | (square_mid_rear_elbow_down_alike <= t324)
-    del square_mid_rear_elbow_down_alike, t324, t331, t332, t333
+    t342 = _runtime.VANISHING * (t332 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t332
+    t343 = t340 | (t341 <= t342) | (square_mid_rear_elbow_down_alike <= t333)
+    del square_mid_rear_elbow_down_alike, t333, t340, t341, t342
     return (
         t95,
         t102,
@@ -3347,7 +3386,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t299,
         t300,
         t300,
-        t334,
+        t343,
     )
 
 

@@ -376,7 +376,7 @@ class Reaching:
         return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
 
     def moved(self, u: Pair, play: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, Pair]:
-        """The nearest direction in reach, and two flags: u is the same within rounding, is in reach.
+        """Flags that the nearest direction in reach is u within rounding, and exactly; and it.
 
         ``play`` is what multiplies an error of u in the target.
         """

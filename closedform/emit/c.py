@@ -1,181 +1,28 @@
 """Prints a derivation as C99: one header and one source a robot, and the table for Python.
 
-Each function has one kernel over scalars, without trigonometry: the sines and cosines of its angles
-are arguments.  The single call takes them as the lanes of a vector, the batch in blocks, and the
-compiler inlines the kernel into both.
+A function of many flags has three kernels: one for every case, which few postures need, one for
+where nothing vanishes, and one for a single branch of that, so that a single call can take all
+branches as the lanes of vectors.
 """
 
 from __future__ import annotations
 
 import json
-import re
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import prod
 from typing import Any
 
 from closedform import __version__
 from closedform.derivation import Derivation
-from closedform.emit.code import COMPARE, WRAPS, Printer, Text
+from closedform.emit.ckernel import CArray, CProgram, Emission, folded
 from closedform.emit.text import WIDTH, banner, describe, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.lower.graph import Node, hardly_ever, strip_sign
-from closedform.lower.program import LEAVES
-from closedform.names import C_WORDS
 from closedform.tolerances import DOUBLE, FLOAT
 
-LANES = 8
-CALLS = {
-    "sqrt": "cf_sqrt",
-    "atan2": "cf_atan2",
-    "abs": "cf_abs",
-    "max": "cf_max",
-    "min": "cf_min",
-    **{op: f"cf_{op}" for op in WRAPS},
-    "select": "cf_select",
-    "sign": "cf_sign",
-}
-RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
-LOCALS = frozenset({
-    "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
-    "single", "opposite", "adjacent", "angles",
-})  # fmt: skip
 WHOLE = "Every case."
 COMMON = "Where nothing vanishes; rare is whether something does."
-RESERVED = LOCALS | C_WORDS
-
-
-class CPrinter(Printer):
-    """C code of a kernel over scalars.
-
-    The ``atan2`` whose arguments need no other ``atan2`` are taken together: all lines above
-    ``head`` come first, then ``arctangents`` (pairs of y and x), then the rest.  So one call can
-    evaluate them in one vector.
-    """
-
-    def __init__(self, lowered: Lowered, reserved: Iterable[str] = ()):
-        super().__init__(lowered, reserved)
-        self.arctangents: list[tuple[str, str]] = []
-        self.head = 0
-        self._arguments = self._before_arctangents()
-
-    def _before_arctangents(self) -> set[int]:
-        """The nodes that need no ``atan2``."""
-        found: set[int] = set()
-        for node in self.lowered.schedule():
-            if node.op != "atan2" and all(a.id in found for a in node.args):
-                found.add(node.id)
-        return found
-
-    def _together(self, node: Node) -> bool:
-        return node.op == "atan2" and all(a.id in self._arguments for a in node.args)
-
-    def schedule(self) -> list[Node]:
-        """Arguments of the joint ``atan2`` first, these next, then what needs them."""
-        nodes = self.lowered.schedule()
-        if sum(map(self._together, nodes)) < 2:
-            self._arguments = set()
-            return nodes
-        return sorted(
-            nodes, key=lambda n: 0 if n.id in self._arguments else 1 if self._together(n) else 2
-        )
-
-    def render(self, node: Node) -> Text:
-        if not self._together(node):
-            return super().render(node)
-        if not self.arctangents:
-            self.head = len(self.lines)
-        y, x = (self.text[a.id].code for a in node.args)
-        self.arctangents.append((y, x))
-        return Text(f"angles[{len(self.arctangents) - 1}]")
-
-    def constant(self, text: str) -> Text:
-        return Text(f"CLOSEDFORM_C({text})")
-
-    def call(self, op: str, args: list[str], node: Node) -> Text:
-        if op == "nan":
-            return Text("CLOSEDFORM_NAN")
-        if op in ("true", "false"):
-            return Text("1" if op == "true" else "0")
-        if op == "not":
-            return Text(f"!{self.text[node.args[0].id].at(6)}", 5)  # gcc warns of `!a | b`
-        if op == "tolerance":
-            return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
-        if op == "finite":
-            return Text(f"{' + '.join(f'cf_nought({a})' for a in args)} == 0", COMPARE)
-        if op in RARE and (op != "select" or self._spares(node)):
-            return Text(f"{RARE[op]}({', '.join(['single', *args])})")
-        return Text(f"{CALLS[op]}({', '.join(args)})")
-
-    @staticmethod
-    def _spares(select: Node) -> bool:
-        """Whether a jump spares the work for a value that is hardly ever selected."""
-        condition, value, _ = select.args
-        return hardly_ever(condition) and strip_sign(value).op not in LEAVES
-
-    def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
-        """Comparisons of calls get a name: clang warns of ``&`` between them, names are int."""
-        if self._together(node):
-            return False
-        compares_calls = node.op in ("lt", "le", "eq", "finite") and "cf_" in text.code
-        return compares_calls or super().deserves_name(node, text, uses)
-
-
-@dataclass(frozen=True)
-class CArray:
-    """An argument or a result of a function."""
-
-    name: str
-    type: str
-    kind: str
-    ndim: int
-    dims: str
-    size: int
-    const: str
-
-    @property
-    def single(self) -> str:
-        return f"{self.const}{self.type} {self.name}[{self.size}]"
-
-    @property
-    def batch(self) -> str:
-        return f"{self.const}{self.type} *{self.name}, size_t {self.name}_stride"
-
-    def plane(self, k: int) -> str:
-        """The place of coordinate k of the posture ``start``, as an offset from the array."""
-        offset = {0: "", 1: f"{self.name}_stride + "}.get(k, f"{k} * {self.name}_stride + ")
-        return f"{offset}start"
-
-
-@dataclass(frozen=True)
-class CProgram:
-    """The plain strings of one program: its kernel, and what the forms that call it are made of.
-
-    A program of one branch has ``signs``, a row of them for each sign, and only a single form.
-    """
-
-    full: str
-    note: str
-    unused_single: tuple[str, ...]
-    unused_batch: tuple[str, ...]
-    outputs: tuple[CArray, ...]
-    narrowed: tuple[CArray, ...]
-    single: str
-    batch: str
-    kernel: str
-    kernel_lines: tuple[str, ...]
-    kernel_call_single: str
-    kernel_call_batch: str
-    copies_params: bool
-    n_angles: int
-    n_lanes: int
-    lanes: tuple[str, ...]
-    angle_blocks: tuple[str, ...]
-    loads: tuple[str, ...]
-    stores: tuple[str, ...]
-    narrow: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -242,36 +89,13 @@ def shared(robots: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
-def _array(name: str, shape: Sequence[int], kind: str, const: str = "") -> CArray:
-    kinds = {"real": "CF_REAL", "status": "CF_STATUS", "bool": "CF_BOOL"}
-    dims = "{ " + (", ".join(map(str, shape)) or "0") + " }"
-    ctype = "real_t" if kind == "real" else "uint8_t"
-    return CArray(name, ctype, kinds[kind], len(shape), dims, prod(shape), const)
-
-
-def _folded(arguments: Sequence[str]) -> str:
-    """An argument list, folded where a line would be too long for its function's name."""
-    whole = ", ".join(a.replace(" ", "\0") for a in arguments)  # no break within an argument
-    lines = textwrap.wrap(whole, WIDTH - 44, break_long_words=False)
-    return "\n    ".join(lines).replace("\0", " ") or "void"
-
-
-def _occurs(name: str, lines: Sequence[str]) -> bool:
-    return any(re.search(rf"\b{name}\b", line) for line in lines)
-
-
-def _lanes(n: int) -> int:
-    """``n`` numbers, and zeros up to whole vectors: 2, 4 or a multiple of 8."""
-    return 1 << (n - 1).bit_length() if n <= LANES else -(-n // LANES) * LANES
-
-
 def _function(derivation: Derivation, function: Function, program: Lowered) -> CFunction:
     full = f"{derivation.name}_{function.name}"
     parts = program.common is not None
-    whole = _Emission(derivation, function, program, f"{full}_whole" if parts else full)
+    whole = Emission(derivation, function, program, f"{full}_whole" if parts else full)
     common = branch = None
     if program.common is not None:
-        common = _Emission(derivation, function, program.common, f"{full}_common").emit(COMMON)
+        common = Emission(derivation, function, program.common, f"{full}_common").emit(COMMON)
     if program.branch is not None:
         branch = _branch(derivation, function, program.branch, f"{full}_branch")
     inputs, outputs = whole.inputs, whole.outputs
@@ -287,13 +111,15 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> C
         n_params=len(derivation.parameters),
         inputs=inputs,
         outputs=outputs,
-        single=_folded([params, *(a.single for a in arrays)]),
-        batch=_folded(["size_t n", params, *(a.batch for a in arrays)]),
+        single=folded([params, *(a.single for a in arrays)]),
+        batch=folded(["size_t n", params, *(a.batch for a in arrays)]),
         whole=whole.emit(WHOLE if parts else ""),
         common=common,
         branch=branch,
         arguments=", ".join(["params", *(a.name for a in arrays)]),
-        block_arguments=", ".join(["params", *(f"{a.name} + start, {a.name}_stride" for a in arrays)]),
+        block_arguments=", ".join(
+            ["params", *(f"{a.name} + start, {a.name}_stride" for a in arrays)]
+        ),
         gathered_arguments=", ".join(["params", *(f"{a.name}_i" for a in arrays)]),
         table_single=_table_call(call, inputs, outputs, "in[{k}]", "out[{k}]"),
         table_batch=_table_call(
@@ -303,8 +129,8 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> C
 
 
 def _branch(derivation: Derivation, function: Function, program: Lowered, full: str) -> CBranch:
-    emission = _Emission(derivation, function, program, full)
-    *inputs, signs = emission.inputs
+    emission = Emission(derivation, function, program, full)
+    signs = emission.inputs[-1]
     assert function.branches
     rows = [[b[s] for b in function.branches.signs] for s in function.branches.signs[0]]
     n = len(function.branches)
@@ -338,220 +164,6 @@ def _branch(derivation: Derivation, function: Function, program: Lowered, full: 
             + [f"{o.name}_i" for o in emission.outputs]
         ),
     )
-
-
-class _Emission:
-    """Collects the strings of one program."""
-
-    def __init__(self, derivation: Derivation, function: Function, program: Lowered, full: str):
-        self.derivation, self.function, self.program = derivation, function, program
-        self.full = full
-        self.inputs = tuple(_array(a.name, a.shape, "real", "const ") for a in program.inputs)
-        self.outputs = tuple(_array(r.name, r.shape, r.kind) for r in program.results)
-        self.places = {
-            str(entry): (argument, k)
-            for argument, a in zip(self.inputs, program.inputs, strict=True)
-            for k, entry in enumerate(a.entries)
-        }
-        names = [a.name for a in (*self.inputs, *self.outputs)]
-        if taken := LOCALS.intersection(names):
-            raise ValueError(f"{function.name}: the C code uses the name {', '.join(taken)} itself")
-        self.printer = CPrinter(program, reserved={*RESERVED, *names})
-        self.values = self.printer.run()
-        read = program.used_inputs(below_angles=False)
-        self.parameters = [p for p in program.parameters if p in read]
-        self.raw = [
-            argument
-            for argument, a in zip(self.inputs, program.inputs, strict=True)
-            if any(str(e) in read for e in a.entries)
-        ]
-        self.entries = [e for e in self.places if e in read]
-        self.kernel_lines = self._kernel_lines()
-        self.distinguishes_single = _occurs("single", self.kernel_lines)
-        self.trig = [name for name in ("sines", "cosines") if _occurs(name, self.kernel_lines)]
-
-    def emit(self, note: str) -> CProgram:
-        arrays = (*self.inputs, *self.outputs)
-        params = f"const {self.derivation.name}_params *params"
-        narrowed = tuple(o for o in self.outputs if o.kind != "CF_REAL")
-        shared = ["params"] * bool(self.parameters)
-        single, trig = ["const int single"] * self.distinguishes_single, self.trig
-        names = [o.name for o in self.outputs]
-        return CProgram(
-            full=self.full,
-            note=note,
-            unused_single=tuple(
-                name
-                for name in ["params"] + [a.name for a in self.inputs]
-                if not _occurs(name, [*shared, *(a.name for a in self.raw), *self._lanes()])
-            ),
-            unused_batch=tuple(
-                name
-                for name in ["params"]
-                + [n for a in self.inputs for n in (a.name, f"{a.name}_stride")]
-                + [f"{a.name}_stride" for a in self.outputs]
-                if not _occurs(
-                    name,
-                    [
-                        *shared,
-                        *self._angle_blocks(),
-                        *self._loads(),
-                        *self._stores(),
-                        *self._narrow(),
-                    ],
-                )
-            ),
-            outputs=self.outputs,
-            narrowed=narrowed,
-            single=_folded([params, *(a.single for a in arrays)]),
-            batch=_folded(["size_t n", params, *(a.batch for a in arrays)]),
-            kernel=_folded(
-                single
-                + [params] * bool(self.parameters)
-                + [a.single for a in self.raw]
-                + [f"const real_t *{name}" for name in trig]
-                + [f"real_t {o.name}[{o.size}]" for o in self.outputs]
-            ),
-            kernel_lines=tuple(self.kernel_lines),
-            kernel_call_single=", ".join(
-                ["1"] * len(single)
-                + shared
-                + [a.name for a in self.raw]
-                + trig
-                + [f"{o.name}_real" if o in narrowed else o.name for o in self.outputs]
-            ),
-            kernel_call_batch=", ".join(
-                ["0"] * len(single)
-                + ["&local"] * bool(self.parameters)
-                + [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)]
-            ),
-            copies_params=bool(self.parameters),
-            n_angles=len(self.program.angles),
-            n_lanes=self._n_lanes,
-            lanes=tuple(self._lanes()) if self.program.angles else (),
-            angle_blocks=tuple(self._angle_blocks()),
-            loads=tuple(self._loads()),
-            stores=tuple(self._stores()),
-            narrow=tuple(self._narrow()),
-        )
-
-    def _kernel_lines(self) -> list[str]:
-        lines = [f"const real_t {self.printer.inputs[p]} = params->{p};" for p in self.parameters]
-        for entry in self.entries:
-            argument, k = self.places[entry]
-            lines.append(f"const real_t {self.printer.inputs[entry]} = {argument.name}[{k}];")
-        needed = {(n.op, n.args[0].id) for n in self.program.schedule() if n.op in ("sin", "cos")}
-        for k, (angle, sine, cosine) in enumerate(self.printer.trig):
-            for op, name, array in (("sin", sine, "sines"), ("cos", cosine, "cosines")):
-                if (op, angle.id) in needed:
-                    lines.append(f"const real_t {name} = {array}[{k}];")
-        for k, line in enumerate(self.printer.lines):
-            if k == self.printer.head:
-                lines += self._arctangents()
-            ctype = "int" if line.boolean else "real_t"
-            lines.append(f"const {ctype} {line.name} = {line.code};")
-        if self.printer.head == len(self.printer.lines):
-            lines += self._arctangents()
-        for result, values in zip(self.program.results, self.values, strict=True):
-            for k, value in enumerate(values):
-                if result.kind == "bool":
-                    value = f"({value}) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0)"
-                lines.append(f"{result.name}[{k}] = {value};")
-        return lines
-
-    def _arctangents(self) -> list[str]:
-        """All angles at once: in one vector for a single posture, one by one in a batch."""
-        pairs = self.printer.arctangents
-        if not pairs:
-            return []
-        n = _lanes(len(pairs))
-        one_by_one = [
-            f"    angles[{k}] = cf_atan2(opposite[{k}], adjacent[{k}]);" for k in range(len(pairs))
-        ]
-        return [
-            f"const real_t opposite[{n}] = {{ {', '.join(y for y, _ in pairs)} }};",
-            f"const real_t adjacent[{n}] = {{ {', '.join(x for _, x in pairs)} }};",
-            f"real_t angles[{n}];",
-            "if (single) {",
-            f"    cf_atan2_lanes({n}, opposite, adjacent, angles);",
-            "} else {",
-            *one_by_one,
-            "}",
-        ]
-
-    def _angle(self, node: Node) -> tuple[str, CArray | None, int, int]:
-        """The input, its place and the divisor of an angle."""
-        divisor = 1
-        if node.op == "div":
-            node, divisor = node.args[0], int(str(node.args[1].payload))
-        name = str(node.payload)
-        argument, k = self.places.get(name, (None, 0))
-        return name, argument, k, divisor
-
-    @property
-    def _n_lanes(self) -> int:
-        return _lanes(len(self.program.angles))
-
-    def _lanes(self) -> list[str]:
-        angles = []
-        for node in self.program.angles:
-            name, argument, k, divisor = self._angle(node)
-            text = f"{argument.name}[{k}]" if argument else f"params->{name}"
-            angles.append(text if divisor == 1 else f"{text} / CLOSEDFORM_C({divisor}.0)")
-        return [
-            f"const real_t lanes[{self._n_lanes}] = {{ {', '.join(angles)} }};",
-            f"cf_sincos_lanes({self._n_lanes}, lanes, sines, cosines);",
-        ]
-
-    def _angle_blocks(self) -> list[str]:
-        lines = []
-        for j, node in enumerate(self.program.angles):
-            name, argument, k, divisor = self._angle(node)
-            if argument and divisor == 1:
-                source = f"{argument.name} + {argument.plane(k)}"
-            else:
-                place = (
-                    f"{argument.name}[{argument.plane(k)} + i]" if argument else f"params->{name}"
-                )
-                source = f"angle_{j}"
-                lines.append(f"real_t {source}[CLOSEDFORM_BLOCK];")
-                lines.append("for (size_t i = 0; i < length; ++i)")
-                lines.append(f"    {source}[i] = {place} / CLOSEDFORM_C({divisor}.0);")
-            lines.append(f"cf_sincos_block(length, {source}, sines[{j}], cosines[{j}]);")
-        return lines
-
-    def _stores(self) -> list[str]:
-        return [
-            f"{o.name}[{o.plane(k)} + i] = {o.name}_i[{k}];"
-            if o.kind == "CF_REAL"
-            else f"{o.name}_real[{k}][i] = {o.name}_i[{k}];"
-            for o in self.outputs
-            for k in range(o.size)
-        ]
-
-    def _narrow(self) -> list[str]:
-        return [
-            f"{o.name}[{o.plane(k)} + i] = ({o.type}){o.name}_real[{k}][i];"
-            for o in self.outputs
-            if o.kind != "CF_REAL"
-            for k in range(o.size)
-        ]
-
-    def _loads(self) -> list[str]:
-        lines = list(_loads(self.raw))
-        n = len(self.program.angles)
-        for array in self.trig:
-            listed = ", ".join(f"{array}[{k}][i]" for k in range(n))
-            lines.append(f"const real_t {array}_i[{n}] = {{ {listed} }};")
-        lines += [f"real_t {o.name}_i[{o.size}];" for o in self.outputs]
-        return lines
-
-
-def _loads(arrays: Iterable[CArray]) -> Iterator[str]:
-    """The coordinates of posture ``start + i``."""
-    for a in arrays:
-        listed = ", ".join(f"{a.name}[{a.plane(k)} + i]" for k in range(a.size))
-        yield f"const real_t {a.name}_i[{a.size}] = {{ {listed} }};"
 
 
 def _paragraphs(derivation: Derivation, function: Function, width: int) -> list[str]:

@@ -141,8 +141,8 @@ def _lower(
 
     finish = partial(_finished, function, [p.name for p in parameters], graph)
     whole = finish(results, names)
-    nodes, rare, kept = common_case(graph, [n for r in results for n in r.nodes], names)
-    flat = iter(nodes)
+    images, rare, kept = common_case(graph, [n for r in results for n in r.nodes], names)
+    flat = iter(images)
     plain = [replace(r, nodes=tuple(islice(flat, len(r.nodes)))) for r in results]
     return whole, finish([*plain, Result("rare", (), "bool", (rare,))], kept)
 

@@ -41,7 +41,7 @@ class Ranges:
         if found is None:
             raise UnboundedError
         low, high = found
-        if -1 < low and high <= 1:
+        if low > -1 and high <= 1:
             return angle
         return graph.node("wrap_cut" if low == -1 and high <= 1 else "wrap", angle)
 
@@ -106,14 +106,23 @@ class Ranges:
             return {int(value)} if value.is_Integer else None
         if node.op == "sign" or (node.op == "input" and node.payload in self.signs):
             return {-1, 1}
-        combine = {"sum": sum, "product": prod, "neg": lambda only: -only[0]}.get(node.op)
-        if combine is None and node.op != "select":
+        if node.op not in ("select", "neg", "sum", "product"):
             return None
-        parts = [self._whole_numbers(a) for a in node.args[node.op == "select" :]]
-        known = [p for p in parts if p is not None]
-        if len(known) < len(parts):
-            return None
-        return {combine(values) for values in product(*known)} if combine else set().union(*known)
+        known = []
+        for arg in node.args[node.op == "select" :]:
+            numbers = self._whole_numbers(arg)
+            if numbers is None:
+                return None
+            known.append(numbers)
+        match node.op:
+            case "select":
+                return set().union(*known)
+            case "neg":
+                return {-n for n in known[0]}
+            case "sum":
+                return {sum(values) for values in product(*known)}
+            case _:
+                return {prod(values) for values in product(*known)}
 
     def _not_negative(self, node: Node) -> bool:
         return self.positive(node) or (node.op == "input" and node.payload in self.lengths)

@@ -1,0 +1,154 @@
+"""The common case of a program: it tells where something vanishes, and is the whole one elsewhere."""
+
+import importlib
+import itertools
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from closedform import pipeline
+from closedform.derivation import Derivation, Paper
+from closedform.functions import Program, choose, real, used_up
+from closedform.lower import Lowered, lower
+
+SINGULAR = 2
+x, y, z = (real(n) for n in "xyz")
+RULES = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": lambda a, b: a / b if b else math.nan,
+    "neg": lambda a: -a,
+    "abs": abs,
+    "sqrt": math.sqrt,
+    "max": max,
+    "le": lambda a, b: a <= b,
+    "and": lambda a, b: a and b,
+    "or": lambda a, b: a or b,
+    "not": lambda a: not a,
+    "select": lambda c, a, b: a if c else b,
+    "tolerance": lambda: 2.0**-50,
+    "true": lambda: True,
+    "false": lambda: False,
+}
+
+
+def run(program: Lowered, values: dict[str, float]) -> list[float]:
+    value: dict[int, float] = {}
+    for node in program.schedule():
+        if node.op == "const":
+            value[node.id] = float(node.payload)
+        elif node.op == "input":
+            value[node.id] = values[node.payload]
+        else:
+            value[node.id] = RULES[node.op](*(value[a.id] for a in node.args))
+    return [value[r.id] for r in program.roots]
+
+
+def chained() -> Lowered:
+    """Flags that rest on what other flags select, one that holds only where another does not, and
+    much work for each."""
+    p = Program()
+    first = p.vanishes("first", sp.Abs(x), 1, "x is zero")
+    u = p.let("u", choose(first, (y**2 + z) * (y - z**2) + 3 * y * z, z / x))
+    second = p.vanishes("second", used_up(p.let("room", u - y)), 1, "no room")
+    third = p.vanishes("third", sp.Abs(z), 1, "z is zero")
+    w = p.let("w", choose(sp.And(second, sp.Not(third)), (u + z) * (y - u) + y**2 * z, y + u))
+    v = p.let("v", choose(second, (u + 2 * z) * (y - 3 * u) * (x + w), w))
+    d = Derivation("test", "", Paper("", "", ()), "")
+    return lower(d.function("f", "", {"q": (x, y, z)}, {"p": [u, v, w]}, program=p), d)
+
+
+def test_where_nothing_vanishes_it_is_the_whole_program() -> None:
+    program = chained()
+    assert program.common is not None
+    assert program.common.length < 0.7 * program.length
+    seen = []
+    for values in itertools.product([0.0, 1e-18, 1e-8, 1.0, -2.0, 4.0], repeat=3):
+        point = dict(zip("xyz", values, strict=True))
+        *common, rare = run(program.common, point)
+        seen.append(rare)
+        if not rare:
+            assert common == run(program, point)
+    assert 20 < sum(seen) < len(seen) - 20
+
+
+def kernels() -> list[tuple[str, str]]:
+    """The robots and functions that have a common case."""
+    found = []
+    for source in pipeline.sources():
+        module = importlib.import_module(f"closedform.generated.numpy.{source.name}")
+        found += [
+            (source.name, name)
+            for name in dir(module)
+            if getattr(getattr(module, name), "common", None) is not None
+        ]
+    return found
+
+
+def planes(robot: str, q: np.ndarray) -> tuple[list[np.ndarray], object]:
+    """The planes of targets with these postures, and of the parameters."""
+    module = importlib.import_module(f"closedform.generated.numpy.{robot}")
+    kernel = module._IK
+    shape = kernel.inputs[0].shape
+    x = module.pose(q) if shape == (4, 4) else module.fk(q)
+    x = x.reshape(len(q), -1)
+    x = x[np.isfinite(x).all(axis=-1)]
+    used = [np.float64(getattr(module.Parameters(), name)) for name in kernel.used]
+    return [*x.T, *used], kernel
+
+
+def postures(robot: str, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Random postures, and some with most joints at right angles, or off by little."""
+    module = importlib.import_module(f"closedform.generated.numpy.{robot}")
+    rng = np.random.default_rng(3)
+    usual = rng.uniform(-3, 3, (n, len(module.JOINTS)))
+    special = rng.choice([0, np.pi / 2, -np.pi / 2, np.pi, 0.3, -1.1], usual.shape)
+    special = special + rng.choice([0, 0, 1e-17, 1e-12, 1e-6], usual.shape)
+    if robot.startswith("h6ar"):  # two arms that work together, straight with the bent fore-arm
+        special[::2, 2] = np.arctan2(module.Parameters().L2, module.Parameters().a3)
+        for q in (usual, special):
+            q[:, 3:5] = q[:, 1:3] + rng.choice([0, 0.1, -0.03], (n, 2))
+    return usual, special
+
+
+@pytest.mark.parametrize(("robot", "name"), kernels())
+def test_generated(robot: str, name: str) -> None:
+    assert name == "_IK"
+    for q, most in zip(postures(robot, 4000), (0.01, 1), strict=True):
+        arguments, kernel = planes(robot, q)
+        with np.errstate(all="ignore"):
+            whole = kernel.compute(*arguments)
+            *common, rare = kernel.common(*arguments)
+        assert rare.mean() <= most and (most < 1 or rare.any())
+        statuses = np.array([v for v in whole if v.dtype == np.uint8])
+        assert rare[(statuses == SINGULAR).any(axis=0)].all()
+        for a, b in zip(common, whole, strict=True):
+            kept = np.broadcast_to(a, rare.shape)[~rare]
+            if a.dtype == np.uint8:
+                np.testing.assert_array_equal(kept, b[~rare])
+            else:
+                np.testing.assert_array_equal(np.isnan(kept), np.isnan(b[~rare]))
+                turned = np.abs(np.sin((kept - b[~rare]) / 2))
+                assert np.nanmax(turned, initial=0) < 1e-6  # at the boundary of the workspace
+                assert np.nanquantile(turned, 0.9) < 1e-13
+
+
+@pytest.mark.parametrize(("robot", "name"), kernels())
+def test_rare_postures_of_a_batch(robot: str, name: str) -> None:
+    """Each has the answer that it has by itself, as has its neighbour; parameters broadcast."""
+    module = importlib.import_module(f"closedform.generated.numpy.{robot}")
+    usual, q = postures(robot, 60)
+    q[::2] = usual[::2]
+    x = module.pose(q) if module._IK.inputs[0].shape == (4, 4) else module.fk(q)
+    together = module.ik(x)
+    single = [module.ik(one) for one in x]
+    np.testing.assert_array_equal(together.status, [s.status for s in single])
+    few = 64 * np.finfo(float).eps
+    np.testing.assert_allclose(together.q, [s.q for s in single], few, few)
+    larger = module.Parameters(*(np.array([[v], [v]]) for v in module.Parameters()))
+    for twice in zip(*module.ik(x, larger), strict=True):
+        np.testing.assert_array_equal(twice[0], together.q)
+        np.testing.assert_array_equal(twice[1], together.status)

@@ -1,9 +1,10 @@
-"""What all tests share: repeatable examples, and the table of the worst errors found."""
+"""What tests share: repeatable examples, the toy extension, the table of the worst errors found."""
 
 import pickle
 from typing import Any
 
 import pytest
+from extension_toy.build import compiled
 from hypothesis import settings
 
 from closedform.crosscheck import Finding, table
@@ -19,6 +20,12 @@ FINDINGS = pytest.StashKey[list[Finding]]()
 def findings(pytestconfig: pytest.Config) -> list[Finding]:
     """Collects what the cross-checks find, for the table at the end."""
     return pytestconfig.stash.setdefault(FINDINGS, [])
+
+
+@pytest.fixture(scope="session")
+def native(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The toy extension, for the tests of the runtime."""
+    return compiled(tmp_path_factory.mktemp("toy"))
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

@@ -4,6 +4,7 @@
  * scratch planes and scattered from them. Where too few postures share their parameters, all axes
  * are outer, a block is one posture, and the single kernel is called. */
 #include "closedform_sweep.h"
+#include "closedform_rows.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -17,7 +18,6 @@ enum {
     SCRATCH_BYTES = 131072, /* aimed at for all planes of a block: the second-level cache holds
                                them, and many planes in memory ask for long runs */
     SHORT_RUN = 64,         /* an innermost axis below this yields to the longest one */
-    TILE = 16,              /* postures moved at a time, so that both sides stay cached */
     LINE = 64,              /* bytes in a cache line */
     ALIAS = 4096,           /* planes a multiple of this apart contend for the same cache lines, */
     ALIAS_WAYS = 4,         /* which so many of them do without harm */
@@ -25,24 +25,13 @@ enum {
 };
 
 typedef struct {
-    const cf_array *spec;
-    const cf_view *view;
-    size_t itemsize;
-    bool in_place;     /* the kernel works on the view itself */
-    bool adjacent;     /* the coordinates of a posture follow one another */
-    size_t plane;      /* elements from one coordinate to the next, as the kernel sees them */
-    ptrdiff_t *offset; /* bytes from a posture to each of its coordinates, unless in_place */
-    char *scratch;     /* planes of one block, unless in_place */
-} operand;
-
-typedef struct {
     cf_sweep *sweep;
     size_t n_outer; /* of the sweep's axes, the first are outer */
     size_t n_inner; /* postures along the inner axes */
     size_t block;   /* postures in a kernel call */
     bool single;
-    operand in[CF_MAX_IN];
-    operand out[CF_MAX_OUT];
+    cf_operand in[CF_MAX_IN];
+    cf_operand out[CF_MAX_OUT];
     void *memory;
 } plan;
 
@@ -210,7 +199,7 @@ long_axis_last(cf_sweep *sweep, size_t n_outer)
 }
 
 static bool
-aligned(const operand *o, size_t n_axes)
+aligned(const cf_operand *o, size_t n_axes)
 {
     size_t bits = (uintptr_t)o->view->data;
     for (size_t a = 0; a < n_axes; a++) {
@@ -224,7 +213,7 @@ aligned(const operand *o, size_t n_axes)
 
 /* The one step that visits all coordinates in row-major order, or -1 if there is none. */
 static ptrdiff_t
-core_step(const operand *o)
+core_step(const cf_operand *o)
 {
     ptrdiff_t step = 0, extent = 0;
     for (int a = o->spec->ndim; a-- > 0;) {
@@ -252,7 +241,7 @@ planes_contend(size_t n, size_t step)
 
 /* A batch kernel takes planes whose postures are adjacent, a single kernel a contiguous core. */
 static bool
-usable_in_place(const plan *p, const operand *o)
+usable_in_place(const plan *p, const cf_operand *o)
 {
     const cf_sweep *sweep = p->sweep;
     size_t last = sweep->n_axes - 1;
@@ -272,7 +261,7 @@ usable_in_place(const plan *p, const operand *o)
 }
 
 static void
-describe(const plan *p, operand *o, const cf_array *spec, const cf_view *view)
+describe(const plan *p, cf_operand *o, const cf_array *spec, const cf_view *view)
 {
     o->spec = spec;
     o->view = view;
@@ -285,7 +274,7 @@ describe(const plan *p, operand *o, const cf_array *spec, const cf_view *view)
 }
 
 static void
-fill_offsets(operand *o)
+fill_offsets(cf_operand *o)
 {
     size_t index[CF_MAX_CORE] = {0};
     size_t n_axes = (size_t)o->spec->ndim;
@@ -296,7 +285,7 @@ fill_offsets(operand *o)
 }
 
 /* Operands are numbered through: inputs, outputs. */
-static operand *
+static cf_operand *
 operand_at(plan *p, size_t k)
 {
     size_t n_in = p->sweep->function->n_in;
@@ -343,7 +332,7 @@ allocate(plan *p)
 {
     size_t per_posture = 0;
     for (size_t k = 0; k < operand_count(p); k++) {
-        const operand *o = operand_at(p, k);
+        const cf_operand *o = operand_at(p, k);
         per_posture += o->in_place ? 0 : o->itemsize * o->spec->size;
     }
     p->block = block_length(p, per_posture);
@@ -351,7 +340,7 @@ allocate(plan *p)
 
     size_t bytes = LINE;
     for (size_t k = 0; k < operand_count(p); k++) {
-        const operand *o = operand_at(p, k);
+        const cf_operand *o = operand_at(p, k);
         bytes += whole_lines(o->itemsize * o->spec->size * plane);
         bytes += whole_lines(sizeof(ptrdiff_t) * o->spec->size);
     }
@@ -365,7 +354,7 @@ allocate(plan *p)
     }
     char *next = (char *)p->memory + (LINE - (uintptr_t)p->memory % LINE);
     for (size_t k = 0; k < operand_count(p); k++) {
-        operand *o = operand_at(p, k);
+        cf_operand *o = operand_at(p, k);
         if (!o->in_place) {
             o->plane = plane;
             o->scratch = next;
@@ -402,159 +391,12 @@ make_plan(plan *p, cf_sweep *sweep)
     return allocate(p);
 }
 
-/* Fixed-size memcpy is how C loads and stores what may be unaligned; it compiles to one move. */
-static inline void
-gather_tile(const operand *o, const char *from, ptrdiff_t step, size_t at, size_t count)
-{
-    double *plane = (double *)(void *)o->scratch + at;
-    for (size_t j = 0; j < o->spec->size; j++, plane += o->plane) {
-        const char *source = from + o->offset[j];
-        for (size_t i = 0; i < count; i++) {
-            memcpy(&plane[i], source + step * (ptrdiff_t)i, sizeof(double));
-        }
-    }
-}
-
-static inline void
-scatter_tile(const operand *o, char *to, ptrdiff_t step, size_t at, size_t count)
-{
-    const double *plane = (const double *)(const void *)o->scratch + at;
-    for (size_t j = 0; j < o->spec->size; j++, plane += o->plane) {
-        char *target = to + o->offset[j];
-        for (size_t i = 0; i < count; i++) {
-            memcpy(target + step * (ptrdiff_t)i, &plane[i], sizeof(double));
-        }
-    }
-}
-
-/* The transpose of two neighbours in each of two lines: two shuffles on any x86-64. */
-static inline void
-turn(char *to, ptrdiff_t to_step, const char *from, ptrdiff_t from_step)
-{
-    double a[2], b[2];
-    memcpy(a, from, sizeof a);
-    memcpy(b, from + from_step, sizeof b);
-    const double c[2] = {a[0], b[0]}, d[2] = {a[1], b[1]};
-    memcpy(to, c, sizeof c);
-    memcpy(to + to_step, d, sizeof d);
-}
-
-static bool
-in_pairs(const operand *o, size_t count)
-{
-    return o->adjacent && o->spec->size >= 2 && count >= 2;
-}
-
-/* The k-th pair of n things; of an odd number, the last pair shares one with the pair before. */
-static inline size_t
-pair(size_t k, size_t n)
-{
-    return k + 2 <= n ? k : n - 2;
-}
-
-/* Adjacent coordinates, as of an (N, n) array, two by two of two postures at a time: so what lies
- * in memory is walked from one end to the other. */
-static void
-gather_pairs(const operand *o, const char *from, ptrdiff_t step, size_t at, size_t count)
-{
-    const ptrdiff_t coordinate = (ptrdiff_t)sizeof(double);
-    const ptrdiff_t plane = (ptrdiff_t)o->plane * coordinate;
-    for (size_t k = 0; k < count; k += 2) {
-        const ptrdiff_t i = (ptrdiff_t)pair(k, count);
-        char *to = o->scratch + coordinate * ((ptrdiff_t)at + i);
-        for (size_t l = 0; l < o->spec->size; l += 2) {
-            const ptrdiff_t j = (ptrdiff_t)pair(l, o->spec->size);
-            turn(to + plane * j, plane, from + step * i + coordinate * j, step);
-        }
-    }
-}
-
-static void
-scatter_pairs(const operand *o, char *to, ptrdiff_t step, size_t at, size_t count)
-{
-    const ptrdiff_t coordinate = (ptrdiff_t)sizeof(double);
-    const ptrdiff_t plane = (ptrdiff_t)o->plane * coordinate;
-    for (size_t k = 0; k < count; k += 2) {
-        const ptrdiff_t i = (ptrdiff_t)pair(k, count);
-        const char *from = o->scratch + coordinate * ((ptrdiff_t)at + i);
-        for (size_t l = 0; l < o->spec->size; l += 2) {
-            const ptrdiff_t j = (ptrdiff_t)pair(l, o->spec->size);
-            turn(to + step * i + coordinate * j, step, from + plane * j, plane);
-        }
-    }
-}
-
-/* What the compiler knows makes these fast: that a full tile has a fixed length, or that postures
- * are adjacent. */
-static void
-gather(const operand *o, char *from, ptrdiff_t step, size_t at, size_t count)
-{
-    if (step == (ptrdiff_t)sizeof(double)) {
-        gather_tile(o, from, sizeof(double), at, count);
-        return;
-    }
-    if (in_pairs(o, count)) {
-        gather_pairs(o, from, step, at, count);
-        return;
-    }
-    size_t i = 0;
-    for (; i + TILE <= count; i += TILE) {
-        gather_tile(o, from + step * (ptrdiff_t)i, step, at + i, TILE);
-    }
-    gather_tile(o, from + step * (ptrdiff_t)i, step, at + i, count - i);
-}
-
-static void
-scatter_real(const operand *o, char *to, ptrdiff_t step, size_t at, size_t count)
-{
-    if (step == (ptrdiff_t)sizeof(double)) {
-        scatter_tile(o, to, sizeof(double), at, count);
-        return;
-    }
-    if (in_pairs(o, count)) {
-        scatter_pairs(o, to, step, at, count);
-        return;
-    }
-    size_t i = 0;
-    for (; i + TILE <= count; i += TILE) {
-        scatter_tile(o, to + step * (ptrdiff_t)i, step, at + i, TILE);
-    }
-    scatter_tile(o, to + step * (ptrdiff_t)i, step, at + i, count - i);
-}
-
-static void
-scatter_byte(const operand *o, char *to, ptrdiff_t step, size_t at, size_t count)
-{
-    for (size_t j = 0; j < o->spec->size; j++) {
-        char *target = to + o->offset[j];
-        const char *plane = o->scratch + j * o->plane + at;
-        for (size_t i = 0; i < count; i++) {
-            target[step * (ptrdiff_t)i] = plane[i];
-        }
-    }
-}
-
-typedef void mover(const operand *o, char *memory, ptrdiff_t step, size_t at, size_t count);
-
-static void
-scatter(const operand *o, char *memory, ptrdiff_t step, size_t at, size_t count)
-{
-    if (o->spec->kind == CF_REAL) {
-        scatter_real(o, memory, step, at, count);
-    } else {
-        scatter_byte(o, memory, step, at, count);
-    }
-}
-
 /* Moves `count` postures, from inner index `start` on, run by run along the last axis. */
-static void
-move(const plan *p, const operand *o, char *base, const size_t *start, size_t count, mover *run)
+static inline void
+move(const plan *p, const cf_operand *o, char *base, const size_t *start, size_t count,
+     cf_mover *run)
 {
     size_t n = p->sweep->n_axes - p->n_outer;
-    if (n == 0) {
-        run(o, base, 0, 0, 1);
-        return;
-    }
     const size_t *length = p->sweep->length + p->n_outer;
     const ptrdiff_t *lead = o->view->lead + p->n_outer;
     size_t index[CF_MAX_AXES];
@@ -578,15 +420,17 @@ run_block(const plan *p, const double *params, char *const *base, const size_t *
     size_t in_plane[CF_MAX_IN], out_plane[CF_MAX_OUT];
 
     for (size_t k = 0; k < f->n_in; k++) {
-        const operand *o = &p->in[k];
-        if (!o->in_place) {
-            move(p, o, base[k], start, count, gather);
+        const cf_operand *o = &p->in[k];
+        if (!o->in_place && p->single) {
+            cf_gather_one(o, base[k]);
+        } else if (!o->in_place) {
+            move(p, o, base[k], start, count, cf_gather);
         }
         in[k] = (const double *)(void *)(o->in_place ? base[k] + first * o->itemsize : o->scratch);
         in_plane[k] = o->plane;
     }
     for (size_t k = 0; k < f->n_out; k++) {
-        const operand *o = &p->out[k];
+        const cf_operand *o = &p->out[k];
         out[k] = o->in_place ? base[f->n_in + k] + first * o->itemsize : o->scratch;
         out_plane[k] = o->plane;
     }
@@ -596,9 +440,11 @@ run_block(const plan *p, const double *params, char *const *base, const size_t *
         f->batch(count, params, in, in_plane, out, out_plane);
     }
     for (size_t k = 0; k < f->n_out; k++) {
-        const operand *o = &p->out[k];
-        if (!o->in_place) {
-            move(p, o, base[f->n_in + k], start, count, scatter);
+        const cf_operand *o = &p->out[k];
+        if (!o->in_place && p->single) {
+            cf_scatter_one(o, base[f->n_in + k]);
+        } else if (!o->in_place) {
+            move(p, o, base[f->n_in + k], start, count, cf_scatter);
         }
     }
 }

@@ -1,0 +1,47 @@
+"""The toy of toy.c as an extension module, compiled from the sources of the runtime."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .toy import ROWS
+
+ROOT = Path(__file__).parents[2]
+RUNTIME = ROOT / "closedform" / "extension"
+TOY = Path(__file__).parent / "toy.c"
+SANITIZED = bool(os.environ.get("CLOSEDFORM_TEST_SANITIZE"))
+SANITIZE = ["-fsanitize=address,undefined", "-fno-sanitize-recover=undefined", "-O1"]
+INCLUDES = [
+    f"-I{RUNTIME}",
+    "-isystem",
+    sysconfig.get_paths()["include"],
+    "-isystem",
+    np.get_include(),
+]
+
+
+def compiled(folder: Path) -> Any:
+    target = folder / ("toy_native" + sysconfig.get_config_var("EXT_SUFFIX"))
+    command = [os.environ.get("CC", "cc"), "-std=c99", "-O2", "-fPIC", "-shared"]
+    command += ["-fno-math-errno", "-fno-trapping-math", "-DCF_MODULE_NAME=toy_native"]
+    command += SANITIZE if SANITIZED else []
+    command += [*INCLUDES, *map(str, sorted(RUNTIME.glob("*.c"))), str(TOY), "-lm"]
+    subprocess.run([*command, "-o", str(target)], check=True)
+    spec = importlib.util.spec_from_file_location("toy_native", target)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["toy_native"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def function(native: Any, name: str) -> Any:
+    return native.function(f"toy.{name}", ROWS[name].results)

@@ -1,4 +1,4 @@
-"""The common case of a program: it tells where something vanishes, and is the whole one elsewhere."""
+"""The common case of a program tells where something vanishes, and is the whole one elsewhere."""
 
 import importlib
 import itertools

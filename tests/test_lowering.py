@@ -40,6 +40,7 @@ def run(program: Lowered, values: dict[str, float]) -> list[float]:
         "abs": abs,
         "atan2": math.atan2,
         "wrap": lambda a: math.pi - (math.pi - a) % math.tau,
+        "principal": lambda a: math.atan2(math.sin(a), math.cos(a)),
         "wrap_cut": lambda a: math.pi if a <= -math.pi else a,
     }
     for node in program.schedule():

@@ -92,6 +92,16 @@ def test_wraps_of_numpy(name: str, turns: float) -> None:
     np.testing.assert_array_equal(one_by_one, wrapped)
 
 
+def test_principal_values_of_numpy() -> None:
+    angles = np.concatenate([[0.0, 3, -3, 1e22, np.nan, np.inf], np.linspace(-3.9e5, 9e5, 999)])
+    with np.errstate(invalid="ignore"):
+        turned = _runtime.principal(angles)
+        np.testing.assert_allclose(np.sin(turned), np.sin(angles), rtol=0, atol=4e-16)
+        np.testing.assert_allclose(np.cos(turned), np.cos(angles), rtol=0, atol=4e-16)
+    assert np.nanmax(np.abs(turned)) < 3.15
+    np.testing.assert_array_equal(turned[:3], angles[:3])
+
+
 @pytest.mark.parametrize("backend", ["numpy", "c"])
 @pytest.mark.parametrize(("robot", "n"), [("planar_2r", 2), ("hybrid_five_bar", 3), ("irb260", 6)])
 def test_zero_lengths_of_either_sign(backend: str, robot: str, n: int) -> None:

@@ -35,7 +35,7 @@ CALLS = {
 RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
 LOCALS = frozenset({
     "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
-    "single", "opposite", "adjacent", "angles",
+    "single", "opposite", "adjacent", "angles", "principals", "wide",
 })  # fmt: skip
 RESERVED = LOCALS | C_WORDS
 
@@ -162,8 +162,6 @@ class CProgram:
     kernel_call_single: str
     kernel_call_batch: str
     copies_params: bool
-    n_angles: int
-    n_lanes: int
     lanes: tuple[str, ...]
     angle_blocks: tuple[str, ...]
     loads: tuple[str, ...]
@@ -222,7 +220,8 @@ class Emission:
         self.entries = [e for e in self.places if e in read]
         self.kernel_lines = self._kernel_lines()
         self.distinguishes_single = _occurs("single", self.kernel_lines)
-        self.trig = [name for name in ("sines", "cosines") if _occurs(name, self.kernel_lines)]
+        arrays = ("sines", "cosines", "principals")
+        self.trig = [name for name in arrays if _occurs(name, self.kernel_lines)]
 
     def emit(self, note: str) -> CProgram:
         arrays = (*self.inputs, *self.outputs)
@@ -280,9 +279,7 @@ class Emission:
                 + [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)]
             ),
             copies_params=bool(self.parameters),
-            n_angles=len(self.program.angles),
-            n_lanes=self._n_lanes,
-            lanes=tuple(self._lanes()) if self.program.angles else (),
+            lanes=tuple(self._lanes()),
             angle_blocks=tuple(self._angle_blocks()),
             loads=tuple(self._loads()),
             stores=tuple(self._stores()),
@@ -299,6 +296,8 @@ class Emission:
             for op, name, array in (("sin", sine, "sines"), ("cos", cosine, "cosines")):
                 if (op, angle.id) in needed:
                     lines.append(f"const real_t {name} = {array}[{k}];")
+        for k, (_, name) in enumerate(self.printer.turned):
+            lines.append(f"const real_t {name} = principals[{k}];")
         for k, line in enumerate(self.printer.lines):
             if k == self.printer.head:
                 lines += self._arctangents()
@@ -342,37 +341,60 @@ class Emission:
         argument, k = self.places.get(name, (None, 0))
         return name, argument, k, divisor
 
-    @property
-    def _n_lanes(self) -> int:
-        return _lanes(len(self.program.angles))
-
     def _lanes(self) -> list[str]:
-        angles = []
-        for node in self.program.angles:
-            name, argument, k, divisor = self._angle(node)
-            text = f"{argument.name}[{k}]" if argument else f"params->{name}"
-            angles.append(text if divisor == 1 else f"{text} / CLOSEDFORM_C({divisor}.0)")
-        return [
-            f"const real_t lanes[{self._n_lanes}] = {{ {', '.join(angles)} }};",
-            f"cf_sincos_lanes({self._n_lanes}, lanes, sines, cosines);",
-        ]
+        """The sines, cosines and principal values of one posture."""
+        lines = []
+        if self.program.angles:
+            n = _lanes(len(self.program.angles))
+            listed = ", ".join(map(self._place, self.program.angles))
+            lines += [
+                f"real_t sines[{n}], cosines[{n}];",
+                f"const real_t lanes[{n}] = {{ {listed} }};",
+                f"cf_sincos_lanes({n}, lanes, sines, cosines);",
+            ]
+        if self.program.turned:
+            n = len(self.program.turned)
+            listed = ", ".join(map(self._place, self.program.turned))
+            lines += [
+                f"real_t principals[{n}];",
+                f"const real_t wide[{n}] = {{ {listed} }};",
+                f"cf_principal_block({n}, wide, principals);",
+            ]
+        return lines
+
+    def _place(self, angle: Node) -> str:
+        name, argument, k, divisor = self._angle(angle)
+        text = f"{argument.name}[{k}]" if argument else f"params->{name}"
+        return text if divisor == 1 else f"{text} / CLOSEDFORM_C({divisor}.0)"
 
     def _angle_blocks(self) -> list[str]:
+        """The sines, cosines and principal values of a block of postures."""
         lines = []
+        if self.program.angles:
+            size = f"[{len(self.program.angles)}][CLOSEDFORM_BLOCK]"
+            lines.append(f"real_t sines{size}, cosines{size};")
         for j, node in enumerate(self.program.angles):
-            name, argument, k, divisor = self._angle(node)
-            if argument and divisor == 1:
-                source = f"{argument.name} + {argument.plane(k)}"
-            else:
-                place = (
-                    f"{argument.name}[{argument.plane(k)} + i]" if argument else f"params->{name}"
-                )
-                source = f"angle_{j}"
-                lines.append(f"real_t {source}[CLOSEDFORM_BLOCK];")
-                lines.append("for (size_t i = 0; i < length; ++i)")
-                lines.append(f"    {source}[i] = {place} / CLOSEDFORM_C({divisor}.0);")
-            lines.append(f"cf_sincos_block(length, {source}, sines[{j}], cosines[{j}]);")
+            source, more = self._plane(node, f"angle_{j}")
+            lines += [*more, f"cf_sincos_block(length, {source}, sines[{j}], cosines[{j}]);"]
+        if self.program.turned:
+            lines.append(f"real_t principals[{len(self.program.turned)}][CLOSEDFORM_BLOCK];")
+        for j, node in enumerate(self.program.turned):
+            source, more = self._plane(node, f"wide_{j}")
+            lines += [*more, f"cf_principal_block(length, {source}, principals[{j}]);"]
         return lines
+
+    def _plane(self, angle: Node, name: str) -> tuple[str, list[str]]:
+        """Where the values of an angle stand for a block, and the lines that put them there."""
+        symbol, argument, k, divisor = self._angle(angle)
+        if argument and divisor == 1:
+            return f"{argument.name} + {argument.plane(k)}", []
+        place = f"{argument.name}[{argument.plane(k)} + i]" if argument else f"params->{symbol}"
+        part = "" if divisor == 1 else f" / CLOSEDFORM_C({divisor}.0)"
+        return name, [
+            f"real_t {name}[CLOSEDFORM_BLOCK];",
+            "for (size_t i = 0; i < length; ++i)",
+            f"    {name}[i] = {place}{part};",
+        ]
 
     def _stores(self) -> list[str]:
         return [
@@ -393,8 +415,8 @@ class Emission:
 
     def _loads(self) -> list[str]:
         lines = list(_loads(self.raw))
-        n = len(self.program.angles)
         for array in self.trig:
+            n = len(self.program.turned if array == "principals" else self.program.angles)
             listed = ", ".join(f"{array}[{k}][i]" for k in range(n))
             lines.append(f"const real_t {array}_i[{n}] = {{ {listed} }};")
         lines += [f"real_t {o.name}_i[{o.size}];" for o in self.outputs]

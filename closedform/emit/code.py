@@ -15,6 +15,7 @@ import sympy as sp
 
 from closedform.lower import Lowered
 from closedform.lower.graph import BOOLEAN, Node
+from closedform.lower.program import LEAVES
 
 LONGEST = 44
 WRAPS = ("wrap", "wrap_cut")
@@ -91,6 +92,8 @@ class Printer:
         self.lines: list[Line] = []
         self.trig = [(angle, *trig_names(self.names, angle)) for angle in lowered.angles]
         self._sines = {angle.id: (s, c) for angle, s, c in self.trig}
+        self.turned = [(angle, self._principal_name(angle)) for angle in lowered.turned]
+        self._principals = {angle.id: name for angle, name in self.turned}
 
     def run(self) -> list[list[str]]:
         """Fill ``lines`` and return the code of every entry of every result."""
@@ -107,12 +110,18 @@ class Printer:
             self.text[node.id] = text
         return [[self.text[n.id].code for n in r.nodes] for r in self.lowered.results]
 
+    def _principal_name(self, angle: Node) -> str:
+        """``principal1`` of theta1, ``principal_psi`` of psi."""
+        label = str(angle.payload)
+        short = label.removeprefix("theta") if label.startswith("theta") else f"_{label}"
+        return self.names.take(f"principal{short}")
+
     def schedule(self) -> list[Node]:
         """The order in which nodes are printed, operands before operators."""
         return self.lowered.schedule()
 
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
-        if node.op in ("const", "input", "nan", "tolerance", "sin", "cos", "true", "false"):
+        if node.op in LEAVES:
             return False
         if node.id in self._sines:  # printed before all else, where its sine is taken
             return False
@@ -129,6 +138,8 @@ class Printer:
                 return Text(self.inputs[str(node.payload)])
             case "sin" | "cos":
                 return Text(self._sines[node.args[0].id][node.op == "cos"])
+            case "principal":
+                return Text(self._principals[node.args[0].id])
             case "add":
                 return Text(f"{args[0].at(SUM)} + {args[1].at(PRODUCT)}", SUM)
             case "sub":

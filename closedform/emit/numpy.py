@@ -127,6 +127,8 @@ def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:
             lines.append(f"{sine} = np.sin({code})")
         else:
             lines.append(f"{cosine} = np.cos({code})")
+    for angle, principal in printer.turned:
+        lines.append(f"{principal} = _runtime.principal({printer.text[angle.id].code})")
     lines += [f"{line.name} = {line.code}" for line in printer.lines]
     values = [v for result in results for v in result]
     used = program.used_inputs()

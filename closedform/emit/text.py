@@ -97,6 +97,7 @@ GROUPS = {
     "div": "divide",
     "sqrt": "sqrt",
     "sincos": "sincos",
+    "principal": "reduce to a turn",
     "atan2": "atan2",
 }
 

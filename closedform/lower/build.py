@@ -67,7 +67,8 @@ class Builder:
             sine, cosine = self._sine_cosine(expr.args[0])
             return sine if isinstance(expr, sp.sin) else cosine
         if isinstance(expr, sp.atan2):
-            return graph.atan2(*map(self, expr.args))
+            turned = self._principal_value(*expr.args)
+            return turned or graph.atan2(*map(self, expr.args))
         if isinstance(expr, sp.atan):  # SymPy writes atan2(y, x) so where x is positive
             top, bottom = sp.fraction(expr.args[0])
             if not bottom.is_nonnegative:
@@ -128,6 +129,29 @@ class Builder:
         if half:
             factors.append(self.graph.node("sqrt", self(base)))
         return self.graph.product(factors)
+
+    def _principal_value(self, sine: sp.Expr, cosine: sp.Expr) -> Node | None:
+        """``atan2(sin t, cos t)``, or of ``-t``: of a whole combination of inputs no trigonometry.
+
+        Each input is brought to one turn by itself, for the reason that sines are taken of each.
+        """
+        opposite = sine.could_extract_minus_sign()
+        sine = -sine if opposite else sine
+        if not (isinstance(sine, sp.sin) and cosine == sp.cos(sine.args[0])):
+            return None
+        terms = [t.as_coeff_Mul() for t in sp.Add.make_args(sine.args[0])]
+        inputs = [self.known.get(symbol) for _, symbol in terms]
+        if any(n is None or n.op != "input" for n in inputs):
+            return None
+        if not all(coefficient.is_Integer for coefficient, _ in terms):
+            return None
+        graph = self.graph
+        parts = [
+            graph.product([graph.const(coefficient), graph.node("principal", self(symbol))])
+            for coefficient, symbol in terms
+        ]
+        total = graph.sum(parts)
+        return graph.node("wrap", graph.neg(total) if opposite else total)
 
     def _sine_cosine(self, angle: sp.Expr) -> tuple[Node, Node]:
         graph = self.graph

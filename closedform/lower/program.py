@@ -19,7 +19,8 @@ from closedform.lower.ranges import Ranges, UnboundedError
 from closedform.lower.share import share
 from closedform.lower.turns import Turns
 
-LEAVES = frozenset({"const", "input", "nan", "tolerance", "true", "false", "sin", "cos"})
+OF_ANGLES = frozenset({"sin", "cos", "principal"})
+LEAVES = frozenset({"const", "input", "nan", "tolerance", "true", "false", *OF_ANGLES})
 SPARED = 0.15
 """Which part of the operations a common case must spare to be worth a program of its own."""
 
@@ -42,14 +43,16 @@ class Result:
 class Lowered:
     """A straight-line program.
 
-    ``angles`` are the nodes whose sine and cosine are taken, in the order of first use; they depend
-    on the inputs alone.  ``names`` gives preferred names (from the derivation) to nodes.
+    ``angles`` are the nodes whose sine and cosine are taken, ``turned`` those of which whole turns
+    are taken away, in the order of first use; they depend on the inputs alone.  ``names`` gives
+    preferred names (from the derivation) to nodes.
     """
 
     name: str
     inputs: tuple[Array, ...]
     parameters: tuple[str, ...]
     angles: tuple[Node, ...]
+    turned: tuple[Node, ...]
     results: tuple[Result, ...]
     names: Mapping[int, str]
     common: Lowered | None = None
@@ -74,7 +77,7 @@ class Lowered:
         for node in self.schedule():
             if node.op not in LEAVES and node.op != "neg":
                 counts[node.op] += 1
-        counts["sincos"] = len(self.angles)
+        counts["sincos"], counts["principal"] = len(self.angles), len(self.turned)
         return {k: counts[k] for k in sorted(counts) if counts[k]}
 
     @property
@@ -165,6 +168,7 @@ def _finished(
         function.inputs,
         tuple(name for name in parameters if name in used),
         tuple(dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op in ("sin", "cos"))),
+        tuple(dict.fromkeys(n.args[0] for n in reachable(renamed) if n.op == "principal")),
         tuple(replace(r, nodes=tuple(islice(remaining, len(r.nodes)))) for r in results),
         named,
     )

@@ -41,7 +41,7 @@ class Ranges:
         if found is None:
             raise UnboundedError
         low, high = found
-        if low > -1 and high <= 1:
+        if (low > -1 and high <= 1) or angle.op == "wrap":
             return angle
         return graph.node("wrap_cut" if low == -1 and high <= 1 else "wrap", angle)
 
@@ -55,6 +55,8 @@ class Ranges:
             y, x = node.args
             high = Fraction(1, 2) if self.positive(x) else Fraction(1)
             return (Fraction(0) if self.positive(y) else -high), high
+        if node.op == "wrap":
+            return Fraction(-1), Fraction(1)
         if node.op == "product":
             return self._product(node)
         parts = [self.of(a) for a in (node.args[1:] if node.op == "select" else node.args)]

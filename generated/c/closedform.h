@@ -246,6 +246,13 @@ CF_INLINE real_t cf_atan_poly(real_t z)
 
 #endif
 
+/* The nearest integer, of either sign. */
+CF_INLINE real_t cf_nearest(real_t x)
+{
+    const real_t shift = CLOSEDFORM_C(1.5) * CF_ROUND;
+    return (x + shift) - shift;
+}
+
 /* Sine and cosine for |x| <= CF_TRIG_LIMIT, without a branch. Beyond it, and for NaN, the values
  * are unspecified: use cf_sincos_block, or test with cf_trig_excess. */
 CF_INLINE void cf_sincos(real_t x, real_t *s, real_t *c)
@@ -330,6 +337,27 @@ CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF
     if (excess & CF_SIGN) cf_sincos_fixup(n, x, s, c);
 }
 
+/* Redoes with libm what whole turns are not enough for. */
+CF_RARE void cf_principal_fixup(size_t n, const real_t *x, real_t *angle)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (cf_trig_excess(x[i]) & CF_SIGN)
+            angle[i] = CF_LIBM(atan2)(CF_LIBM(sin)(x[i]), CF_LIBM(cos)(x[i]));
+    }
+}
+
+/* Any n angles brought to [-pi, pi], give or take rounding; the arrays must not overlap. */
+CF_INLINE void cf_principal_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT angle)
+{
+    cf_word excess = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const real_t n4 = 4 * cf_nearest(x[i] * CLOSEDFORM_C(0.15915494309189535));
+        angle[i] = ((x[i] - n4 * CF_PIO2_1) - n4 * CF_PIO2_2) - n4 * CF_PIO2_3;
+        excess |= cf_trig_excess(x[i]);
+    }
+    if (excess & CF_SIGN) cf_principal_fixup(n, x, angle);
+}
+
 /* Sine and cosine of the angles of one call, a constant number: 1, 2, 4 or a multiple of 8. They
  * become vectors, and eight cost little more than one. */
 CF_INLINE void cf_sincos_lanes(size_t n, const real_t *x, real_t *s, real_t *c)
@@ -383,9 +411,7 @@ CF_INLINE real_t cf_wrap_cut(real_t angle) { return angle <= -CF_PI ? CF_PI : an
 /* The sum of a few angles brought to (-CF_PI, CF_PI]; one that is there already stays as it is. */
 CF_INLINE real_t cf_wrap(real_t angle)
 {
-    /* Adding this rounds to an integer of either sign. */
-    const real_t shift = CLOSEDFORM_C(1.5) * CF_ROUND;
-    const real_t turns = (angle * CLOSEDFORM_C(0.15915494309189535) + shift) - shift;
+    const real_t turns = cf_nearest(angle * CLOSEDFORM_C(0.15915494309189535));
     const real_t a = (angle - turns * (2 * CF_PI)) - turns * CF_TWO_PI_LO;
     return cf_wrap_cut(a > CF_PI ? CF_PI : a);
 }

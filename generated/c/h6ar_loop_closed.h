@@ -4,14 +4,16 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 60 compare and select, 81 add, 3 atan2, 21 divide, 121 multiply, 6 sincos, 8 sqrt
+ *   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
+ *     sincos, 8 sqrt
  *   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 8 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
  *   jacobian: 55 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
- *   ik: 374 compare and select, 374 add, 28 atan2, 49 divide, 517 multiply, 3 sincos, 31 sqrt
+ *   ik: 374 compare and select, 374 add, 27 atan2, 49 divide, 517 multiply, 1 reduce to a turn, 3
+ *     sincos, 31 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt

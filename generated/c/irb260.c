@@ -4,10 +4,10 @@
  * Source: Jun Shi, Xiaorui Zhu, Zexiang Li: New Method for Kinematic Analysis of a Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   joint4: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
+ *   joint4: 1 add, 2 reduce to a turn, 1 compare and select
  *   joints_from_motors: 1 add
  *   motors_from_joints: 1 add
- *   fk: 10 add, 1 atan2, 14 multiply, 4 sincos, 1 compare and select
+ *   fk: 9 add, 10 multiply, 2 reduce to a turn, 3 sincos, 1 compare and select
  *   pose: 10 add, 14 multiply, 4 sincos
  *   jacobian: 6 add, 14 multiply, 3 sincos
  *   jacobian_space: 6 add, 14 multiply, 3 sincos
@@ -23,15 +23,11 @@
  */
 #include "irb260.h"
 
-CF_INLINE void irb260_joint4_kernel(const real_t *sines, const real_t *cosines,
-    real_t theta4[1])
+CF_INLINE void irb260_joint4_kernel(const real_t *principals, real_t theta4[1])
 {
-    const real_t s2 = sines[0];
-    const real_t c2 = cosines[0];
-    const real_t s3 = sines[1];
-    const real_t c3 = cosines[1];
-    const real_t t1 = cf_atan2(s2 * c3 + c2 * s3, c2 * c3 - s2 * s3);
-    theta4[0] = cf_wrap_cut(-t1);
+    const real_t principal2 = principals[0];
+    const real_t principal3 = principals[1];
+    theta4[0] = cf_wrap(-(principal2 + principal3));
 }
 
 CLOSEDFORM_DISPATCHED
@@ -39,10 +35,10 @@ void irb260_joint4(const irb260_params *params, const real_t q[4],
     real_t theta4[1])
 {
     (void)params;
-    real_t sines[2], cosines[2];
-    const real_t lanes[2] = { q[1], q[2] };
-    cf_sincos_lanes(2, lanes, sines, cosines);
-    irb260_joint4_kernel(sines, cosines, theta4);
+    real_t principals[2];
+    const real_t wide[2] = { q[1], q[2] };
+    cf_principal_block(2, wide, principals);
+    irb260_joint4_kernel(principals, theta4);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -54,15 +50,14 @@ void irb260_joint4_batch(size_t n, const irb260_params *params,
     (void)theta4_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
+        real_t principals[2][CLOSEDFORM_BLOCK];
+        cf_principal_block(length, q + q_stride + start, principals[0]);
+        cf_principal_block(length, q + 2 * q_stride + start, principals[1]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
-            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            const real_t principals_i[2] = { principals[0][i], principals[1][i] };
             real_t theta4_i[1];
-            irb260_joint4_kernel(sines_i, cosines_i, theta4_i);
+            irb260_joint4_kernel(principals_i, theta4_i);
             theta4[start + i] = theta4_i[0];
         }
     }
@@ -151,7 +146,8 @@ void irb260_motors_from_joints_batch(size_t n, const irb260_params *params,
 }
 
 CF_INLINE void irb260_fk_kernel(const irb260_params *params, const real_t *sines,
-    const real_t *cosines, real_t x[4])
+    const real_t *cosines, const real_t *principals,
+    real_t x[4])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -165,14 +161,13 @@ CF_INLINE void irb260_fk_kernel(const irb260_params *params, const real_t *sines
     const real_t c3 = cosines[1];
     const real_t s1 = sines[2];
     const real_t c1 = cosines[2];
-    const real_t s5 = sines[3];
-    const real_t c5 = cosines[3];
+    const real_t principal1 = principals[0];
+    const real_t principal5 = principals[1];
     const real_t t1 = l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3);
-    const real_t t2 = cf_atan2(s1 * c5 + c1 * s5, c1 * c5 - s1 * s5);
     x[0] = -(t1 * s1);
     x[1] = t1 * c1;
     x[2] = l2 - l5 + l3 * c2 - l4 * (s2 * c3 + c2 * s3);
-    x[3] = cf_wrap_cut(t2);
+    x[3] = cf_wrap(principal1 + principal5);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -180,9 +175,12 @@ void irb260_fk(const irb260_params *params, const real_t q[4],
     real_t x[4])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0], q[3] };
+    const real_t lanes[4] = { q[1], q[2], q[0] };
     cf_sincos_lanes(4, lanes, sines, cosines);
-    irb260_fk_kernel(params, sines, cosines, x);
+    real_t principals[2];
+    const real_t wide[2] = { q[0], q[3] };
+    cf_principal_block(2, wide, principals);
+    irb260_fk_kernel(params, sines, cosines, principals, x);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -193,17 +191,20 @@ void irb260_fk_batch(size_t n, const irb260_params *params,
     const irb260_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[4][CLOSEDFORM_BLOCK], cosines[4][CLOSEDFORM_BLOCK];
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
         cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
         cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
         cf_sincos_block(length, q + start, sines[2], cosines[2]);
-        cf_sincos_block(length, q + 3 * q_stride + start, sines[3], cosines[3]);
+        real_t principals[2][CLOSEDFORM_BLOCK];
+        cf_principal_block(length, q + start, principals[0]);
+        cf_principal_block(length, q + 3 * q_stride + start, principals[1]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[4] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i] };
-            const real_t cosines_i[4] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i] };
+            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
+            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
+            const real_t principals_i[2] = { principals[0][i], principals[1][i] };
             real_t x_i[4];
-            irb260_fk_kernel(&local, sines_i, cosines_i, x_i);
+            irb260_fk_kernel(&local, sines_i, cosines_i, principals_i, x_i);
             x[start + i] = x_i[0];
             x[x_stride + start + i] = x_i[1];
             x[2 * x_stride + start + i] = x_i[2];

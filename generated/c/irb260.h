@@ -4,10 +4,10 @@
  * Source: Jun Shi, Xiaorui Zhu, Zexiang Li: New Method for Kinematic Analysis of a Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   joint4: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
+ *   joint4: 1 add, 2 reduce to a turn, 1 compare and select
  *   joints_from_motors: 1 add
  *   motors_from_joints: 1 add
- *   fk: 10 add, 1 atan2, 14 multiply, 4 sincos, 1 compare and select
+ *   fk: 9 add, 10 multiply, 2 reduce to a turn, 3 sincos, 1 compare and select
  *   pose: 10 add, 14 multiply, 4 sincos
  *   jacobian: 6 add, 14 multiply, 3 sincos
  *   jacobian_space: 6 add, 14 multiply, 3 sincos

@@ -6,7 +6,7 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 4 add, 8 multiply, 2 sincos
  *   pose: 4 add, 8 multiply, 2 sincos
- *   orientation: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
+ *   orientation: 1 add, 2 reduce to a turn, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
@@ -139,15 +139,11 @@ void planar_2r_pose_batch(size_t n, const planar_2r_params *params,
     }
 }
 
-CF_INLINE void planar_2r_orientation_kernel(const real_t *sines, const real_t *cosines,
-    real_t phi[1])
+CF_INLINE void planar_2r_orientation_kernel(const real_t *principals, real_t phi[1])
 {
-    const real_t s1 = sines[0];
-    const real_t c1 = cosines[0];
-    const real_t s2 = sines[1];
-    const real_t c2 = cosines[1];
-    const real_t t1 = cf_atan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2);
-    phi[0] = cf_wrap_cut(t1);
+    const real_t principal1 = principals[0];
+    const real_t principal2 = principals[1];
+    phi[0] = cf_wrap(principal1 + principal2);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -155,10 +151,10 @@ void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
     real_t phi[1])
 {
     (void)params;
-    real_t sines[2], cosines[2];
-    const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_lanes(2, lanes, sines, cosines);
-    planar_2r_orientation_kernel(sines, cosines, phi);
+    real_t principals[2];
+    const real_t wide[2] = { q[0], q[1] };
+    cf_principal_block(2, wide, principals);
+    planar_2r_orientation_kernel(principals, phi);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -170,15 +166,14 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params,
     (void)phi_stride;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        real_t principals[2][CLOSEDFORM_BLOCK];
+        cf_principal_block(length, q + start, principals[0]);
+        cf_principal_block(length, q + q_stride + start, principals[1]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
-            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            const real_t principals_i[2] = { principals[0][i], principals[1][i] };
             real_t phi_i[1];
-            planar_2r_orientation_kernel(sines_i, cosines_i, phi_i);
+            planar_2r_orientation_kernel(principals_i, phi_i);
             phi[start + i] = phi_i[0];
         }
     }

@@ -6,7 +6,7 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 4 add, 8 multiply, 2 sincos
  *   pose: 4 add, 8 multiply, 2 sincos
- *   orientation: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
+ *   orientation: 1 add, 2 reduce to a turn, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos

@@ -4,7 +4,7 @@
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 9 add, 16 multiply, 3 sincos
- *   fk: 9 add, 1 atan2, 16 multiply, 3 sincos, 1 compare and select
+ *   fk: 7 add, 8 multiply, 3 reduce to a turn, 2 sincos, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   singularities: 1 sincos
@@ -101,7 +101,7 @@ void scara_pose_batch(size_t n, const scara_params *params,
 
 CF_INLINE void scara_fk_kernel(const scara_params *params, const real_t q[4],
     const real_t *sines, const real_t *cosines,
-    real_t x[4])
+    const real_t *principals, real_t x[4])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -111,25 +111,27 @@ CF_INLINE void scara_fk_kernel(const scara_params *params, const real_t q[4],
     const real_t c1 = cosines[0];
     const real_t s2 = sines[1];
     const real_t c2 = cosines[1];
-    const real_t s4 = sines[2];
-    const real_t c4 = cosines[2];
-    const real_t t1 = c2 * c4 + s2 * s4;
-    const real_t t2 = s2 * c4 - c2 * s4;
-    const real_t t3 = cf_atan2(s1 * t1 + c1 * t2, c1 * t1 - s1 * t2);
+    const real_t principal1 = principals[0];
+    const real_t principal2 = principals[1];
+    const real_t principal4 = principals[2];
+    const real_t t1 = cf_wrap(principal1 + principal2 - principal4);
     x[0] = l1 * c1 + l2 * (c1 * c2 - s1 * s2);
     x[1] = l1 * s1 + l2 * (s1 * c2 + c1 * s2);
     x[2] = h - d3;
-    x[3] = cf_wrap_cut(t3);
+    x[3] = t1;
 }
 
 CLOSEDFORM_DISPATCHED
 void scara_fk(const scara_params *params, const real_t q[4],
     real_t x[4])
 {
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[0], q[1], q[3] };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    scara_fk_kernel(params, q, sines, cosines, x);
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_lanes(2, lanes, sines, cosines);
+    real_t principals[3];
+    const real_t wide[3] = { q[0], q[1], q[3] };
+    cf_principal_block(3, wide, principals);
+    scara_fk_kernel(params, q, sines, cosines, principals, x);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -140,17 +142,21 @@ void scara_fk_batch(size_t n, const scara_params *params,
     const scara_params local = *params;
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block(length, q + start, sines[0], cosines[0]);
         cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + 3 * q_stride + start, sines[2], cosines[2]);
+        real_t principals[3][CLOSEDFORM_BLOCK];
+        cf_principal_block(length, q + start, principals[0]);
+        cf_principal_block(length, q + q_stride + start, principals[1]);
+        cf_principal_block(length, q + 3 * q_stride + start, principals[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[4] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            const real_t principals_i[3] = { principals[0][i], principals[1][i], principals[2][i] };
             real_t x_i[4];
-            scara_fk_kernel(&local, q_i, sines_i, cosines_i, x_i);
+            scara_fk_kernel(&local, q_i, sines_i, cosines_i, principals_i, x_i);
             x[start + i] = x_i[0];
             x[x_stride + start + i] = x_i[1];
             x[2 * x_stride + start + i] = x_i[2];

@@ -4,7 +4,7 @@
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 9 add, 16 multiply, 3 sincos
- *   fk: 9 add, 1 atan2, 16 multiply, 3 sincos, 1 compare and select
+ *   fk: 7 add, 8 multiply, 3 reduce to a turn, 2 sincos, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   singularities: 1 sincos

@@ -84,9 +84,22 @@ def sincos(angle: Any) -> tuple[Any, Any]:
     return (tangent + tangent) * factor, (1.0 - square) * factor
 
 
+def principal(angle: Any) -> Any:
+    """An angle of any size in [-pi, pi], give or take rounding; no less accurate if it is large."""
+    turns = np.rint(angle * (0.5 / np.pi))
+    # 2 pi in three parts; the products with the first two are exact
+    near = angle - turns * (4 * 1.5707963267923333) - turns * (4 * 2.5633441515839558e-12)
+    near = near - turns * (4 * 1.0562999066987428e-23)
+    wide = np.abs(angle) > 400000.0
+    if np.any(wide):
+        return np.where(wide, np.arctan2(np.sin(angle), np.cos(angle)), near)
+    return near
+
+
 def wrap(angle: Any) -> Any:
     """The sum of a few angles in (-pi, pi]; one that is there already stays as it is."""
-    wrapped = angle - 2 * np.pi * np.rint(angle * (0.5 / np.pi))
+    turns = np.rint(angle * (0.5 / np.pi))
+    wrapped = angle - turns * (2 * np.pi) - turns * 2.4492935982947064e-16
     rare = np.abs(wrapped) >= np.pi
     if np.any(rare):
         return np.where(rare, np.pi, wrapped)

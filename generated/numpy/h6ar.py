@@ -3,14 +3,16 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 45 add, 35 compare and select, 3 atan2, 8 divide, 60 multiply, 6 sincos, 4 sqrt
+#   fk: 45 add, 35 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
+#     sincos, 4 sqrt
 #   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
-#   ik: 394 compare and select, 344 add, 26 atan2, 70 divide, 413 multiply, 3 sincos, 31 sqrt
+#   ik: 394 compare and select, 344 add, 25 atan2, 70 divide, 413 multiply, 1 reduce to a turn, 3
+#     sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -101,6 +103,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
     s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s, c = _runtime.sincos(theta)
+    principal = _runtime.principal(theta)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
     side2A = _runtime.sign(t1 + t2)
@@ -128,6 +131,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t16 = c2L_half * t14 - s2L_half * t15
     c23A = side23A * t16
     t17 = lp * s
+    del s
     t18 = d * d
     t19 = s2L_half * t10 - c2L_half * t11
     del t10, t11
@@ -156,7 +160,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t31 = t30 - base
     wrist = np.sqrt(np.maximum(t29, 0.0)) * np.sqrt(np.maximum(t31, 0.0))
     t32 = loff + lp * c + wrist
-    del wrist
+    del c, wrist
     t33 = t28 * t32
     t34 = a3 + t17 * c_phi + t25 * t33
     s23A = side23A * t20
@@ -195,7 +199,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
         t44 + t43,
         t45,
         t46,
-        _runtime.wrap_cut(np.arctan2(s, c)) + t43,
+        _runtime.wrap(principal) + t43,
     )
 
 
@@ -991,17 +995,19 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     s_phi, c_phi = _runtime.sincos(phi)
     s_pitch, c_pitch = _runtime.sincos(pitch)
     s_psi, c_psi = _runtime.sincos(psi)
+    principal_pitch = _runtime.principal(pitch)
     h = np.sqrt(x * x + y * y)
     t1 = L1 + L2
     nowhere = h <= t1 * _runtime.VANISHING
     t2 = np.arctan2(x, y)
     t3 = lp * s_pitch
+    del s_pitch
     t4 = d - c_psi * (gs - al)
     t5 = (gs + al) * c_psi - d
     t6 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t5, 0.0))
     t7 = 1.0 / c_psi
     t8 = loff + lp * c_pitch + t6 * t7
-    del t6
+    del c_pitch, t6
     t9 = s_psi * t8
     t10 = s_phi * t3 - c_phi * t9
     t11 = h + t10
@@ -1262,8 +1268,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del turn_alpha, turn_beta
     t128 = t125 + t118 - t127
     del t118, t127
-    t129 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    del c_pitch, s_pitch
+    t129 = _runtime.wrap(principal_pitch)
+    del principal_pitch
     c_relative_front_elbow_down = t51 - t52
     del t51, t52
     s_relative_front_elbow_down = t53 + t54
@@ -1907,14 +1913,16 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     s_phi, c_phi = _runtime.sincos(phi)
     s_pitch, c_pitch = _runtime.sincos(pitch)
     s_psi, c_psi = _runtime.sincos(psi)
+    principal_pitch = _runtime.principal(pitch)
     h = np.sqrt(x * x + y * y)
     t1 = lp * s_pitch
+    del s_pitch
     t2 = d - c_psi * (gs - al)
     t3 = (gs + al) * c_psi - d
     t4 = np.sqrt(np.maximum(t2, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
     t5 = 1.0 / c_psi
     t6 = loff + lp * c_pitch + t4 * t5
-    del t4
+    del c_pitch, t4
     t7 = s_psi * t6
     t8 = s_phi * t1 - c_phi * t7
     t9 = h + t8
@@ -2087,8 +2095,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del rM, rN
     t92 = np.arctan2(s_lag, c_lag)
     t93 = t91 - t92
-    t94 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    del c_pitch, s_pitch
+    t94 = _runtime.wrap(principal_pitch)
+    del principal_pitch
     c_relative_front_elbow_down = t51 - t52
     del t51, t52
     s_relative_front_elbow_down = t53 + t54

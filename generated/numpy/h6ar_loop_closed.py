@@ -3,14 +3,16 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 60 compare and select, 81 add, 3 atan2, 21 divide, 121 multiply, 6 sincos, 8 sqrt
+#   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
+#     sincos, 8 sqrt
 #   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 8 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
 #   jacobian: 55 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
-#   ik: 374 compare and select, 374 add, 28 atan2, 49 divide, 517 multiply, 3 sincos, 31 sqrt
+#   ik: 374 compare and select, 374 add, 27 atan2, 49 divide, 517 multiply, 1 reduce to a turn, 3
+#     sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
@@ -102,7 +104,9 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
     s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
     s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    principal = _runtime.principal(theta)
     t1 = lp * s
+    del s
     t2 = c3R_half * c3L_half
     t3 = s3R_half * s3L_half
     t4 = t2 + t3
@@ -237,7 +241,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t59 = t58 - base
     wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
     t60 = loff + lp * c + wrist
-    del wrist
+    del c, wrist
     t61 = t56 * t60
     t62 = t1 * t55 + c_phi * t61
     t63 = a3 + t1 * c_phi - t55 * t61
@@ -276,7 +280,7 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
         t74 + t73,
         t75,
         t76,
-        _runtime.wrap_cut(np.arctan2(s, c)) + t73,
+        _runtime.wrap(principal) + t73,
     )
 
 
@@ -1480,11 +1484,13 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     s_phi, c_phi = _runtime.sincos(phi)
     s_pitch, c_pitch = _runtime.sincos(pitch)
     s_psi, c_psi = _runtime.sincos(psi)
+    principal_pitch = _runtime.principal(pitch)
     h = np.sqrt(x * x + y * y)
     t1 = L1 + L2
     nowhere = h <= t1 * _runtime.VANISHING
     t2 = np.arctan2(x, y)
     t3 = lp * s_pitch
+    del s_pitch
     t4 = c_phi * c_psi
     t5 = 1.0 / t4
     t6 = d - (gs - al) * t4
@@ -1492,7 +1498,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t4
     t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
     t9 = loff + lp * c_pitch + t5 * t8
-    del t8
+    del c_pitch, t8
     t10 = s_psi * t9
     t11 = s_phi * t3 - c_phi * t10
     t12 = h + t11
@@ -1766,8 +1772,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t133 = _runtime.select(folded_left, t114, np.arctan2(t128 - t130, t131 + t132))
     t134 = _runtime.select(short_right, 0.0, t117 * np.arctan2(rN_left, rM_left))
     del rM_left, rN_left, t117
-    t135 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    del c_pitch, s_pitch
+    t135 = _runtime.wrap(principal_pitch)
+    del principal_pitch
     t136 = t135 + t111
     t137 = _runtime.select(folded_left, t114, np.arctan2(t128 + t130, t131 - t132))
     del t114, t128, t130, t131, t132
@@ -2585,8 +2591,10 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     s_phi, c_phi = _runtime.sincos(phi)
     s_pitch, c_pitch = _runtime.sincos(pitch)
     s_psi, c_psi = _runtime.sincos(psi)
+    principal_pitch = _runtime.principal(pitch)
     h = np.sqrt(x * x + y * y)
     t1 = lp * s_pitch
+    del s_pitch
     t2 = c_phi * c_psi
     t3 = 1.0 / t2
     t4 = d - (gs - al) * t2
@@ -2594,7 +2602,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t2
     t6 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t5, 0.0))
     t7 = loff + lp * c_pitch + t3 * t6
-    del t6
+    del c_pitch, t6
     t8 = s_psi * t7
     t9 = s_phi * t1 - c_phi * t8
     t10 = h + t9
@@ -2801,8 +2809,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t113 = _runtime.wrap_cut(np.arctan2(t108 - t110, t111 + t112))
     t114 = t98 * np.arctan2(rN_left, rM_left)
     del rM_left, rN_left, t98
-    t115 = _runtime.wrap_cut(np.arctan2(s_pitch, c_pitch))
-    del c_pitch, s_pitch
+    t115 = _runtime.wrap(principal_pitch)
+    del principal_pitch
     t116 = t115 + t94
     t117 = _runtime.wrap_cut(np.arctan2(t108 + t110, t111 - t112))
     del t108, t110, t111, t112

@@ -3,10 +3,10 @@
 # Source: Jun Shi, Xiaorui Zhu, Zexiang Li: New Method for Kinematic Analysis of a Hybrid
 #     Manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   joint4: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
+#   joint4: 1 add, 2 reduce to a turn, 1 compare and select
 #   joints_from_motors: 1 add
 #   motors_from_joints: 1 add
-#   fk: 10 add, 1 atan2, 14 multiply, 4 sincos, 1 compare and select
+#   fk: 9 add, 10 multiply, 2 reduce to a turn, 3 sincos, 1 compare and select
 #   pose: 10 add, 14 multiply, 4 sincos
 #   jacobian: 6 add, 14 multiply, 3 sincos
 #   jacobian_space: 6 add, 14 multiply, 3 sincos
@@ -97,12 +97,10 @@ _DEFAULT = Parameters()
 
 
 def _joint4(_theta1, theta2, theta3, _theta5):
-    s2, c2 = _runtime.sincos(theta2)
-    s3, c3 = _runtime.sincos(theta3)
-    t1 = np.arctan2(s2 * c3 + c2 * s3, c2 * c3 - s2 * s3)
-    del c2, c3, s2, s3
+    principal2 = _runtime.principal(theta2)
+    principal3 = _runtime.principal(theta3)
     return (
-        _runtime.wrap_cut(-t1),
+        _runtime.wrap(-(principal2 + principal3)),
     )
 
 
@@ -191,15 +189,14 @@ def _fk(theta1, theta2, theta3, theta5, l1, l2, l3, l4, l5, l6):
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     s1, c1 = _runtime.sincos(theta1)
-    s5, c5 = _runtime.sincos(theta5)
+    principal1 = _runtime.principal(theta1)
+    principal5 = _runtime.principal(theta5)
     t1 = l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3)
-    t2 = np.arctan2(s1 * c5 + c1 * s5, c1 * c5 - s1 * s5)
-    del c5, s5
     return (
         -(t1 * s1),
         t1 * c1,
         l2 - l5 + l3 * c2 - l4 * (s2 * c3 + c2 * s3),
-        _runtime.wrap_cut(t2),
+        _runtime.wrap(principal1 + principal5),
     )
 
 

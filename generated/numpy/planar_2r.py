@@ -5,7 +5,7 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 4 add, 8 multiply, 2 sincos
 #   pose: 4 add, 8 multiply, 2 sincos
-#   orientation: 2 add, 1 atan2, 4 multiply, 2 sincos, 1 compare and select
+#   orientation: 1 add, 2 reduce to a turn, 1 compare and select
 #   jacobian: 4 add, 8 multiply, 2 sincos
 #   determinant: 2 multiply, 1 sincos
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
@@ -151,12 +151,10 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
 
 
 def _orientation(theta1, theta2):
-    s1, c1 = _runtime.sincos(theta1)
-    s2, c2 = _runtime.sincos(theta2)
-    t1 = np.arctan2(s1 * c2 + c1 * s2, c1 * c2 - s1 * s2)
-    del c1, c2, s1, s2
+    principal1 = _runtime.principal(theta1)
+    principal2 = _runtime.principal(theta2)
     return (
-        _runtime.wrap_cut(t1),
+        _runtime.wrap(principal1 + principal2),
     )
 
 

@@ -3,7 +3,7 @@
 # Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   pose: 9 add, 16 multiply, 3 sincos
-#   fk: 9 add, 1 atan2, 16 multiply, 3 sincos, 1 compare and select
+#   fk: 7 add, 8 multiply, 3 reduce to a turn, 2 sincos, 1 compare and select
 #   jacobian: 4 add, 8 multiply, 2 sincos
 #   determinant: 2 multiply, 1 sincos
 #   singularities: 1 sincos
@@ -123,17 +123,16 @@ def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any
 def _fk(theta1, theta2, d3, theta4, l1, l2, h):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
-    s4, c4 = _runtime.sincos(theta4)
-    t1 = c2 * c4 + s2 * s4
-    t2 = s2 * c4 - c2 * s4
-    del c4, s4
-    t3 = np.arctan2(s1 * t1 + c1 * t2, c1 * t1 - s1 * t2)
-    del t1, t2
+    principal1 = _runtime.principal(theta1)
+    principal2 = _runtime.principal(theta2)
+    principal4 = _runtime.principal(theta4)
+    t1 = _runtime.wrap(principal1 + principal2 - principal4)
+    del principal1, principal2, principal4
     return (
         l1 * c1 + l2 * (c1 * c2 - s1 * s2),
         l1 * s1 + l2 * (s1 * c2 + c1 * s2),
         h - d3,
-        _runtime.wrap_cut(t3),
+        t1,
     )
 
 

@@ -9,6 +9,7 @@ void atan2_all(size_t n, const real_t *y, const real_t *x, real_t *angle);
 void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c, real_t *angle);
 void wrap_all(size_t n, const real_t *angle, real_t *wrapped);
 void wrap_cut_all(size_t n, const real_t *angle, real_t *wrapped);
+void principal_all(size_t n, const real_t *angle, real_t *turned);
 void nought_all(size_t n, const real_t *x, real_t *yes);
 void max_min_all(size_t n, const real_t *a, const real_t *b, real_t *larger, real_t *smaller);
 void constants(real_t *out);
@@ -63,6 +64,11 @@ void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c,
 
 WRAP(wrap)
 WRAP(wrap_cut)
+
+CLOSEDFORM_DISPATCHED void principal_all(size_t n, const real_t *angle, real_t *turned)
+{
+    cf_principal_block(n, angle, turned);
+}
 
 CLOSEDFORM_DISPATCHED void nought_all(size_t n, const real_t *CF_RESTRICT x,
                                     real_t *CF_RESTRICT zero)

@@ -177,6 +177,7 @@ CF_INLINE real_t cf_nought(real_t x) { return CLOSEDFORM_C(0.0) * x; }
 #define CF_PIO2_2 CLOSEDFORM_C(1.0804273188114166e-05)
 #define CF_PIO2_3 CLOSEDFORM_C(6.07710062827671e-11)
 #define CF_ROUND CLOSEDFORM_C(8388608.0) /* 2^23 */
+#define CF_BELOW_PI CLOSEDFORM_C(3.1415925) /* the largest that is less: CF_PI is more */
 #define CF_PIO2_LO CLOSEDFORM_C(-4.371139e-8)
 #define CF_TWO_PI_LO CLOSEDFORM_C(-1.7484555e-7)
 
@@ -208,6 +209,7 @@ CF_INLINE real_t cf_atan_poly(real_t z)
 #define CF_PIO2_2 CLOSEDFORM_C(2.5633441515839558e-12)
 #define CF_PIO2_3 CLOSEDFORM_C(1.0562999066987428e-23)
 #define CF_ROUND CLOSEDFORM_C(4503599627370496.0) /* 2^52 */
+#define CF_BELOW_PI CF_PI
 #define CF_PIO2_LO CLOSEDFORM_C(6.123233995736766e-17)
 #define CF_TWO_PI_LO CLOSEDFORM_C(2.4492935982947064e-16)
 
@@ -413,7 +415,8 @@ CF_INLINE real_t cf_wrap(real_t angle)
 {
     const real_t turns = cf_nearest(angle * CLOSEDFORM_C(0.15915494309189535));
     const real_t a = (angle - turns * (2 * CF_PI)) - turns * CF_TWO_PI_LO;
-    return cf_wrap_cut(a > CF_PI ? CF_PI : a);
+    const real_t down = (a - 2 * CF_PI) - CF_TWO_PI_LO;
+    return cf_wrap_cut(a > CF_BELOW_PI ? down : a);
 }
 
 #endif

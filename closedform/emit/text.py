@@ -78,6 +78,8 @@ def banner(derivation: Derivation, lowered: Mapping[str, Lowered], comment: str)
     ]
     for name, program in lowered.items():
         lines.append(f"  {name}: {describe_operations(program)}")
+        if program.common is not None:
+            lines.append(f"  {name} where nothing vanishes: {describe_operations(program.common)}")
     wrapped = [w for line in lines for w in textwrap.wrap(line, WIDTH, subsequent_indent="    ")]
     return "\n".join(f"{comment} {line}" for line in wrapped)
 

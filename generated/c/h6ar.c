@@ -14,6 +14,8 @@
  *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
  *   ik: 394 compare and select, 344 add, 25 atan2, 70 divide, 413 multiply, 1 reduce to a turn, 3
  *     sincos, 31 sqrt
+ *   ik where nothing vanishes: 254 compare and select, 200 add, 18 atan2, 38 divide, 223 multiply,
+ *     1 reduce to a turn, 3 sincos, 31 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt

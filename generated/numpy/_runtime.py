@@ -130,6 +130,9 @@ def poison(failed: Any) -> Any:
 
 def status(invalid: Any, unreachable: Any, singular: Any) -> Any:
     """The status of a branch; an invalid input outweighs all, a free joint nothing."""
+    told = invalid | unreachable | singular
+    if not np.any(told):
+        return np.zeros_like(told, np.uint8)
     reached = np.logical_not(unreachable)
     valid = np.uint8(1) * unreachable + np.uint8(2) * (singular & reached)
     return np.uint8(3) * invalid + np.logical_not(invalid) * valid

@@ -13,6 +13,8 @@
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
 #   ik: 374 compare and select, 374 add, 27 atan2, 49 divide, 517 multiply, 1 reduce to a turn, 3
 #     sincos, 31 sqrt
+#   ik where nothing vanishes: 276 compare and select, 274 add, 23 atan2, 35 divide, 388 multiply,
+#     1 reduce to a turn, 3 sincos, 31 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt

@@ -11,6 +11,8 @@
 #   determinant: 3 multiply, 2 sincos
 #   singularities: 2 sincos
 #   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 9 sqrt
+#   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 7
+#     sqrt
 """Stanford arm.
 
 A vertical base axis (theta1), a horizontal shoulder (theta2), a boom that slides through it

@@ -10,6 +10,8 @@
 #   jacobian_space: 46 add, 76 multiply, 5 sincos
 #   jacobian_body: 34 add, 64 multiply, 5 sincos
 #   ik: 302 compare and select, 279 add, 30 atan2, 37 divide, 362 multiply, 47 sqrt
+#   ik where nothing vanishes: 217 compare and select, 241 add, 30 atan2, 31 divide, 306 multiply,
+#     39 sqrt
 """UR-type arm (three parallel axes).
 
 theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and

@@ -91,9 +91,16 @@ class Case:
         return in_order(assigned, outputs), outputs
 
     def inputs(self, n: int) -> np.ndarray:
-        """``n`` inputs as rows; an inverse gets the images of random joints."""
+        """``n`` inputs as rows; an inverse gets the images of random joints, if they have any."""
+        random = np.random.default_rng(7)
+        drawn = self._drawn(n, random)
+        while len(drawn) < n:
+            drawn = np.vstack([drawn, self._drawn(n, random)])
+        return np.ascontiguousarray(drawn[:n])
+
+    def _drawn(self, n: int, random: np.random.Generator) -> np.ndarray:
         module = self.module("numpy")
-        q = np.random.default_rng(7).uniform(-3, 3, (n, len(module.JOINTS)))
+        q = random.uniform(-3, 3, (n, len(module.JOINTS)))
         joints = [j for j in self.derivation.joints if j.name in module.JOINTS]
         for k, joint in enumerate(joints):
             if joint.beside is not None:  # of two arms that work together, close to the other's
@@ -101,8 +108,8 @@ class Case:
         if not self.inverse:
             return q
         x = module.fk(q)
-        x = x.p[:, 0] if isinstance(x, tuple) else x
-        return np.ascontiguousarray(x.reshape(n, -1))
+        x = (x.p[:, 0] if isinstance(x, tuple) else x).reshape(n, -1)
+        return x[np.isfinite(x).all(axis=1)]
 
     def values(self, inputs: np.ndarray) -> np.ndarray:
         """The reference: the generated NumPy, which the tests hold against ball arithmetic."""

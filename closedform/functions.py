@@ -11,7 +11,8 @@ The four statements are
 ``Match``
     a quantity that must vanish; where it does not, the target is UNREACHABLE;
 ``Vanishes``
-    a flag, true where a nonnegative quantity vanishes; may free a joint (SINGULAR);
+    a flag, true where a nonnegative quantity vanishes; may free a joint (SINGULAR); generated code
+    is fastest where none holds;
 ``Require``
     a condition on the input itself; where it fails, the input is INVALID.
 

@@ -35,7 +35,7 @@ CALLS = {
 RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
 LOCALS = frozenset({
     "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
-    "single", "opposite", "adjacent", "angles", "principals", "wide",
+    "single", "opposite", "adjacent", "angles", "principals", "wide", "rare", "signs", "k",
 })  # fmt: skip
 RESERVED = LOCALS | C_WORDS
 
@@ -206,7 +206,7 @@ class Emission:
             for k, entry in enumerate(a.entries)
         }
         names = [a.name for a in (*self.inputs, *self.outputs)]
-        if taken := LOCALS.intersection(names):
+        if taken := LOCALS.intersection(a.name for a in (*function.inputs, *function.outputs)):
             raise ValueError(f"{function.name}: the C code uses the name {', '.join(taken)} itself")
         self.printer = CPrinter(program, reserved={*RESERVED, *names})
         self.values = self.printer.run()

@@ -45,7 +45,10 @@ class Lowered:
 
     ``angles`` are the nodes whose sine and cosine are taken, ``turned`` those of which whole turns
     are taken away, in the order of first use; they depend on the inputs alone.  ``names`` gives
-    preferred names (from the derivation) to nodes.
+    preferred names (from the derivation) to nodes.  ``common`` is the program where nothing
+    vanishes, if that is much shorter: its last result, ``rare``, is whether something does.
+    ``branch`` is one branch of that, if it has less than half the operations of all: its last
+    input is the signs of the branch.
     """
 
     name: str

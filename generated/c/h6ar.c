@@ -1759,6 +1759,7 @@ CF_INLINE void h6ar_ik_whole_kernel(const int single, const h6ar_params *params,
     status[3] = t347;
 }
 
+CLOSEDFORM_DISPATCHED
 CF_APART void h6ar_ik_whole(const h6ar_params *params, const real_t x[6],
     real_t q[24], uint8_t status[4])
 {

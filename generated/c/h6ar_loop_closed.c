@@ -2216,6 +2216,7 @@ CF_INLINE void h6ar_loop_closed_ik_whole_kernel(const int single,
     status[7] = t408;
 }
 
+CLOSEDFORM_DISPATCHED
 CF_APART void h6ar_loop_closed_ik_whole(const h6ar_loop_closed_params *params,
     const real_t x[6], real_t q[48], uint8_t status[8])
 {

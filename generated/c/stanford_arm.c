@@ -937,6 +937,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     status[7] = t74;
 }
 
+CLOSEDFORM_DISPATCHED
 CF_APART void stanford_arm_ik_whole(const stanford_arm_params *params,
     const real_t T[16], real_t q[48], uint8_t status[8])
 {

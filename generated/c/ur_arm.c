@@ -1381,6 +1381,7 @@ CF_INLINE void ur_arm_ik_whole_kernel(const int single, const ur_arm_params *par
     status[7] = t264;
 }
 
+CLOSEDFORM_DISPATCHED
 CF_APART void ur_arm_ik_whole(const ur_arm_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8])
 {

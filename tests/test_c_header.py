@@ -303,6 +303,13 @@ def test_principal_values_are_as_accurate_of_large_angles(header):
     small = np.abs(x) < 3.14
     np.testing.assert_array_equal(turned[small], x[small])
     assert np.isnan(header("principal_all", [np.nan, np.inf, -np.inf, 1.0])[:3]).all()
+    x = x[: len(x) // 10 * 10]
+    sines, cosines, lanes = header("turned_lanes", x, outputs=3)
+    apart = np.sin((lanes - turned[: len(x)]).astype(float))  # beside pi it may be -pi
+    np.testing.assert_allclose(apart, 0, rtol=0, atol=2 * unit)
+    s, c = header("sincos_block", x, outputs=2)
+    np.testing.assert_allclose(sines, s, rtol=0, atol=unit)
+    np.testing.assert_allclose(cosines, c, rtol=0, atol=unit)
 
 
 def test_lanes_are_what_one_after_the_other_gives(header):

@@ -35,7 +35,8 @@ CALLS = {
 RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
 LOCALS = frozenset({
     "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
-    "single", "opposite", "adjacent", "angles", "principals", "wide", "rare", "signs", "k",
+    "single", "opposite", "adjacent", "angles", "principals", "turned", "wide", "rare", "signs",
+    "k",
 })  # fmt: skip
 RESERVED = LOCALS | C_WORDS
 
@@ -343,24 +344,30 @@ class Emission:
 
     def _lanes(self) -> list[str]:
         """The sines, cosines and principal values of one posture."""
-        lines = []
-        if self.program.angles:
-            n = _lanes(len(self.program.angles))
-            listed = ", ".join(map(self._place, self.program.angles))
-            lines += [
-                f"real_t sines[{n}], cosines[{n}];",
-                f"const real_t lanes[{n}] = {{ {listed} }};",
-                f"cf_sincos_lanes({n}, lanes, sines, cosines);",
-            ]
-        if self.program.turned:
-            n = len(self.program.turned)
-            listed = ", ".join(map(self._place, self.program.turned))
-            lines += [
+        angles, turned = self.program.angles, self.program.turned
+        if not angles:
+            n, listed = len(turned), ", ".join(map(self._place, turned))
+            return [
                 f"real_t principals[{n}];",
                 f"const real_t wide[{n}] = {{ {listed} }};",
                 f"cf_principal_block({n}, wide, principals);",
+            ] * bool(turned)
+        lanes = list(dict.fromkeys([*angles, *turned]))
+        n, listed = _lanes(len(lanes)), ", ".join(map(self._place, lanes))
+        taken = [f"const real_t lanes[{n}] = {{ {listed} }};"]
+        if not turned:
+            return [
+                f"real_t sines[{n}], cosines[{n}];",
+                *taken,
+                f"cf_sincos_lanes({n}, lanes, sines, cosines);",
             ]
-        return lines
+        kept = ", ".join(f"turned[{lanes.index(node)}]" for node in turned)
+        return [
+            f"real_t sines[{n}], cosines[{n}], turned[{n}];",
+            *taken,
+            f"cf_turned_lanes({n}, lanes, sines, cosines, turned);",
+            f"const real_t principals[{len(turned)}] = {{ {kept} }};",
+        ]
 
     def _place(self, angle: Node) -> str:
         name, argument, k, divisor = self._angle(angle)

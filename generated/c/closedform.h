@@ -289,7 +289,7 @@ CF_INLINE cf_word cf_trig_excess(real_t x)
     return cf_to_word(CF_TRIG_LIMIT) - (cf_to_word(x) & ~CF_SIGN);
 }
 
-/* Copies 2, 4 or 8 numbers as one vector. Written to memory one by one and read as one vector, they
+/* Copies 1, 2, 4 or 8 numbers as one vector. Written to memory one by one and read as one vector, they
  * would hold up the processor until the last of them has reached the cache. */
 #if defined(__GNUC__)
 typedef real_t cf_lanes2 __attribute__((vector_size(2 * sizeof(real_t))));
@@ -298,7 +298,9 @@ typedef real_t cf_lanes8 __attribute__((vector_size(8 * sizeof(real_t))));
 
 CF_INLINE void cf_side_by_side(size_t n, const real_t *x, real_t *lanes)
 {
-    if (n == 2) {
+    if (n == 1) {
+        lanes[0] = x[0];
+    } else if (n == 2) {
         const cf_lanes2 all = { x[0], x[1] };
         memcpy(lanes, &all, sizeof all);
     } else if (n == 4) {
@@ -348,13 +350,19 @@ CF_RARE void cf_principal_fixup(size_t n, const real_t *x, real_t *angle)
     }
 }
 
-/* Any n angles brought to [-pi, pi], give or take rounding; the arrays must not overlap. */
+/* An angle, |x| <= CF_TRIG_LIMIT, brought to [-pi, pi] by whole turns, give or take rounding. */
+CF_INLINE real_t cf_principal(real_t x)
+{
+    const real_t n4 = 4 * cf_nearest(x * CLOSEDFORM_C(0.15915494309189535));
+    return ((x - n4 * CF_PIO2_1) - n4 * CF_PIO2_2) - n4 * CF_PIO2_3;
+}
+
+/* The same of any n angles; the arrays must not overlap. */
 CF_INLINE void cf_principal_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT angle)
 {
     cf_word excess = 0;
     for (size_t i = 0; i < n; ++i) {
-        const real_t n4 = 4 * cf_nearest(x[i] * CLOSEDFORM_C(0.15915494309189535));
-        angle[i] = ((x[i] - n4 * CF_PIO2_1) - n4 * CF_PIO2_2) - n4 * CF_PIO2_3;
+        angle[i] = cf_principal(x[i]);
         excess |= cf_trig_excess(x[i]);
     }
     if (excess & CF_SIGN) cf_principal_fixup(n, x, angle);
@@ -367,9 +375,28 @@ CF_INLINE void cf_sincos_lanes(size_t n, const real_t *x, real_t *s, real_t *c)
     const size_t width = n < 8 ? n : 8;
     for (size_t k = 0; k < n; k += width) {
         real_t angles[8];
-        if (n == 1) angles[0] = x[0];
-        else cf_side_by_side(width, x + k, angles);
+        cf_side_by_side(width, x + k, angles);
         cf_sincos_block(width, angles, s + k, c + k);
+    }
+}
+
+/* The same, and the angles brought to one turn. */
+CF_INLINE void cf_turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, real_t *turned)
+{
+    const size_t width = n < 8 ? n : 8;
+    for (size_t k = 0; k < n; k += width) {
+        real_t angles[8];
+        cf_side_by_side(width, x + k, angles);
+        cf_word excess = 0;
+        for (size_t i = 0; i < width; ++i) {
+            cf_sincos(angles[i], &s[k + i], &c[k + i]);
+            turned[k + i] = cf_principal(angles[i]);
+            excess |= cf_trig_excess(angles[i]);
+        }
+        if (excess & CF_SIGN) {
+            cf_sincos_fixup(width, angles, s + k, c + k);
+            cf_principal_fixup(width, angles, turned + k);
+        }
     }
 }
 

@@ -133,12 +133,10 @@ CLOSEDFORM_DISPATCHED
 void h6ar_fk(const h6ar_params *params, const real_t q[6],
     real_t x[6])
 {
-    real_t sines[8], cosines[8];
+    real_t sines[8], cosines[8], turned[8];
     const real_t lanes[8] = { q[0], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    real_t principals[1];
-    const real_t wide[1] = { q[5] };
-    cf_principal_block(1, wide, principals);
+    cf_turned_lanes(8, lanes, sines, cosines, turned);
+    const real_t principals[1] = { turned[5] };
     h6ar_fk_kernel(1, params, q, sines, cosines, principals, x);
 }
 
@@ -1763,12 +1761,10 @@ CLOSEDFORM_DISPATCHED
 CF_APART void h6ar_ik_whole(const h6ar_params *params, const real_t x[6],
     real_t q[24], uint8_t status[4])
 {
-    real_t sines[4], cosines[4];
+    real_t sines[4], cosines[4], turned[4];
     const real_t lanes[4] = { x[4], x[5], x[3] };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    real_t principals[1];
-    const real_t wide[1] = { x[5] };
-    cf_principal_block(1, wide, principals);
+    cf_turned_lanes(4, lanes, sines, cosines, turned);
+    const real_t principals[1] = { turned[1] };
     real_t status_real[4];
     h6ar_ik_whole_kernel(1, params, x, sines, cosines, principals, q, status_real);
     for (size_t i = 0; i < 4; ++i)
@@ -2474,12 +2470,10 @@ CF_INLINE void h6ar_ik_branches(const h6ar_params *params, const real_t x[6],
 {
     static const real_t signs[2][4] = { { CLOSEDFORM_C(1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(-1.0) }, { CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0) } };
     const h6ar_params local = *params;
-    real_t sines[4], cosines[4];
+    real_t sines[4], cosines[4], turned[4];
     const real_t lanes[4] = { x[4], x[5], x[3] };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    real_t principals[1];
-    const real_t wide[1] = { x[5] };
-    cf_principal_block(1, wide, principals);
+    cf_turned_lanes(4, lanes, sines, cosines, turned);
+    const real_t principals[1] = { turned[1] };
     real_t q_lanes[6][4];
     real_t status_lanes[1][4];
     real_t rare_lanes[1][4];

@@ -174,12 +174,10 @@ CLOSEDFORM_DISPATCHED
 void irb260_fk(const irb260_params *params, const real_t q[4],
     real_t x[4])
 {
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0] };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    real_t principals[2];
-    const real_t wide[2] = { q[0], q[3] };
-    cf_principal_block(2, wide, principals);
+    real_t sines[4], cosines[4], turned[4];
+    const real_t lanes[4] = { q[1], q[2], q[0], q[3] };
+    cf_turned_lanes(4, lanes, sines, cosines, turned);
+    const real_t principals[2] = { turned[2], turned[3] };
     irb260_fk_kernel(params, sines, cosines, principals, x);
 }
 

@@ -125,12 +125,10 @@ CLOSEDFORM_DISPATCHED
 void scara_fk(const scara_params *params, const real_t q[4],
     real_t x[4])
 {
-    real_t sines[2], cosines[2];
-    const real_t lanes[2] = { q[0], q[1] };
-    cf_sincos_lanes(2, lanes, sines, cosines);
-    real_t principals[3];
-    const real_t wide[3] = { q[0], q[1], q[3] };
-    cf_principal_block(3, wide, principals);
+    real_t sines[4], cosines[4], turned[4];
+    const real_t lanes[4] = { q[0], q[1], q[3] };
+    cf_turned_lanes(4, lanes, sines, cosines, turned);
+    const real_t principals[3] = { turned[0], turned[1], turned[2] };
     scara_fk_kernel(params, q, sines, cosines, principals, x);
 }
 

@@ -9,6 +9,7 @@ void atan2_all(size_t n, const real_t *y, const real_t *x, real_t *angle);
 void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c, real_t *angle);
 void wrap_all(size_t n, const real_t *angle, real_t *wrapped);
 void wrap_cut_all(size_t n, const real_t *angle, real_t *wrapped);
+void turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, real_t *turned);
 void principal_all(size_t n, const real_t *angle, real_t *turned);
 void nought_all(size_t n, const real_t *x, real_t *yes);
 void max_min_all(size_t n, const real_t *a, const real_t *b, real_t *larger, real_t *smaller);
@@ -38,6 +39,14 @@ CLOSEDFORM_DISPATCHED void atan2_all(size_t n, const real_t *CF_RESTRICT y, cons
     for (size_t i = 0; i < n; ++i) angle[i] = cf_atan2(y[i], x[i]);
 }
 
+void turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, real_t *turned)
+{
+    for (size_t i = 0; i + 10 <= n; i += 10) {
+        cf_turned_lanes(8, x + i, s + i, c + i, turned + i);
+        cf_turned_lanes(2, x + i + 8, s + i + 8, c + i + 8, turned + i + 8);
+    }
+}
+
 /* Twenty-four numbers by lanes of 1, 1, 2, 4 and 16: sin y, cos y; from the third on atan2(y, x). */
 void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c, real_t *angle)
 {
@@ -65,7 +74,8 @@ void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c,
 WRAP(wrap)
 WRAP(wrap_cut)
 
-CLOSEDFORM_DISPATCHED void principal_all(size_t n, const real_t *angle, real_t *turned)
+CLOSEDFORM_DISPATCHED void turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, real_t *turned);
+void principal_all(size_t n, const real_t *angle, real_t *turned)
 {
     cf_principal_block(n, angle, turned);
 }

@@ -74,8 +74,7 @@ void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c,
 WRAP(wrap)
 WRAP(wrap_cut)
 
-CLOSEDFORM_DISPATCHED void turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, real_t *turned);
-void principal_all(size_t n, const real_t *angle, real_t *turned)
+CLOSEDFORM_DISPATCHED void principal_all(size_t n, const real_t *angle, real_t *turned)
 {
     cf_principal_block(n, angle, turned);
 }

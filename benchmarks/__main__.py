@@ -27,6 +27,8 @@ from . import batches, inverses, native
 from .cases import CASES, Case, NotApplicableError, check
 
 MILLION = 1_000_000
+SETTLED = 0.1
+"""Seconds before a batch is timed: JAX frees its arrays in the background of what comes next."""
 PACKAGES = {"sympy.cse": "sympy", "lambdify": "sympy"}
 Run = Callable[[], float]
 Maker = Callable[[], Run]
@@ -63,6 +65,8 @@ def explained(error: BaseException) -> str:
 
 def clock(run: Callable[[], object], postures: int, repeat: int) -> Run:
     def timed() -> float:
+        if postures > 1:
+            time.sleep(SETTLED)
         start = time.perf_counter_ns()
         for _ in range(repeat):
             run()

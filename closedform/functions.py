@@ -2,7 +2,7 @@
 
 A :class:`Function` is a list of statements and the outputs computed from them.  It is the symbolic
 truth that the proofs, the Arb reference and the lowering all read; nothing in it is approximate.
-The four statements are
+The five statements are
 
 ``Let``
     names an expression;

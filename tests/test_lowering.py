@@ -7,6 +7,7 @@ import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from interpreter import run
 from sympy import cos, sin, sqrt
 
 from closedform.derivation import Derivation, Paper
@@ -23,34 +24,6 @@ EMPTY = Derivation("test", "", Paper("", "", ()), "")
 def lowered(*exprs: sp.Expr) -> Lowered:
     d = Derivation("test", "", Paper("", "", ()), "")
     return lower(d.function("f", "", {"q": SYMBOLS}, {"y": list(exprs)}), d)
-
-
-def run(program: Lowered, values: dict[str, float]) -> list[float]:
-    """A direct interpreter of the graph: a third reading beside the printers."""
-    value: dict[int, float] = {}
-    rules = {
-        "add": lambda a, b: a + b,
-        "sub": lambda a, b: a - b,
-        "mul": lambda a, b: a * b,
-        "div": lambda a, b: a / b,
-        "neg": lambda a: -a,
-        "sqrt": math.sqrt,
-        "sin": math.sin,
-        "cos": math.cos,
-        "abs": abs,
-        "atan2": math.atan2,
-        "wrap": lambda a: math.pi - (math.pi - a) % math.tau,
-        "principal": lambda a: math.atan2(math.sin(a), math.cos(a)),
-        "wrap_cut": lambda a: math.pi if a <= -math.pi else a,
-    }
-    for node in program.schedule():
-        if node.op == "const":
-            value[node.id] = float(node.payload)
-        elif node.op == "input":
-            value[node.id] = values[node.payload]
-        else:
-            value[node.id] = rules[node.op](*(value[a.id] for a in node.args))
-    return [value[r.id] for r in program.roots]
 
 
 leaves = st.sampled_from(

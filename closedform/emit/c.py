@@ -15,14 +15,11 @@ from typing import Any
 
 from closedform import __version__
 from closedform.derivation import Derivation
-from closedform.emit.ckernel import CArray, CProgram, Emission, folded
+from closedform.emit.ckernel import CArray, CProgram, Emission
 from closedform.emit.text import WIDTH, banner, describe, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
 from closedform.tolerances import DOUBLE, FLOAT
-
-WHOLE = "Every case."
-COMMON = "Where nothing vanishes; rare is whether something does."
 
 
 @dataclass(frozen=True)
@@ -33,7 +30,6 @@ class CBranch:
     n: int
     signs: tuple[str, ...]
     loads: tuple[str, ...]
-    outputs: tuple[CArray, ...]
     stores: tuple[str, ...]
     collected: tuple[str, ...]
     kernel_call: str
@@ -54,8 +50,6 @@ class CFunction:
     n_params: int
     inputs: tuple[CArray, ...]
     outputs: tuple[CArray, ...]
-    single: str
-    batch: str
     whole: CProgram
     common: CProgram | None
     branch: CBranch | None
@@ -95,12 +89,11 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> C
     whole = Emission(derivation, function, program, f"{full}_whole" if parts else full)
     common = branch = None
     if program.common is not None:
-        common = Emission(derivation, function, program.common, f"{full}_common").emit(COMMON)
+        common = Emission(derivation, function, program.common, f"{full}_common").emit()
     if program.branch is not None:
         branch = _branch(derivation, function, program.branch, f"{full}_branch")
     inputs, outputs = whole.inputs, whole.outputs
     arrays = (*inputs, *outputs)
-    params = f"const {derivation.name}_params *params"
     call = f"(const {derivation.name}_params *)params"
     return CFunction(
         name=function.name,
@@ -111,9 +104,7 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> C
         n_params=len(derivation.parameters),
         inputs=inputs,
         outputs=outputs,
-        single=folded([params, *(a.single for a in arrays)]),
-        batch=folded(["size_t n", params, *(a.batch for a in arrays)]),
-        whole=whole.emit(WHOLE if parts else ""),
+        whole=whole.emit(),
         common=common,
         branch=branch,
         arguments=", ".join(["params", *(a.name for a in arrays)]),
@@ -136,16 +127,14 @@ def _branch(derivation: Derivation, function: Function, program: Lowered, full: 
     n = len(function.branches)
     listed = ", ".join(f"signs[{k}][i]" for k in range(signs.size))
     read = [a.name for a in emission.raw if a is not signs]
-    trig = emission.trig
     return CBranch(
-        program=emission.emit(COMMON),
+        program=emission.emit(),
         n=n,
         signs=tuple("{ " + ", ".join(f"CLOSEDFORM_C({v}.0)" for v in row) + " }" for row in rows),
         loads=(
             f"const real_t signs_i[{signs.size}] = {{ {listed} }};",
             *(f"real_t {o.name}_i[{o.size}];" for o in emission.outputs),
         ),
-        outputs=emission.outputs,
         stores=tuple(
             f"{o.name}_lanes[{k}][i] = {o.name}_i[{k}];"
             for o in emission.outputs
@@ -157,11 +146,13 @@ def _branch(derivation: Derivation, function: Function, program: Lowered, full: 
             for o in emission.outputs[:-1]
             for k in range(o.size)
         ),
-        kernel_call=", ".join(
-            ["0"] * emission.distinguishes_single
-            + ["&local"] * bool(emission.parameters)
-            + [*read, "signs_i", *trig]
-            + [f"{o.name}_i" for o in emission.outputs]
+        kernel_call=emission.call(
+            "0",
+            "&local",
+            read,
+            ["signs_i"],
+            emission.trig,
+            [f"{o.name}_i" for o in emission.outputs],
         ),
     )
 

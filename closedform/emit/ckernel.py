@@ -145,13 +145,9 @@ class CArray:
 
 @dataclass(frozen=True)
 class CProgram:
-    """The plain strings of one program: its kernel, and what the forms that call it are made of.
-
-    A program of one branch has ``signs``, a row of them for each sign, and only a single form.
-    """
+    """The plain strings of one program: its kernel, and what the forms that call it are made of."""
 
     full: str
-    note: str
     unused_single: tuple[str, ...]
     unused_batch: tuple[str, ...]
     outputs: tuple[CArray, ...]
@@ -224,7 +220,7 @@ class Emission:
         arrays = ("sines", "cosines", "principals")
         self.trig = [name for name in arrays if _occurs(name, self.kernel_lines)]
 
-    def emit(self, note: str) -> CProgram:
+    def emit(self) -> CProgram:
         arrays = (*self.inputs, *self.outputs)
         params = f"const {self.derivation.name}_params *params"
         narrowed = tuple(o for o in self.outputs if o.kind != "CF_REAL")
@@ -233,7 +229,6 @@ class Emission:
         names = [o.name for o in self.outputs]
         return CProgram(
             full=self.full,
-            note=note,
             unused_single=tuple(
                 name
                 for name in ["params"] + [a.name for a in self.inputs]
@@ -267,17 +262,17 @@ class Emission:
                 + [f"real_t {o.name}[{o.size}]" for o in self.outputs]
             ),
             kernel_lines=tuple(self.kernel_lines),
-            kernel_call_single=", ".join(
-                ["1"] * len(single)
-                + shared
-                + [a.name for a in self.raw]
-                + trig
-                + [f"{o.name}_real" if o in narrowed else o.name for o in self.outputs]
+            kernel_call_single=self.call(
+                "1",
+                "params",
+                [a.name for a in self.raw],
+                trig,
+                [f"{o.name}_real" if o in narrowed else o.name for o in self.outputs],
             ),
-            kernel_call_batch=", ".join(
-                ["0"] * len(single)
-                + ["&local"] * bool(self.parameters)
-                + [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)]
+            kernel_call_batch=self.call(
+                "0",
+                "&local",
+                [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)],
             ),
             copies_params=bool(self.parameters),
             lanes=tuple(self._lanes()),
@@ -286,6 +281,11 @@ class Emission:
             stores=tuple(self._stores()),
             narrow=tuple(self._narrow()),
         )
+
+    def call(self, single: str, params: str, *arrays: Sequence[str]) -> str:
+        """The arguments of a call of the kernel; the first two where it takes them."""
+        leading = [single] * self.distinguishes_single + [params] * bool(self.parameters)
+        return ", ".join([*leading, *(name for names in arrays for name in names)])
 
     def _kernel_lines(self) -> list[str]:
         lines = [f"const real_t {self.printer.inputs[p]} = params->{p};" for p in self.parameters]

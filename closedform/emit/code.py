@@ -68,9 +68,14 @@ def trig_names(names: Names, angle: Node) -> tuple[str, str]:
     if angle.op == "div":
         half = "_half" if angle.args[1].payload == 2 else f"_{angle.args[1].payload}th"
         angle = angle.args[0]
+    suffix = _suffix(angle)
+    return names.take(f"s{suffix}{half}"), names.take(f"c{suffix}{half}")
+
+
+def _suffix(angle: Node) -> str:
+    """``1`` of theta1, ``_psi`` of psi."""
     label = str(angle.payload) if angle.op == "input" else "angle"
-    label = label.removeprefix("theta") if label.startswith("theta") else f"_{label}"
-    return names.take(f"s{label}{half}"), names.take(f"c{label}{half}")
+    return label.removeprefix("theta") if label.startswith("theta") else f"_{label}"
 
 
 def literal(value: sp.Expr) -> str:
@@ -92,7 +97,9 @@ class Printer:
         self.lines: list[Line] = []
         self.trig = [(angle, *trig_names(self.names, angle)) for angle in lowered.angles]
         self._sines = {angle.id: (s, c) for angle, s, c in self.trig}
-        self.turned = [(angle, self._principal_name(angle)) for angle in lowered.turned]
+        self.turned = [
+            (angle, self.names.take(f"principal{_suffix(angle)}")) for angle in lowered.turned
+        ]
         self._principals = {angle.id: name for angle, name in self.turned}
 
     def run(self) -> list[list[str]]:
@@ -109,12 +116,6 @@ class Printer:
                 text = Text(name)
             self.text[node.id] = text
         return [[self.text[n.id].code for n in r.nodes] for r in self.lowered.results]
-
-    def _principal_name(self, angle: Node) -> str:
-        """``principal1`` of theta1, ``principal_psi`` of psi."""
-        label = str(angle.payload)
-        short = label.removeprefix("theta") if label.startswith("theta") else f"_{label}"
-        return self.names.take(f"principal{short}")
 
     def schedule(self) -> list[Node]:
         """The order in which nodes are printed, operands before operators."""

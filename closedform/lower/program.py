@@ -19,8 +19,9 @@ from closedform.lower.ranges import Ranges, UnboundedError
 from closedform.lower.share import share
 from closedform.lower.turns import Turns
 
-OF_ANGLES = frozenset({"sin", "cos", "principal"})
-LEAVES = frozenset({"const", "input", "nan", "tolerance", "true", "false", *OF_ANGLES})
+LEAVES = frozenset({
+    "const", "input", "nan", "tolerance", "true", "false", "sin", "cos", "principal",
+})  # fmt: skip
 SPARED = 0.15
 """Which part of the operations a common case must spare to be worth a program of its own."""
 

@@ -100,10 +100,7 @@ def wrap(angle: Any) -> Any:
     """The sum of a few angles in (-pi, pi]; one that is there already stays as it is."""
     turns = np.rint(angle * (0.5 / np.pi))
     wrapped = angle - turns * (2 * np.pi) - turns * 2.4492935982947064e-16
-    rare = np.abs(wrapped) >= np.pi
-    if np.any(rare):
-        return np.where(rare, np.pi, wrapped)
-    return wrapped
+    return select(np.abs(wrapped) >= np.pi, np.pi, wrapped)
 
 
 def wrap_cut(angle: Any) -> Any:

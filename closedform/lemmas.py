@@ -24,8 +24,8 @@ class Lemma:
     """A lemma applied: ``equations`` vanish at ``solution`` (unknown -> closed form).
 
     ``excluded`` solutions of the equations violate the inequality that ``statement`` names.
-    ``pairs`` holds the names of the cosine and the sine of an unknown, or of a sum of them,
-    computed without its angle, for the steps that follow; ``body`` are the statements that the
+    ``means`` holds names for the steps that follow, and what they are in the unknowns: cosine and
+    sine of one, or of a sum, computed without the angle.  ``body`` are the statements that the
     lemma added to the program.  ``premises`` says what names of earlier statements must stand for;
     where the inverse is proved, so is that.
     """
@@ -36,12 +36,20 @@ class Lemma:
     solution: Mapping[sp.Symbol, sp.Expr]
     branches: int
     excluded: int = 0
-    pairs: Mapping[sp.Expr, tuple[sp.Symbol, sp.Symbol]] = field(default_factory=dict)
+    means: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     body: tuple[Statement, ...] = ()
     premises: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]
+
+    def known(self, value: sp.Expr) -> sp.Symbol:
+        """The name of a value in the unknowns, as ``cos(x)``."""
+        return next(name for name, meaning in self.means.items() if meaning == value)
+
+    def pair(self, angle: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
+        """The names of the cosine and the sine of an angle."""
+        return self.known(sp.cos(angle)), self.known(sp.sin(angle))
 
 
 def label(joint: sp.Symbol) -> str:
@@ -82,7 +90,7 @@ def sine_cosine(
     With ``h = sqrt(a^2 + b^2)`` the equation is ``cos(x - atan2(a, b)) = c / h``; half the angle
     ``x - atan2(a, b)`` has the tangent ``sqrt(h - c) / sqrt(h + c)``.  x is free where
     ``a = b = c = 0``; with ``free`` joints that is flagged, on the ``scale`` of the coefficients,
-    the answer there is x = 0, and cosine and sine of x are named too.
+    and the answer there is x = 0.  ``b sin x - a cos x`` gets a name too.
     """
     start = len(program.body)
     h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
@@ -90,17 +98,9 @@ def sine_cosine(
     below = program.bound(f"below{suffix}", h - c, size, "the amplitude is not smaller than c")
     above = program.bound(f"above{suffix}", h + c, size, "the amplitude is not smaller than -c")
     half = sp.atan2(sp.sqrt(below), sp.sqrt(above))
-    pairs = {}
+    onward = program.let(f"onward{suffix}", sigma * sp.sqrt(below) * sp.sqrt(above))
     if free:
         nowhere = program.vanishes(f"nowhere{suffix}", h, scale, "the amplitude is zero", free)
-        total = program.let(f"total{suffix}", below + above)
-        turn = program.let(f"s_turn{suffix}", 2 * sigma * sp.sqrt(below) * sp.sqrt(above) / total)
-        ahead = program.let(f"c_turn{suffix}", (above - below) / total)
-        tag = label(x)
-        pairs[x] = (
-            program.let(f"c{tag}", choose(nowhere, 1, (b * ahead - a * turn) / h)),
-            program.let(f"s{tag}", choose(nowhere, 0, (a * ahead + b * turn) / h)),
-        )
         direction = choose(nowhere, 0, sp.atan2(a, b) + 2 * sigma * half)
     else:
         direction = sp.atan2(a, b) + 2 * sigma * half
@@ -111,7 +111,7 @@ def sine_cosine(
         (a * sp.sin(x) + b * sp.cos(x) - c,),
         {x: direction},
         2,
-        pairs=pairs,
+        means={onward: b * sp.sin(x) - a * sp.cos(x)},
         body=tuple(program.body[start:]),
     )
 
@@ -399,11 +399,13 @@ def two_sines(
     parallel = program.vanishes(
         "parallel", aside, 64 * sp.Abs(lean), "both vectors are parallel", free
     )
-    program.bound("room_across", aside - sp.Abs(across), scale, "a sine is at most 1")
+    for name, room in (("room_below", aside - across), ("room_above", aside + across)):
+        program.bound(name, room, scale, "a sine is at most 1")
     with_v = sp.Piecewise((ahead, lean >= 0), (-ahead, True))
     whole = program.let("whole_y", choose(parallel, size + sp.Abs(lean), aside))
     part = program.let("part_y", choose(parallel, with_v, across))
-    rest = program.let("rest", ahead - part / whole * lean)
+    _, sine = _from_sine(program, f"{y}_0", part, whole, scale)
+    rest = program.let("rest", ahead - sine * lean)
     left = program.let("left_along", size - sp.Abs(rest))
     spent = program.vanishes("spent_along", used_up(left), scale, "no room: a sine is at most 1")
     loose = sp.Abs(lean) / (aside + sp.Rational(1, 10**9) * size)
@@ -412,9 +414,9 @@ def two_sines(
     lacking = (sp.Abs(left) - left) / 2 * lean / (lean**2 + aside**2)
     eased = sp.Piecewise((lacking, rest >= 0), (-lacking, True))
     part = program.let("eased", choose(spent, part + whole * eased, part))
-    cy, sy = _from_sine(program, y, part, whole, scale)
+    cy, sy = _from_sine(program, str(y), part, whole, scale)
     along = program.let("along_u", ahead - sy * lean)
-    cx, sx = _from_sine(program, x, along, size, scale)
+    cx, sx = _from_sine(program, str(x), along, size, scale)
     return Lemma(
         "two sines",
         r"u\sin x + v\sin y = p,\ \cos x \ge 0,\ \cos y \ge 0 \;\Rightarrow\; "
@@ -424,25 +426,25 @@ def two_sines(
         {x: sp.atan2(sx, cx), y: sp.atan2(sy, cy)},
         1,
         excluded=3,
-        pairs={x: (cx, sx), y: (cy, sy)},
+        means={cx: sp.cos(x), sx: sp.sin(x), cy: sp.cos(y), sy: sp.sin(y)},
         body=tuple(program.body[start:]),
     )
 
 
 def _from_sine(
-    program: Program, x: sp.Symbol, part: sp.Expr, whole: sp.Expr, scale: sp.Expr
+    program: Program, x: str, part: sp.Expr, whole: sp.Expr, scale: sp.Expr
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""
     below, above = (
-        program.bound(f"{name}_{x.name}", value, scale, meaning, positive=True)
+        program.bound(f"{name}_{x}", value, scale, meaning, positive=True)
         for name, value, meaning in (
             ("below", whole - part, "a sine is at most 1"),
             ("above", whole + part, "a sine is at least -1"),
         )
     )
-    total = program.let(f"total_{x.name}", below + above)
-    cosine = program.let(f"c_{x.name}", 2 * sp.sqrt(below) * sp.sqrt(above) / total)
-    return cosine, program.let(f"s_{x.name}", (above - below) / total)
+    total = program.let(f"total_{x}", below + above)
+    cosine = program.let(f"c_{x}", 2 * sp.sqrt(below) * sp.sqrt(above) / total)
+    return cosine, program.let(f"s_{x}", (above - below) / total)
 
 
 @dataclass(frozen=True)

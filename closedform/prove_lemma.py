@@ -17,12 +17,12 @@ def prove_lemma(
 ) -> None:
     """Prove a lemma for the coefficients it was applied to: symbols, so for all.
 
-    Its solutions satisfy its equations for either sign, its pairs are their cosines and sines, and
-    the equations have no others.  ``given`` writes dependent coefficients in free parameters.
+    Its solutions satisfy its equations for either sign, its names are what they are said to
+    mean, and the equations have no others.  ``given`` writes dependent coefficients in free
+    parameters.
     """
     given = dict(given or {})
-    pairs = [value for pair in lemma.pairs.values() for value in pair]
-    outputs = (*lemma.solution.values(), *pairs)
+    outputs = (*lemma.solution.values(), *lemma.means)
     premises = [Bound(name, meaning, sp.S.One, "") for name, meaning in lemma.premises.items()]
     body = [*premises, *program.body]
     steps = [s.value for s in body if isinstance(s, (Let, Bound))]
@@ -33,8 +33,8 @@ def prove_lemma(
         signs = {sign: value} if sign else {}
         values = function.values(signs)
         solution = dict(zip(lemma.solution, values, strict=False))
-        circle = [f(x.xreplace(solution)) for x in lemma.pairs for f in (sp.cos, sp.sin)]
-        named = [a - b for a, b in zip(circle, values[len(solution) :], strict=True)]
+        meant = [substitute(e, solution) for e in lemma.means.values()]
+        named = [a - b for a, b in zip(meant, values[len(solution) :], strict=True)]
         vanishing = sp.Matrix([*(substitute(e, solution) for e in lemma.equations), *named])
         bounds = tuple(substitute(b, given) for b in function.bounds(signs))
         require(substitute(vanishing, given), bounds, f"the lemma {lemma.name!r}")

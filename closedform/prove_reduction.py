@@ -65,8 +65,7 @@ def _meanings(function: Function, reduction: Reduction) -> dict[sp.Basic, sp.Bas
     known: dict[sp.Basic, sp.Basic] = {}
     inside: set[int] = set()
     for lemma in reduction.lemmas:
-        for unknown, (cosine, sine) in lemma.pairs.items():
-            known |= {cosine: sp.cos(unknown), sine: sp.sin(unknown)}
+        known |= lemma.means
         inside |= {id(s) for s in lemma.body}
     for statement in function.body:
         if isinstance(statement, Vanishes):

@@ -198,6 +198,10 @@ def _arm(
         ),
         {x: upwards, y: upwards + elbow + sp.atan2(lag[1], lag[0])},
         2,
-        pairs={x: (cx, sx), y: (cy, sy), y - x: turn},
+        means={
+            name: f(angle)
+            for angle, pair in ((x, (cx, sx)), (y, (cy, sy)), (y - x, turn))
+            for f, name in zip((sp.cos, sp.sin), pair, strict=True)
+        },
         body=tuple(program.body[start:]),
     )

@@ -357,7 +357,7 @@ turn_step(d, m)
 p = Program()
 length, base = wrist_given(p, m, cos(psi))
 middle = solve_mid_plane(p, m, q, length, base)
-upper, elbow = middle.posture.upper, middle.elbow
+upper, elbow = middle.upper, middle.elbow
 gap = p.let("ahead", m.d * sin(psi) / cos(psi)), p.let("higher", m.d * sin(phi) / cos(phi))
 size = p.let("size", m.L1 + sqrt(m.L2**2 + m.a3**2))
 # seen from the upper arm, whose sine multiplies (0, L1)

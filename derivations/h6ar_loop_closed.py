@@ -210,7 +210,7 @@ def stand(p: Program) -> Posture:
         suffix="_virtual",
         rest=pair(theta2R),
     )
-    upper, fore = (Pair(*virtual.pairs[angle]) for angle in (theta2A, theta23A))
+    upper, fore = (Pair(*virtual.pair(angle)) for angle in (theta2A, theta23A))
     seen = {cos(theta23A): fore.c, sin(theta23A): fore.s}
     p.let("width", across_fore.xreplace(seen))
     p.let("beyond", along_fore.xreplace(seen))
@@ -376,7 +376,7 @@ LEFT = (sigma_left, {+1: "alike", -1: "mixed"})
 p = Program()
 wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
 mid = solve_mid_plane(p, m, q, wrist, half_base)
-upper, fore = mid.posture.upper, mid.posture.fore
+upper, fore = mid.upper, mid.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
 (N, M), bent = elbow_squares(p, lengths, second, mid.elbow, suffix="_mid")
 side = p.let("sigma_right", sign_of(bent))

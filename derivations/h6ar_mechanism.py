@@ -259,7 +259,8 @@ class MidPlane(NamedTuple):
     """The first part of either inverse: waist and virtual arm from the tip."""
 
     lemmas: tuple[Lemma, ...]
-    posture: Posture
+    upper: Pair
+    fore: Pair
     elbow: Pair
     """Of the angle from the upper arm to the fore-arm."""
 
@@ -284,8 +285,7 @@ def solve_mid_plane(
     turn = sine_cosine(
         program, q.theta1, -x, y, aside, sigma_waist, free=(q.theta1,), scale=m.L1 + m.L2
     )
-    c1, s1 = turn.pairs[q.theta1]
-    outward = program.let("outward", c1 * x + s1 * y)
+    outward = turn.known(x * cos(q.theta1) + y * sin(q.theta1))
     sigma_bend = program.let("sigma_bend", -sigma_waist * sigma_elbow)
     bend = two_link_arm(
         program,
@@ -295,17 +295,9 @@ def solve_mid_plane(
         sigma_bend,
         free=(q.theta2R, q.theta2L),
     )
-    posture = Posture(
-        Pair(c1, s1),
-        Pair(*bend.pairs[theta2A]),
-        Pair(*bend.pairs[theta23A]),
-        *given,
-        wrist,
-        base,
-    )
     pitched = linear_pair(q.theta, sin(pitch), cos(pitch))
-    elbow = Pair(*bend.pairs[theta23A - theta2A])
-    return MidPlane((pitched, turn, bend), posture, elbow)
+    pairs = (Pair(*bend.pair(e)) for e in (theta2A, theta23A, theta23A - theta2A))
+    return MidPlane((pitched, turn, bend), *pairs)
 
 
 def tip_system(m: Dimensions, q: Joints, level: sp.Expr) -> tuple[tuple, tuple]:

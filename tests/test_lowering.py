@@ -76,6 +76,50 @@ def test_an_inverse_divides_once_by_the_same_value() -> None:
     assert program.operations()["div"] == 3
 
 
+def test_roots_of_what_is_not_negative_become_one() -> None:
+    squares = [1 + x**2, y**2 + z**2, 2 + z**2]
+    a, b, c = map(sqrt, squares)
+    assert lowered(3 * a * b * c).operations()["sqrt"] == 1
+    assert lowered(a * b, z * a * b).operations()["sqrt"] == 1
+    assert lowered(a * b, b * c).operations()["sqrt"] == 3, "b stands in two products"
+    assert lowered(a * b, b + z).operations()["sqrt"] == 2
+    assert lowered(sqrt(x) * sqrt(y)).operations()["sqrt"] == 2, (
+        "the square root of -1 times itself"
+    )
+
+
+def test_angles_take_one_root_and_no_division() -> None:
+    a, b = sqrt(1 + x**2), sqrt(y**2 + z**2)
+    assert lowered(2 * sp.atan2(a, b)).operations()["sqrt"] == 1
+    assert lowered(2 * sp.atan2(a, b), 3 * sp.atan2(a, b)).operations()["sqrt"] == 3
+    assert lowered(2 * sp.atan2(x, b)).operations()["sqrt"] == 1
+    size = 1 + x**2
+    assert "div" not in lowered(sp.atan2(-y / size, z / size)).operations()
+    assert lowered(sp.atan2(y / x, z / x)).operations()["div"] == 2, "x may be negative"
+
+
+coordinates = st.sampled_from([0.0, 1e-9, 0.5, 1.0]) | st.floats(1e-30, 3) | st.floats(-3, -1e-30)
+
+
+@settings(deadline=None)
+@given(st.tuples(coordinates, coordinates, coordinates))
+def test_angles_by_one_root_are_those_of_two(point: tuple[float, float, float]) -> None:
+    """Where both roots vanish too, and where the angle is 0, a right angle or half a turn."""
+    a, b = abs(point[0]), math.hypot(*point[1:])
+    size = 1 + point[2] ** 2
+    exprs = [
+        2 * sp.atan2(sp.Abs(x), sqrt(y**2 + z**2)),
+        2 * sp.atan2(sqrt(x**2) * sqrt(1 + z**2), sqrt(y**2 + z**2) * sqrt(1 + z**2)),
+        -4 * sp.atan2(sqrt(y**2 + z**2), sqrt(x**2)) / 2,
+        sp.atan2(-x / (1 + z**2), y / (1 + z**2)),
+    ]
+    angles = [2 * math.atan2(a, b), 2 * math.atan2(a, b), -2 * math.atan2(b, a)]
+    angles += [math.atan2(-point[0] / size, point[1] / size)]
+    got = run(lowered(*exprs), dict(zip("xyz", point, strict=True)))
+    for found, expected in zip(got, angles, strict=True):
+        assert math.remainder(found - expected, math.tau) == pytest.approx(0, abs=1e-14)
+
+
 def test_only_flags_are_rare() -> None:
     """A sign that was computed is as often one as the other, be flags among what it rests on."""
     p = Program()

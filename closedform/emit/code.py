@@ -14,7 +14,7 @@ from fractions import Fraction
 import sympy as sp
 
 from closedform.lower import Lowered
-from closedform.lower.graph import BOOLEAN, Node
+from closedform.lower.graph import BOOLEAN, Node, constant_of
 from closedform.lower.program import LEAVES
 
 LONGEST = 44
@@ -85,6 +85,14 @@ def literal(value: sp.Expr) -> str:
     return repr(float(value.evalf(40)))
 
 
+def _inverse_power_of_two(node: Node) -> sp.Expr | None:
+    """What to multiply by instead of dividing by a constant, where that is exact."""
+    value = constant_of(node)
+    if value is None or not value.is_Integer or value & (value - 1):
+        return None
+    return 1 / value
+
+
 class Printer:
     """Turns a lowered program into lines of code; subclasses say how each operator looks."""
 
@@ -147,6 +155,10 @@ class Printer:
                 return Text(f"{args[0].at(SUM)} - {args[1].at(PRODUCT)}", SUM)
             case "mul":
                 return Text(f"{args[0].at(PRODUCT)} * {args[1].at(UNARY)}", PRODUCT)
+            case "div" if (inverse := _inverse_power_of_two(node.args[1])) is not None:
+                return Text(
+                    f"{args[0].at(PRODUCT)} * {self.constant(literal(inverse)).code}", PRODUCT
+                )
             case "div":
                 return Text(f"{args[0].at(PRODUCT)} / {args[1].at(UNARY)}", PRODUCT)
             case "neg":

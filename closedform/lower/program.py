@@ -16,6 +16,7 @@ from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.common import common_case
 from closedform.lower.graph import Graph, Node, reachable
 from closedform.lower.ranges import Ranges, UnboundedError
+from closedform.lower.roots import fewer_roots
 from closedform.lower.share import share
 from closedform.lower.turns import Turns
 
@@ -24,6 +25,8 @@ LEAVES = frozenset({
 })  # fmt: skip
 SPARED = 0.15
 """Which part of the operations a common case must spare to be worth a program of its own."""
+ALONE = 0.6
+"""Which part of the operations of all branches one of them may have to be worth one."""
 
 
 class UnboundedAngleError(TypeError):
@@ -48,7 +51,7 @@ class Lowered:
     are taken away, in the order of first use; they depend on the inputs alone.  ``names`` gives
     preferred names (from the derivation) to nodes.  ``common`` is the program where nothing
     vanishes, if that is much shorter: its last result, ``rare``, is whether something does.
-    ``branch`` is one branch of that, if it has less than half the operations of all: its last
+    ``branch`` is one branch of that, if it is short enough to be taken several times: its last
     input is the signs of the branch.
     """
 
@@ -98,7 +101,7 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
         return whole
     common = replace(common, parameters=whole.parameters)
     branch = _one_branch(function, derivation, entries) if function.branches else None
-    short = branch is not None and branch.length < common.length / 2
+    short = branch is not None and branch.length < ALONE * common.length
     return replace(whole, common=common, branch=branch if short else None)
 
 
@@ -133,8 +136,11 @@ def _lower(
     divisors = angle_divisors([*_expressions(function), *(e for e, _ in entries)])
     names: dict[int, str] = {}
     rows = []
+    ranges = _ranges(function, derivation, signs)
     for label, chosen in cases:
-        branch = _Branch(function, derivation, graph, leaves, divisors, chosen, signs, entries)
+        branch = _Branch(
+            function, derivation, graph, leaves, divisors, chosen, signs, entries, ranges
+        )
         rows.append(branch.run(names, label))
     results = []
     for k, output in enumerate(function.outputs):
@@ -146,7 +152,7 @@ def _lower(
         lead = (len(rows),) if function.branches else ()
         results.append(Result("status", lead, "status", tuple(row[1] for row in rows)))
 
-    finish = partial(_finished, function, [p.name for p in parameters], graph)
+    finish = partial(_finished, function, [p.name for p in parameters], graph, ranges)
     whole = finish(results, names)
     images, rare, kept = common_case(graph, [n for r in results for n in r.nodes], names)
     flat = iter(images)
@@ -158,13 +164,14 @@ def _finished(
     function: Function,
     parameters: Sequence[str],
     graph: Graph,
+    ranges: Ranges,
     results: Sequence[Result],
     names: Mapping[int, str],
 ) -> Lowered:
     """The program of these results, with common parts shared."""
     flat = [n for r in results for n in r.nodes]
     # An inverse is judged by what its answers give, a forward map by the last digit of its values.
-    renamed, named = _share_named(graph, flat, names, by_reciprocals=function.has_status)
+    renamed, named = _share_named(graph, ranges, flat, names, by_reciprocals=function.has_status)
     remaining = iter(renamed)
     used = {str(n.payload) for n in reachable(renamed) if n.op == "input"}
     return Lowered(
@@ -179,15 +186,35 @@ def _finished(
 
 
 def _share_named(
-    graph: Graph, roots: Sequence[Node], names: Mapping[int, str], *, by_reciprocals: bool
+    graph: Graph,
+    ranges: Ranges,
+    roots: Sequence[Node],
+    names: Mapping[int, str],
+    *,
+    by_reciprocals: bool,
 ) -> tuple[list[Node], dict[int, str]]:
-    """Share common parts; names of the derivation follow their nodes."""
-    live = {n.id: n for n in reachable(roots) if n.id in names}
-    shared = share(graph, [*roots, *live.values()], by_reciprocals=by_reciprocals)
+    """Spare roots and share common parts; names of the derivation follow their nodes."""
+    live = [n for n in reachable(roots) if n.id in names]
+    spared = fewer_roots(graph, roots, live, ranges)
+    body, images = spared[: len(roots)], dict(zip(spared[len(roots) :], live, strict=True))
+    named = [n for n in reachable(body) if n in images]
+    shared = share(graph, [*body, *named], by_reciprocals=by_reciprocals)
     body = shared[: len(roots)]
     alive = {n.id for n in reachable(body)}
-    images = dict(zip(live, shared[len(roots) :], strict=True))
-    return body, {images[i].id: names[i] for i in live if images[i].id in alive}
+    found = zip(shared[len(roots) :], named, strict=True)
+    return body, {new.id: names[images[old].id] for new, old in found if new.id in alive}
+
+
+def _guarded(function: Function) -> bool:
+    """Whether a failure is to be marked: by a status, or by NaN for a missing branch."""
+    return function.has_status or any(isinstance(s, (Bound, Match)) for s in function.body)
+
+
+def _ranges(function: Function, derivation: Derivation, signs: Sequence[sp.Symbol]) -> Ranges:
+    """Where an answer with a negative length is marked, lengths count as not negative."""
+    marked = _guarded(function)
+    lengths = [p.name for p in derivation.parameters if marked and p.nonnegative]
+    return Ranges(lengths, [s.name for s in signs])
 
 
 def _expressions(function: Function) -> Iterable[sp.Basic]:
@@ -212,6 +239,7 @@ class _Branch:
     chosen: Mapping[sp.Symbol, int]
     signs: Sequence[sp.Symbol]
     entries: Sequence[tuple[sp.Expr, bool]]
+    ranges: Ranges
 
     def run(self, names: dict[int, str], label: str) -> tuple[list[list[Node]], Node]:
         graph = self.graph
@@ -253,7 +281,9 @@ class _Branch:
         # Written so that a comparison with NaN, after an overflow, counts as a failure.
         bad_input = graph.negate(graph.every(valid))
         out_of_reach = graph.negate(graph.every(reachable))
-        failed = graph.any([bad_input, out_of_reach]) if self._guarded else graph.node("false")
+        failed = (
+            graph.any([bad_input, out_of_reach]) if _guarded(self.function) else graph.node("false")
+        )
         for node, name in (
             (bad_input, "invalid"),
             (out_of_reach, "unreachable"),
@@ -264,20 +294,6 @@ class _Branch:
         outputs = [list(islice(nodes, output.size)) for output in self.function.outputs]
         return outputs, self._status(bad_input, out_of_reach, graph.any(singular))
 
-    @property
-    def _guarded(self) -> bool:
-        """Whether a failure is to be marked: by a status, or by NaN for a missing branch."""
-        return self.function.has_status or any(
-            isinstance(s, (Bound, Match)) for s in self.function.body
-        )
-
-    @property
-    def _ranges(self) -> Ranges:
-        """Where an answer with a negative length is marked, lengths count as not negative."""
-        marked = self._guarded
-        lengths = [p.name for p in self.derivation.parameters if marked and p.nonnegative]
-        return Ranges(lengths, [s.name for s in self.signs])
-
     def _output(self, build: Builder, failed: Node, entry: sp.Expr, angle: bool) -> Node:
         """The value of an entry; adding NaN to a failed one is one selection for all entries."""
         node = build(entry)
@@ -285,7 +301,7 @@ class _Branch:
             return self.graph.every([self.graph.negate(failed), node])
         if angle:
             try:
-                node = self._ranges.wrapped(self.graph, node)
+                node = self.ranges.wrapped(self.graph, node)
             except UnboundedError:
                 raise UnboundedAngleError(
                     f"{self.function.name}: the size of the angle {entry} is not known, so that it "

@@ -31,6 +31,7 @@ class Ranges:
     def __init__(self, lengths: Collection[str] = (), signs: Collection[str] = ()):
         self.lengths = frozenset(lengths)
         self.signs = frozenset(signs)
+        self._not_negative: dict[int, bool] = {}
 
     def wrapped(self, graph: Graph, angle: Node) -> Node:
         """The angle in (-pi, pi], by the cheapest of the wraps that its range allows.
@@ -98,7 +99,30 @@ class Ranges:
         if node.op == "product":
             return all(n % 2 == 0 or self.positive(f) for f, n in Counter(node.args).items())
         if node.op == "sum":
-            return all(map(self._not_negative, node.args)) and any(map(self.positive, node.args))
+            return all(map(self.not_negative, node.args)) and any(map(self.positive, node.args))
+        return False
+
+    def not_negative(self, node: Node) -> bool:
+        """Whether a value is never below zero; it may be the negative zero, or NaN."""
+        if node.id not in self._not_negative:
+            self._not_negative[node.id] = self._is_not_negative(node)
+        return self._not_negative[node.id]
+
+    def _is_not_negative(self, node: Node) -> bool:
+        match node.op:
+            case "const" | "tolerance" | "abs" | "sqrt":
+                return True
+            case "input":
+                return node.payload in self.lengths
+            case "sum" | "div":
+                return all(map(self.not_negative, node.args))
+            case "select":
+                return all(map(self.not_negative, node.args[1:]))
+            case "max":
+                return any(map(self.not_negative, node.args))
+            case "product":
+                powers = Counter(node.args).items()
+                return all(n % 2 == 0 or self.not_negative(f) for f, n in powers)
         return False
 
     def _whole_numbers(self, node: Node) -> set[int] | None:
@@ -125,9 +149,6 @@ class Ranges:
                 return {sum(values) for values in product(*known)}
             case _:
                 return {prod(values) for values in product(*known)}
-
-    def _not_negative(self, node: Node) -> bool:
-        return self.positive(node) or (node.op == "input" and node.payload in self.lengths)
 
 
 def _point(value: Fraction) -> Range:

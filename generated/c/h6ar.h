@@ -5,18 +5,18 @@
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 45 add, 35 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
- *     sincos, 4 sqrt
- *   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
+ *     sincos, 3 sqrt
+ *   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
- *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
- *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
- *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
- *   ik: 394 compare and select, 344 add, 25 atan2, 70 divide, 413 multiply, 1 reduce to a turn, 3
- *     sincos, 31 sqrt
- *   ik where nothing vanishes: 254 compare and select, 200 add, 18 atan2, 38 divide, 223 multiply,
- *     1 reduce to a turn, 3 sincos, 31 sqrt
- *   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
+ *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
+ *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
+ *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
+ *   ik: 396 compare and select, 320 add, 24 atan2, 59 divide, 329 multiply, 1 reduce to a turn, 3
+ *     sincos, 16 sqrt
+ *   ik where nothing vanishes: 239 compare and select, 158 add, 17 atan2, 25 divide, 137 multiply,
+ *     1 reduce to a turn, 3 sincos, 16 sqrt
+ *   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
  *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt

@@ -5,18 +5,18 @@
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
- *     sincos, 8 sqrt
- *   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 8 sqrt
+ *     sincos, 6 sqrt
+ *   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
- *   jacobian: 55 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
- *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
- *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
- *   ik: 374 compare and select, 374 add, 27 atan2, 49 divide, 517 multiply, 1 reduce to a turn, 3
- *     sincos, 31 sqrt
- *   ik where nothing vanishes: 276 compare and select, 274 add, 23 atan2, 35 divide, 388 multiply,
- *     1 reduce to a turn, 3 sincos, 31 sqrt
- *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
+ *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
+ *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
+ *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
+ *   ik: 341 compare and select, 342 add, 27 atan2, 40 divide, 455 multiply, 1 reduce to a turn, 3
+ *     sincos, 16 sqrt
+ *   ik where nothing vanishes: 253 compare and select, 250 add, 23 atan2, 27 divide, 332 multiply,
+ *     1 reduce to a turn, 3 sincos, 16 sqrt
+ *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
  *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt

@@ -4,16 +4,16 @@
  * Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 3 sqrt
- *   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
+ *   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 2 sqrt
+ *   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 2
  *     sqrt
- *   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
- *   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
- *   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
- *   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
- *   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
- *   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
- *   ik: 56 compare and select, 36 add, 6 atan2, 2 divide, 33 multiply, 5 sqrt
+ *   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
+ *   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
+ *   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 2 sqrt
+ *   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 2 sqrt
+ *   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 2 sqrt
+ *   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 2 sqrt
+ *   ik: 56 compare and select, 36 add, 6 atan2, 2 divide, 33 multiply, 3 sqrt
  *   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
  *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
  */
@@ -47,11 +47,11 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const int single,
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
     const real_t t5 = CLOSEDFORM_C(1.0) / apart;
     const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 * t5);
-    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t10);
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 * t5));
     const real_t t11 = height * n_1;
@@ -62,7 +62,7 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const int single,
     const int invalid = !(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14);
     const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t3) <= t9);
     const real_t t15 = cf_poison(single, invalid | unreachable);
-    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t16 = distance * n_1 * CLOSEDFORM_C(0.5);
     const real_t t17 = height * t6;
     const real_t P_r_right_of_CD = C_r - (t7 + t11);
     const real_t t18 = cf_status(single, invalid, unreachable, coincide);
@@ -152,16 +152,16 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int single,
     const int coincide = apart <= t4;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
     const real_t t5 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t6 = distance * t5 / CLOSEDFORM_C(2.0);
+    const real_t t6 = distance * t5 * CLOSEDFORM_C(0.5);
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
     const real_t t7 = L2 * CLOSEDFORM_C(2.0);
     const real_t t8 = t7 - apart;
     const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t9 = cf_sqrt(slack) * cf_sqrt(apart + t7) / CLOSEDFORM_C(2.0);
+    const real_t t9 = cf_sqrt(slack * (apart + t7)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t9);
     const real_t t10 = n_1 * height;
     const real_t DP_r_right_of_CD = t6 - t10;
-    const real_t t11 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t11 = distance * n_1 * CLOSEDFORM_C(0.5);
     const real_t t12 = t5 * height;
     const real_t CP_y = t11 + t12;
     const int t13 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
@@ -259,22 +259,22 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const int single,
     const int coincide = apart <= t13;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
     const real_t t14 = cf_select(coincide, CLOSEDFORM_C(0.0), t6 / apart);
-    const real_t t15 = distance * t14 / CLOSEDFORM_C(2.0);
+    const real_t t15 = distance * t14 * CLOSEDFORM_C(0.5);
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t7 / apart));
     const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t16 = cf_sqrt(slack) * cf_sqrt(apart + t5) / CLOSEDFORM_C(2.0);
+    const real_t t16 = cf_sqrt(slack * (apart + t5)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), t16);
     const real_t t17 = n_1 * height;
     const real_t DP_r_right_of_CD = t15 - t17;
-    const real_t t18 = DP_r_right_of_CD * c1;
-    const real_t t19 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t18 = c1 * DP_r_right_of_CD;
+    const real_t t19 = distance * n_1 * CLOSEDFORM_C(0.5);
     const real_t t20 = t14 * height;
     const real_t CP_y = t19 + t20;
-    const real_t t21 = DP_r_right_of_CD * s1;
+    const real_t t21 = s1 * DP_r_right_of_CD;
     const real_t DP_r = t15 + t17;
-    const real_t t22 = DP_r * c1;
+    const real_t t22 = c1 * DP_r;
     const real_t CP_y_right_of_CD = t19 - t20;
-    const real_t t23 = DP_r * s1;
+    const real_t t23 = s1 * DP_r;
     A[0] = t10;
     A[1] = t11;
     A[2] = t12;
@@ -373,12 +373,12 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const int single,
     const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
     const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
@@ -387,7 +387,7 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const int single,
     const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
     const int failed = (!(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t15 = cf_poison(single, failed);
-    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t16 = distance * n_1 * CLOSEDFORM_C(0.5);
     const real_t t17 = t6 * height;
     const real_t CP_y = t16 + t17;
     const real_t DP_r = t7 + t11;
@@ -449,12 +449,12 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const int single,
     const real_t theta1 = q[0];
     const real_t theta2 = q[1];
     const real_t theta3 = q[2];
-    const real_t s2 = sines[0];
-    const real_t c2 = cosines[0];
-    const real_t s3 = sines[1];
-    const real_t c3 = cosines[1];
-    const real_t s1 = sines[2];
-    const real_t c1 = cosines[2];
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t s3 = sines[2];
+    const real_t c3 = cosines[2];
     const real_t C_r = L1 * s2;
     const real_t D_r = L1 * s3;
     const real_t t1 = C_r - D_r;
@@ -467,12 +467,12 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const int single,
     const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
     const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
@@ -482,40 +482,40 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const int single,
     const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
     const int failed = (!(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t15 = cf_poison(single, failed);
-    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t16 = distance * n_1 * CLOSEDFORM_C(0.5);
     const real_t t17 = t6 * height;
     const real_t CP_y_right_of_CD = t16 - t17;
+    const real_t t18 = c1 * CP_y_right_of_CD;
     const real_t CP_y = t16 + t17;
-    const real_t t18 = C_y * DP_r_right_of_CD + C_r * CP_y;
-    const real_t t19 = CP_y_right_of_CD * t18;
+    const real_t t19 = C_y * DP_r_right_of_CD + C_r * CP_y;
     const real_t side = distance * height;
+    const real_t t20 = c1 * CP_y;
     const real_t DP_r = t7 + t11;
     const real_t along_d = t2 * DP_r + D_r * CP_y_right_of_CD;
-    const real_t t20 = CP_y * along_d;
     const real_t t21 = CLOSEDFORM_C(0.0) + t15;
+    const real_t t22 = s1 * CP_y_right_of_CD;
+    const real_t t23 = s1 * CP_y;
     const real_t P_r_right_of_CD = C_r - DP_r;
-    const real_t t22 = C_y * DP_r + C_r * CP_y_right_of_CD;
-    const real_t t23 = CP_y * t22;
+    const real_t t24 = C_y * DP_r + C_r * CP_y_right_of_CD;
     const real_t along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y;
-    const real_t t24 = CP_y_right_of_CD * along_d_right_of_CD;
-    J[0] = P_r * s1 + t15;
-    J[1] = c1 * t19 / side + t15;
-    J[2] = -(c1 * t20 / side) + t15;
+    J[0] = s1 * P_r + t15;
+    J[1] = t18 * t19 / side + t15;
+    J[2] = -(t20 * along_d / side) + t15;
     J[3] = t21;
-    J[4] = -(DP_r * t18 / side) + t15;
+    J[4] = -(DP_r * t19 / side) + t15;
     J[5] = DP_r_right_of_CD * along_d / side + t15;
-    J[6] = P_r * c1 + t15;
-    J[7] = -(s1 * t19 / side) + t15;
-    J[8] = s1 * t20 / side + t15;
+    J[6] = c1 * P_r + t15;
+    J[7] = -(t22 * t19 / side) + t15;
+    J[8] = t23 * along_d / side + t15;
     J[9] = s1 * P_r_right_of_CD + t15;
-    J[10] = -(c1 * t23 / side) + t15;
-    J[11] = c1 * t24 / side + t15;
+    J[10] = -(t20 * t24 / side) + t15;
+    J[11] = t18 * along_d_right_of_CD / side + t15;
     J[12] = t21;
-    J[13] = DP_r_right_of_CD * t22 / side + t15;
+    J[13] = DP_r_right_of_CD * t24 / side + t15;
     J[14] = -(DP_r * along_d_right_of_CD / side) + t15;
     J[15] = c1 * P_r_right_of_CD + t15;
-    J[16] = s1 * t23 / side + t15;
-    J[17] = -(s1 * t24 / side) + t15;
+    J[16] = t23 * t24 / side + t15;
+    J[17] = -(t22 * along_d_right_of_CD / side) + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -523,7 +523,7 @@ void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params,
     const real_t q[3], real_t J[18])
 {
     real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[0] };
+    const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_kernel(1, params, q, sines, cosines, J);
 }
@@ -537,9 +537,9 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
@@ -596,16 +596,16 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const int single,
     const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
     const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
-    const real_t t12 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t12 = distance * n_1 * CLOSEDFORM_C(0.5);
     const real_t t13 = t6 * height;
     const real_t CP_y = t12 + t13;
     const real_t t14 = (C_r - DP_r_right_of_CD) * (C_y * DP_r_right_of_CD + C_r * CP_y);
@@ -685,12 +685,12 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const int single,
     const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
     const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
-    const real_t t7 = distance * t6 / CLOSEDFORM_C(2.0);
+    const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack) * cf_sqrt(apart + t8) / CLOSEDFORM_C(2.0);
+    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
@@ -699,7 +699,7 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const int single,
     const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
     const int failed = (!(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t15 = cf_poison(single, failed);
-    const real_t t16 = distance * n_1 / CLOSEDFORM_C(2.0);
+    const real_t t16 = distance * n_1 * CLOSEDFORM_C(0.5);
     const real_t t17 = t6 * height;
     const real_t CP_y = t16 + t17;
     const real_t DP_r = t7 + t11;
@@ -777,11 +777,11 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const int single,
     const real_t t4 = t3 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t4;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = distance / CLOSEDFORM_C(2.0);
+    const real_t t5 = distance * CLOSEDFORM_C(0.5);
     const real_t t6 = L2 * CLOSEDFORM_C(2.0);
     const real_t t7 = t6 - apart;
     const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t8 = cf_sqrt(slack) * cf_sqrt(apart + t6) / CLOSEDFORM_C(2.0);
+    const real_t t8 = cf_sqrt(slack * (apart + t6)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t8);
     const real_t t9 = cf_select(coincide, CLOSEDFORM_C(1.0), cf_max(t5, height));
     const int t10 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
@@ -851,7 +851,7 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const real_t t8 = t1 * t1;
     const real_t square_c = r2 + y * y;
     const real_t t9 = t8 - square_c;
-    const real_t t10 = L1 / CLOSEDFORM_C(8796093022208.0) + L2 / CLOSEDFORM_C(8796093022208.0);
+    const real_t t10 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + L2 * CLOSEDFORM_C(1.1368683772161603e-13);
     const real_t t11 = L1 - L2;
     const real_t t12 = CLOSEDFORM_FEASIBILITY * (t1 * (t10 + CLOSEDFORM_C(2.0) * cf_abs(t11)));
     const real_t t13 = t11 * t11;
@@ -869,7 +869,7 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const real_t N_c = cf_max(t9, CLOSEDFORM_C(0.0));
     const real_t ahead_c = cf_select(no_link_c, CLOSEDFORM_C(1.0), t1 * M_c + N_c * t11);
     const real_t t20 = ahead_c * r;
-    const real_t beyond_c = cf_select(no_link_c, CLOSEDFORM_C(0.0), t6 * cf_sqrt(M_c) * cf_sqrt(N_c));
+    const real_t beyond_c = cf_select(no_link_c, CLOSEDFORM_C(0.0), t6 * cf_sqrt(N_c * M_c));
     const real_t t21 = y * beyond_c;
     const real_t t22 = y * ahead_c;
     const real_t t23 = r * beyond_c;
@@ -878,7 +878,7 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const real_t N_d = cf_max(t16, CLOSEDFORM_C(0.0));
     const real_t ahead_d = cf_select(no_link_c, CLOSEDFORM_C(1.0), t1 * M_d + t11 * N_d);
     const real_t t24 = ahead_d * r;
-    const real_t beyond_d = cf_select(no_link_c, CLOSEDFORM_C(0.0), t6 * cf_sqrt(M_d) * cf_sqrt(N_d));
+    const real_t beyond_d = cf_select(no_link_c, CLOSEDFORM_C(0.0), t6 * cf_sqrt(N_d * M_d));
     const real_t t25 = t15 * beyond_d;
     const real_t t26 = t15 * ahead_d;
     const real_t t27 = r * beyond_d;
@@ -1051,7 +1051,7 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     const real_t t7 = t4 * t4;
     const real_t r2 = x * x + z * z;
     const real_t square_c = r2 + y * y;
-    const real_t t8 = L1 / CLOSEDFORM_C(8796093022208.0) + L2 / CLOSEDFORM_C(8796093022208.0);
+    const real_t t8 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + L2 * CLOSEDFORM_C(1.1368683772161603e-13);
     const real_t t9 = L1 - L2;
     const real_t t10 = CLOSEDFORM_FEASIBILITY * (t4 * (t8 + CLOSEDFORM_C(2.0) * cf_abs(t9)));
     const real_t t11 = t9 * t9;

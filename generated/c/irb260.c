@@ -16,7 +16,7 @@
  *   determinant: 4 add, 7 multiply, 2 sincos
  *   singularities: 4 add, 4 multiply, 2 sincos
  *   point_velocity: 11 add, 20 multiply, 3 sincos
- *   ik: 45 add, 71 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
+ *   ik: 49 add, 71 compare and select, 10 atan2, 32 multiply, 1 sincos, 7 sqrt
  *   workspace_section: 1 compare and select, 4 add
  *   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
  *   workspace_contains: 24 compare and select, 17 add, 6 multiply, 3 sqrt
@@ -872,29 +872,37 @@ CF_INLINE void irb260_ik_kernel(const int single, const irb260_params *params,
     const real_t t17 = cf_poison(single, invalid | unreachable);
     const int folded = reach <= t4;
     const int no_link = l3 * l4 <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const real_t rA = cf_sqrt(cf_max(t13, CLOSEDFORM_C(0.0)));
-    const real_t rC = cf_sqrt(cf_max(t16, CLOSEDFORM_C(0.0)));
-    const real_t rS = cf_sqrt(t1 + reach);
-    const real_t rB = cf_sqrt(cf_max(t15, CLOSEDFORM_C(0.0)));
-    const real_t t18 = c_psi * s_turret_back_elbow_up;
-    const real_t t19 = s_psi * s_turret_back_elbow_up;
+    const real_t A = cf_max(t13, CLOSEDFORM_C(0.0));
+    const real_t C = cf_max(t16, CLOSEDFORM_C(0.0));
+    const real_t t18 = A * C;
+    const real_t S = t1 + reach;
+    const real_t B = cf_max(t15, CLOSEDFORM_C(0.0));
+    const real_t t19 = S * B;
+    const real_t t20 = A * S;
+    const real_t t21 = C * B;
+    const real_t t22 = c_psi * s_turret_back_elbow_up;
+    const real_t t23 = s_psi * s_turret_back_elbow_up;
     const real_t c_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(1.0), -py);
-    const real_t t20 = r + t2;
-    const real_t reach_back_elbow_up = cf_sqrt(t11 + t20 * t20);
-    const real_t t21 = t1 - reach_back_elbow_up;
-    const real_t t22 = t14 + reach_back_elbow_up;
-    const real_t t23 = reach_back_elbow_up - t14;
-    const int unreachable_2 = !((t10 <= t21) & (t10 <= t22) & (t10 <= t23));
-    const real_t t24 = cf_poison(single, invalid | unreachable_2);
+    const real_t t24 = r + t2;
+    const real_t reach_back_elbow_up = cf_sqrt(t11 + t24 * t24);
+    const real_t t25 = t1 - reach_back_elbow_up;
+    const real_t t26 = t14 + reach_back_elbow_up;
+    const real_t t27 = reach_back_elbow_up - t14;
+    const int unreachable_2 = !((t10 <= t25) & (t10 <= t26) & (t10 <= t27));
+    const real_t t28 = cf_poison(single, invalid | unreachable_2);
     const int folded_back_elbow_up = reach_back_elbow_up <= t4;
-    const real_t rA_back_elbow_up = cf_sqrt(cf_max(t21, CLOSEDFORM_C(0.0)));
-    const real_t rC_back_elbow_up = cf_sqrt(cf_max(t23, CLOSEDFORM_C(0.0)));
-    const real_t rS_back_elbow_up = cf_sqrt(t1 + reach_back_elbow_up);
-    const real_t rB_back_elbow_up = cf_sqrt(cf_max(t22, CLOSEDFORM_C(0.0)));
-    const real_t t25 = cf_status(single, invalid, unreachable, on_axis | folded | no_link);
-    const real_t t26 = cf_status(single, invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
-    const real_t opposite[16] = { s_turret_back_elbow_up, rA * rC, -t12, rA * rS, s_psi * c_turret + t18, s_turret_back_elbow_up, rA_back_elbow_up * rC_back_elbow_up, t20, rA_back_elbow_up * rS_back_elbow_up, t18 - s_psi * c_turret_back_elbow_up };
-    const real_t adjacent[16] = { c_turret, rS * rB, h, rC * rB, c_psi * c_turret - t19, c_turret_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up, h, rC_back_elbow_up * rB_back_elbow_up, t19 + c_psi * c_turret_back_elbow_up };
+    const real_t A_back_elbow_up = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t C_back_elbow_up = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t29 = A_back_elbow_up * C_back_elbow_up;
+    const real_t S_back_elbow_up = t1 + reach_back_elbow_up;
+    const real_t B_back_elbow_up = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t t30 = S_back_elbow_up * B_back_elbow_up;
+    const real_t t31 = A_back_elbow_up * S_back_elbow_up;
+    const real_t t32 = C_back_elbow_up * B_back_elbow_up;
+    const real_t t33 = cf_status(single, invalid, unreachable, on_axis | folded | no_link);
+    const real_t t34 = cf_status(single, invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
+    const real_t opposite[16] = { s_turret_back_elbow_up, -t12, CLOSEDFORM_C(2.0) * cf_sqrt(t18 * t19), CLOSEDFORM_C(2.0) * cf_sqrt(t20 * t21), s_psi * c_turret + t22, s_turret_back_elbow_up, t24, CLOSEDFORM_C(2.0) * cf_sqrt(t29 * t30), CLOSEDFORM_C(2.0) * cf_sqrt(t31 * t32), t22 - s_psi * c_turret_back_elbow_up };
+    const real_t adjacent[16] = { c_turret, h, t19 - t18, t21 - t20, c_psi * c_turret - t23, c_turret_back_elbow_up, h, t30 - t29, t32 - t31, t23 + c_psi * c_turret_back_elbow_up };
     real_t angles[16];
     if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);
@@ -910,42 +918,40 @@ CF_INLINE void irb260_ik_kernel(const int single, const irb260_params *params,
         angles[8] = cf_atan2(opposite[8], adjacent[8]);
         angles[9] = cf_atan2(opposite[9], adjacent[9]);
     }
-    const real_t t27 = cf_wrap_cut(-angles[0]) + t17;
-    const real_t t28 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
-    const real_t t29 = cf_select(folded, CLOSEDFORM_C(0.0), t28 + angles[2]);
-    const real_t t30 = CLOSEDFORM_C(2.0) * angles[3];
-    const real_t t31 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t30);
-    const real_t t32 = cf_wrap_cut(angles[4]) + t17;
-    const real_t t33 = cf_select(folded, CLOSEDFORM_C(0.0), t28 - angles[2]);
-    const real_t t34 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t30);
-    const real_t t35 = cf_wrap_cut(angles[5]) + t24;
-    const real_t t36 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[6]);
-    const real_t t37 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t36 + angles[7]);
-    const real_t t38 = CLOSEDFORM_C(2.0) * angles[8];
-    const real_t t39 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - t38);
-    const real_t t40 = cf_wrap_cut(-angles[9]) + t24;
-    const real_t t41 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), t36 - angles[7]);
-    const real_t t42 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + t38);
-    q[0] = t27;
-    q[1] = cf_wrap(-t29) + t17;
-    q[2] = -t31 + t17;
-    q[3] = t32;
-    q[4] = t27;
-    q[5] = cf_wrap(t33) + t17;
-    q[6] = cf_wrap(-t34) + t17;
-    q[7] = t32;
-    q[8] = t35;
-    q[9] = cf_wrap(-t37) + t24;
-    q[10] = -t39 + t24;
-    q[11] = t40;
-    q[12] = t35;
-    q[13] = cf_wrap_cut(t41) + t24;
-    q[14] = cf_wrap(-t42) + t24;
-    q[15] = t40;
-    status[0] = t25;
-    status[1] = t25;
-    status[2] = t26;
-    status[3] = t26;
+    const real_t t35 = cf_wrap_cut(-angles[0]) + t17;
+    const real_t t36 = cf_select(no_link, CLOSEDFORM_C(0.0), angles[2]);
+    const real_t t37 = cf_select(folded, CLOSEDFORM_C(0.0), angles[1] + t36);
+    const real_t t38 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - angles[3]);
+    const real_t t39 = cf_wrap_cut(angles[4]) + t17;
+    const real_t t40 = cf_select(folded, CLOSEDFORM_C(0.0), angles[1] - t36);
+    const real_t t41 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + angles[3]);
+    const real_t t42 = cf_wrap_cut(angles[5]) + t28;
+    const real_t t43 = cf_select(no_link, CLOSEDFORM_C(0.0), angles[7]);
+    const real_t t44 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), angles[6] + t43);
+    const real_t t45 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - angles[8]);
+    const real_t t46 = cf_wrap_cut(-angles[9]) + t28;
+    const real_t t47 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), angles[6] - t43);
+    const real_t t48 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + angles[8]);
+    q[0] = t35;
+    q[1] = cf_wrap(-t37) + t17;
+    q[2] = -t38 + t17;
+    q[3] = t39;
+    q[4] = t35;
+    q[5] = cf_wrap(-t40) + t17;
+    q[6] = cf_wrap(-t41) + t17;
+    q[7] = t39;
+    q[8] = t42;
+    q[9] = cf_wrap(-t44) + t28;
+    q[10] = -t45 + t28;
+    q[11] = t46;
+    q[12] = t42;
+    q[13] = cf_wrap_cut(-t47) + t28;
+    q[14] = cf_wrap(-t48) + t28;
+    q[15] = t46;
+    status[0] = t33;
+    status[1] = t33;
+    status[2] = t34;
+    status[3] = t34;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -16,7 +16,7 @@
  *   determinant: 4 add, 7 multiply, 2 sincos
  *   singularities: 4 add, 4 multiply, 2 sincos
  *   point_velocity: 11 add, 20 multiply, 3 sincos
- *   ik: 45 add, 71 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
+ *   ik: 49 add, 71 compare and select, 10 atan2, 32 multiply, 1 sincos, 7 sqrt
  *   workspace_section: 1 compare and select, 4 add
  *   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
  *   workspace_contains: 24 compare and select, 17 add, 6 multiply, 3 sqrt

@@ -11,7 +11,7 @@
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
  *   singularities: 1 sincos
- *   ik: 31 compare and select, 18 add, 3 atan2, 2 divide, 23 multiply, 2 sqrt
+ *   ik: 31 compare and select, 19 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
  *   ik_pose: 61 compare and select, 25 add, 2 atan2, 1 divide, 27 multiply, 1 sqrt
  *   workspace_radii: 1 compare and select, 2 add
  */
@@ -373,24 +373,23 @@ CF_INLINE void planar_2r_ik_kernel(const int single, const planar_2r_params *par
     const real_t ahead = cf_select(no_link, CLOSEDFORM_C(1.0), t1 * M + N * t3);
     const real_t t6 = py * ahead;
     const real_t t7 = l2 * CLOSEDFORM_C(2.0);
-    const real_t t8 = cf_sqrt(M);
-    const real_t t9 = cf_sqrt(N);
-    const real_t beyond = cf_select(no_link, CLOSEDFORM_C(0.0), t7 * t8 * t9);
-    const real_t t10 = px * beyond;
-    const real_t t11 = px * ahead;
-    const real_t t12 = py * beyond;
-    const int t13 = cf_nought(l1) + cf_nought(l2) == 0;
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t15 = cf_nought(px) + cf_nought(py) == 0;
-    const int invalid = !(t14 & t15);
-    const real_t t16 = CLOSEDFORM_FEASIBILITY * (t1 * (l1 * CLOSEDFORM_C(2.0) + t7));
-    const real_t t17 = l1 / CLOSEDFORM_C(8796093022208.0) + l2 / CLOSEDFORM_C(8796093022208.0);
-    const real_t t18 = CLOSEDFORM_FEASIBILITY * (t1 * (t17 + CLOSEDFORM_C(2.0) * cf_abs(t3)));
-    const int unreachable = !((-t16 <= t5) & (-t18 <= t4));
-    const real_t t19 = cf_poison(single, invalid | unreachable);
-    const real_t t20 = cf_status(single, invalid, unreachable, no_link | at_base);
-    const real_t opposite[4] = { t6 - t10, t9, t6 + t10 };
-    const real_t adjacent[4] = { t11 + t12, t8, t11 - t12 };
+    const real_t t8 = cf_sqrt(N * M);
+    const real_t beyond = cf_select(no_link, CLOSEDFORM_C(0.0), t7 * t8);
+    const real_t t9 = px * beyond;
+    const real_t t10 = px * ahead;
+    const real_t t11 = py * beyond;
+    const int t12 = cf_nought(l1) + cf_nought(l2) == 0;
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t14 = cf_nought(px) + cf_nought(py) == 0;
+    const int invalid = !(t13 & t14);
+    const real_t t15 = CLOSEDFORM_FEASIBILITY * (t1 * (l1 * CLOSEDFORM_C(2.0) + t7));
+    const real_t t16 = l1 * CLOSEDFORM_C(1.1368683772161603e-13) + l2 * CLOSEDFORM_C(1.1368683772161603e-13);
+    const real_t t17 = CLOSEDFORM_FEASIBILITY * (t1 * (t16 + CLOSEDFORM_C(2.0) * cf_abs(t3)));
+    const int unreachable = !((-t15 <= t5) & (-t17 <= t4));
+    const real_t t18 = cf_poison(single, invalid | unreachable);
+    const real_t t19 = cf_status(single, invalid, unreachable, no_link | at_base);
+    const real_t opposite[4] = { t6 - t9, CLOSEDFORM_C(2.0) * t8, t6 + t9 };
+    const real_t adjacent[4] = { t10 + t11, M - N, t10 - t11 };
     real_t angles[4];
     if (single) {
         cf_atan2_lanes(4, opposite, adjacent, angles);
@@ -399,15 +398,15 @@ CF_INLINE void planar_2r_ik_kernel(const int single, const planar_2r_params *par
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
     }
-    const real_t t21 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[0]);
-    const real_t t22 = cf_select(no_link, CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0) * angles[1]);
-    const real_t t23 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[2]);
-    q[0] = cf_wrap_cut(t21) + t19;
-    q[1] = t22 + t19;
-    q[2] = cf_wrap_cut(t23) + t19;
-    q[3] = cf_wrap_cut(-t22) + t19;
-    status[0] = t20;
-    status[1] = t20;
+    const real_t t20 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[0]);
+    const real_t t21 = cf_select(no_link, CLOSEDFORM_C(0.0), angles[1]);
+    const real_t t22 = cf_select(at_base, CLOSEDFORM_C(0.0), angles[2]);
+    q[0] = cf_wrap_cut(t20) + t18;
+    q[1] = t21 + t18;
+    q[2] = cf_wrap_cut(t22) + t18;
+    q[3] = cf_wrap_cut(-t21) + t18;
+    status[0] = t19;
+    status[1] = t19;
 }
 
 CLOSEDFORM_DISPATCHED

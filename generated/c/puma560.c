@@ -11,7 +11,7 @@
  *   jacobian_body: 26 add, 61 multiply, 5 sincos
  *   determinant: 9 add, 22 multiply, 3 sincos
  *   singularities: 5 add, 9 multiply, 3 sincos
- *   ik: 133 compare and select, 141 add, 20 atan2, 9 divide, 172 multiply, 10 sqrt
+ *   ik: 133 compare and select, 141 add, 20 atan2, 9 divide, 172 multiply, 9 sqrt
  */
 #include "puma560.h"
 
@@ -798,8 +798,8 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t t5 = below - above;
     const real_t t6 = CLOSEDFORM_C(1.0) / (amplitude * (below + above));
     const real_t t7 = T14 * t5 * t6;
-    const real_t root = cf_sqrt(above) * cf_sqrt(below);
-    const real_t t8 = root * CLOSEDFORM_C(2.0);
+    const real_t root = cf_sqrt(below * above);
+    const real_t t8 = CLOSEDFORM_C(2.0) * root;
     const real_t t9 = t6 * (T24 * t8);
     const real_t t10 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t7 - t9);
     const real_t t11 = T24 * t5 * t6;
@@ -836,7 +836,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t t37 = cf_select(folded, CLOSEDFORM_C(0.0), T34 * t36);
     const int no_link = a2 * f <= CLOSEDFORM_VANISHING * (t1 * t1);
     const int t38 = folded | no_link;
-    const real_t S = reach + t1;
+    const real_t S = t1 + reach;
     const real_t B = cf_max(t32, CLOSEDFORM_C(0.0));
     const real_t SB = S * B;
     const real_t A = cf_max(t30, CLOSEDFORM_C(0.0));
@@ -862,12 +862,12 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t t51 = CLOSEDFORM_C(1.0) / (SA + BC);
     const real_t t52 = cf_select(no_link, CLOSEDFORM_C(1.0), -((SA - BC) * t51));
     const real_t t53 = t50 * t52;
-    const real_t t54 = cf_select(no_link, CLOSEDFORM_C(0.0), area * t51);
-    const real_t t55 = cf_select(no_forearm, CLOSEDFORM_C(1.0), a3 * t49);
+    const real_t t54 = cf_select(no_forearm, CLOSEDFORM_C(1.0), a3 * t49);
+    const real_t t55 = cf_select(no_link, CLOSEDFORM_C(0.0), area * t51);
     const real_t t56 = t54 * t55;
     const real_t t57 = t53 + t56;
-    const real_t t58 = t50 * t54;
-    const real_t t59 = t52 * t55;
+    const real_t t58 = t50 * t55;
+    const real_t t59 = t52 * t54;
     const real_t t60 = t58 - t59;
     const real_t t61 = T13 * t10 + T23 * c1;
     const real_t t62 = t61 * t61;

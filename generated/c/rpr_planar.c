@@ -3,11 +3,11 @@
  * derivations/rpr_planar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 4 sqrt
- *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
- *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 4 sqrt
- *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 4 sqrt
- *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 4 sqrt
+ *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
+ *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
+ *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
+ *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
+ *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
  *   ik: 5 add, 8 compare and select, 3 multiply, 2 sqrt
  */
 #include "rpr_planar.h"
@@ -25,7 +25,7 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t4 = rho1 - rho2;
     const real_t t5 = CLOSEDFORM_C(1.0) / (b * CLOSEDFORM_C(2.0));
-    const real_t t6 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t4 * t1 * t5);
+    const real_t t6 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t4 * t1 * t5);
     const int t7 = cf_nought(b) == 0;
     const int t8 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const int invalid = !(t7 & (CLOSEDFORM_C(0.0) <= b) & t8);
@@ -37,8 +37,8 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const real_t t13 = cf_poison(single, invalid | unreachable);
     const real_t t14 = n_1 * t6 + t13;
     const real_t slack = cf_max(t10, CLOSEDFORM_C(0.0));
-    const real_t t15 = cf_sqrt(cf_max(t12, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t11, CLOSEDFORM_C(0.0)));
-    const real_t t16 = cf_select(coincide, CLOSEDFORM_C(0.0), t5 * (t15 * cf_sqrt(slack) * cf_sqrt(t2)));
+    const real_t t15 = slack * cf_max(t11, CLOSEDFORM_C(0.0)) * cf_max(t12, CLOSEDFORM_C(0.0));
+    const real_t t16 = cf_select(coincide, CLOSEDFORM_C(0.0), t5 * (cf_sqrt(t2) * cf_sqrt(t15)));
     const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t16);
     const real_t P_y = n_1 * height;
     const real_t t17 = cf_status(single, invalid, unreachable, coincide);
@@ -106,19 +106,19 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
     const real_t t4 = t1 - b;
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
-    const real_t t6 = b - t5;
-    const real_t t7 = b + t5;
-    const real_t t8 = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
+    const real_t t6 = b + t5;
+    const real_t t7 = b - t5;
+    const real_t t8 = slack * cf_max(t6, CLOSEDFORM_C(0.0)) * cf_max(t7, CLOSEDFORM_C(0.0));
     const real_t t9 = b * CLOSEDFORM_C(2.0);
-    const real_t t10 = cf_select(coincide, CLOSEDFORM_C(0.0), t8 * cf_sqrt(slack) * cf_sqrt(t2) / t9);
+    const real_t t10 = cf_select(coincide, CLOSEDFORM_C(0.0), cf_sqrt(t2) * cf_sqrt(t8) / t9);
     const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t10);
     const real_t P_y = n_1 * height;
-    const real_t t11 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t5 * t1 / t9);
+    const real_t t11 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t5 * t1 / t9);
     const real_t P_x = n_1 * t11;
     const int t12 = cf_nought(b) == 0;
     const int t13 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t14 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= b) & t13)) | (!((t14 <= t4) & (t14 <= t7) & (t14 <= t6)));
+    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= b) & t13)) | (!((t14 <= t4) & (t14 <= t6) & (t14 <= t7)));
     const real_t t15 = cf_poison(single, failed);
     const real_t opposite[2] = { P_y, P_y };
     const real_t adjacent[2] = { P_x, P_x - b };
@@ -186,11 +186,11 @@ CF_INLINE void rpr_planar_jacobian_kernel(const int single, const rpr_planar_par
     const int coincide = b <= t13;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t t14 = b * CLOSEDFORM_C(2.0);
-    const real_t t15 = cf_select(coincide, rho1, b / CLOSEDFORM_C(2.0) + t7 * t3 / t14);
+    const real_t t15 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t7 * t3 / t14);
     const real_t P_x = n_1 * t15;
     const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t16 = cf_sqrt(cf_max(t9, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0)));
-    const real_t t17 = cf_select(coincide, CLOSEDFORM_C(0.0), t16 * cf_sqrt(slack) * cf_sqrt(t4) / t14);
+    const real_t t16 = slack * cf_max(t8, CLOSEDFORM_C(0.0)) * cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t17 = cf_select(coincide, CLOSEDFORM_C(0.0), cf_sqrt(t4) * cf_sqrt(t16) / t14);
     const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), t17);
     const real_t t18 = b * (n_1 * height);
     const real_t t19 = (rho1 * b - rho1 * P_x) / t18;
@@ -251,16 +251,16 @@ CF_INLINE void rpr_planar_determinant_kernel(const int single, const rpr_planar_
     const real_t t4 = t1 - b;
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
-    const real_t t6 = b - t5;
-    const real_t t7 = b + t5;
-    const real_t t8 = cf_sqrt(cf_max(t6, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t7, CLOSEDFORM_C(0.0)));
-    const real_t t9 = t8 * cf_sqrt(slack) * cf_sqrt(t2) / (b * CLOSEDFORM_C(2.0));
+    const real_t t6 = b + t5;
+    const real_t t7 = b - t5;
+    const real_t t8 = slack * cf_max(t6, CLOSEDFORM_C(0.0)) * cf_max(t7, CLOSEDFORM_C(0.0));
+    const real_t t9 = cf_sqrt(t2) * cf_sqrt(t8) / (b * CLOSEDFORM_C(2.0));
     const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
     const real_t t10 = rho1 * rho2 / (b * (n_1 * height));
     const int t11 = cf_nought(b) == 0;
     const int t12 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t13 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b) & t12)) | (!((t13 <= t4) & (t13 <= t7) & (t13 <= t6)));
+    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b) & t12)) | (!((t13 <= t4) & (t13 <= t6) & (t13 <= t7)));
     const real_t t14 = cf_poison(single, failed);
     det[0] = t10 + t14;
     det[1] = -t10 + t14;
@@ -315,8 +315,8 @@ CF_INLINE void rpr_planar_singularities_kernel(const int single, const rpr_plana
     const int coincide = b <= t13;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
     const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t14 = cf_sqrt(cf_max(t9, CLOSEDFORM_C(0.0))) * cf_sqrt(cf_max(t8, CLOSEDFORM_C(0.0)));
-    const real_t t15 = t14 * cf_sqrt(slack) * cf_sqrt(t4) / (b * CLOSEDFORM_C(2.0));
+    const real_t t14 = slack * cf_max(t8, CLOSEDFORM_C(0.0)) * cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t15 = cf_sqrt(t4) * cf_sqrt(t14) / (b * CLOSEDFORM_C(2.0));
     const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t15));
     const real_t P_y = n_1 * height;
     factors[0] = t11;

@@ -3,11 +3,11 @@
  * derivations/rpr_planar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 4 sqrt
- *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
- *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 4 sqrt
- *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 4 sqrt
- *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 4 sqrt
+ *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
+ *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
+ *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
+ *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
+ *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
  *   ik: 5 add, 8 compare and select, 3 multiply, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

@@ -10,7 +10,7 @@
  *   singularities: 1 sincos
  *   jacobian_space: 4 add, 8 multiply, 2 sincos
  *   jacobian_body: 4 add, 8 multiply, 2 sincos
- *   ik: 32 add, 39 compare and select, 5 atan2, 5 divide, 43 multiply, 1 sincos, 5 sqrt
+ *   ik: 32 add, 39 compare and select, 5 atan2, 5 divide, 41 multiply, 1 sincos, 2 sqrt
  */
 #include "scara.h"
 
@@ -532,37 +532,36 @@ CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
     const real_t t9 = CLOSEDFORM_C(1.0) / (t6 + t8);
     const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t6 - t8) * t9));
     const real_t t10 = t2 * (x_y * c_base_elbow);
-    const real_t t11 = CLOSEDFORM_C(2.0) * cf_sqrt(A_elbow) * cf_sqrt(B_elbow);
-    const real_t area_elbow = t11 * cf_sqrt(C_elbow) * cf_sqrt(S_elbow);
+    const real_t t11 = A_elbow * S_elbow;
+    const real_t t12 = C_elbow * B_elbow;
+    const real_t area_elbow = CLOSEDFORM_C(2.0) * cf_sqrt(t11 * t12);
     const real_t s_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t9 * area_elbow);
-    const real_t t12 = t2 * (x_x * s_base_elbow);
-    const real_t s1 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t10 - t12);
-    const real_t t13 = t2 * (x_x * c_base_elbow);
-    const real_t t14 = t2 * (x_y * s_base_elbow);
-    const real_t c1 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t13 + t14);
-    const int t15 = cf_nought(l1) + cf_nought(l2) + cf_nought(h) == 0;
-    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t17 = cf_nought(x_x) + cf_nought(x_y) + cf_nought(x_z) + cf_nought(x_yaw) == 0;
-    const int invalid = !(t16 & (CLOSEDFORM_C(0.0) <= h) & t17);
-    const real_t t18 = l1 / CLOSEDFORM_C(2.0) + l2 / CLOSEDFORM_C(2.0);
-    const real_t t19 = -(CLOSEDFORM_FEASIBILITY * t18);
-    const int unreachable = !((t19 <= t3) & (t19 <= t7) & (t19 <= t5));
-    const real_t t20 = cf_poison(single, invalid | unreachable);
-    const real_t t21 = A_elbow * S_elbow;
-    const real_t t22 = C_elbow * B_elbow;
-    const real_t t23 = CLOSEDFORM_C(1.0) / (t21 + t22);
-    const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow * t23);
-    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -(t23 * (t21 - t22)));
-    const real_t t24 = h - x_z + t20;
-    const real_t t25 = c1 * c2 - s1 * s2;
-    const real_t t26 = c1 * s2 + s1 * c2;
-    const real_t s1_right = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t10 + t12);
-    const real_t c1_right = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t13 - t14);
-    const real_t t27 = c2 * c1_right + s2 * s1_right;
-    const real_t t28 = s2 * c1_right - c2 * s1_right;
-    const real_t t29 = cf_status(single, invalid, unreachable, no_link_elbow | folded_elbow);
-    const real_t opposite[8] = { s1, s2, s_x_yaw * t25 - c_x_yaw * t26, s1_right, s_x_yaw * t27 + c_x_yaw * t28 };
-    const real_t adjacent[8] = { c1, c2, c_x_yaw * t25 + s_x_yaw * t26, c1_right, c_x_yaw * t27 - s_x_yaw * t28 };
+    const real_t t13 = t2 * (x_x * s_base_elbow);
+    const real_t s1 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t10 - t13);
+    const real_t t14 = t2 * (x_x * c_base_elbow);
+    const real_t t15 = t2 * (x_y * s_base_elbow);
+    const real_t c1 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t14 + t15);
+    const int t16 = cf_nought(l1) + cf_nought(l2) + cf_nought(h) == 0;
+    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t18 = cf_nought(x_x) + cf_nought(x_y) + cf_nought(x_z) + cf_nought(x_yaw) == 0;
+    const int invalid = !(t17 & (CLOSEDFORM_C(0.0) <= h) & t18);
+    const real_t t19 = l1 * CLOSEDFORM_C(0.5) + l2 * CLOSEDFORM_C(0.5);
+    const real_t t20 = -(CLOSEDFORM_FEASIBILITY * t19);
+    const int unreachable = !((t20 <= t3) & (t20 <= t7) & (t20 <= t5));
+    const real_t t21 = cf_poison(single, invalid | unreachable);
+    const real_t t22 = CLOSEDFORM_C(1.0) / (t11 + t12);
+    const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow * t22);
+    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -(t22 * (t11 - t12)));
+    const real_t t23 = h - x_z + t21;
+    const real_t t24 = c1 * c2 - s1 * s2;
+    const real_t t25 = c1 * s2 + s1 * c2;
+    const real_t s1_right = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t10 + t13);
+    const real_t c1_right = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t14 - t15);
+    const real_t t26 = c2 * c1_right + s2 * s1_right;
+    const real_t t27 = s2 * c1_right - c2 * s1_right;
+    const real_t t28 = cf_status(single, invalid, unreachable, no_link_elbow | folded_elbow);
+    const real_t opposite[8] = { s1, s2, s_x_yaw * t24 - c_x_yaw * t25, s1_right, s_x_yaw * t26 + c_x_yaw * t27 };
+    const real_t adjacent[8] = { c1, c2, c_x_yaw * t24 + s_x_yaw * t25, c1_right, c_x_yaw * t26 - s_x_yaw * t27 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -573,16 +572,16 @@ CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
         angles[4] = cf_atan2(opposite[4], adjacent[4]);
     }
-    q[0] = cf_wrap_cut(angles[0]) + t20;
-    q[1] = cf_wrap_cut(angles[1]) + t20;
-    q[2] = t24;
-    q[3] = cf_wrap_cut(-angles[2]) + t20;
-    q[4] = cf_wrap_cut(angles[3]) + t20;
-    q[5] = cf_wrap_cut(-angles[1]) + t20;
-    q[6] = t24;
-    q[7] = cf_wrap_cut(-angles[4]) + t20;
-    status[0] = t29;
-    status[1] = t29;
+    q[0] = cf_wrap_cut(angles[0]) + t21;
+    q[1] = cf_wrap_cut(angles[1]) + t21;
+    q[2] = t23;
+    q[3] = cf_wrap_cut(-angles[2]) + t21;
+    q[4] = cf_wrap_cut(angles[3]) + t21;
+    q[5] = cf_wrap_cut(-angles[1]) + t21;
+    q[6] = t23;
+    q[7] = cf_wrap_cut(-angles[4]) + t21;
+    status[0] = t28;
+    status[1] = t28;
 }
 
 CLOSEDFORM_DISPATCHED

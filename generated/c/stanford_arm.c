@@ -11,8 +11,8 @@
  *   jacobian_body: 14 add, 41 multiply, 4 sincos
  *   determinant: 3 multiply, 2 sincos
  *   singularities: 2 sincos
- *   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 9 sqrt
- *   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 7
+ *   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 8 sqrt
+ *   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 6
  *     sqrt
  */
 #include "stanford_arm.h"
@@ -742,8 +742,8 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     const real_t t6 = below - above;
     const real_t t7 = CLOSEDFORM_C(1.0) / (amplitude * (below + above));
     const real_t t8 = T14 * t6 * t7;
-    const real_t root = cf_sqrt(above) * cf_sqrt(below);
-    const real_t t9 = root * CLOSEDFORM_C(2.0);
+    const real_t root = cf_sqrt(below * above);
+    const real_t t9 = CLOSEDFORM_C(2.0) * root;
     const real_t t10 = t7 * (T24 * t9);
     const real_t s1 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t8 + t10);
     const real_t t11 = t7 * (T14 * t9);
@@ -978,8 +978,8 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_ar
     const real_t t4 = below - above;
     const real_t t5 = CLOSEDFORM_C(1.0) / (amplitude * (below + above));
     const real_t t6 = T14 * t4 * t5;
-    const real_t root = cf_sqrt(above) * cf_sqrt(below);
-    const real_t t7 = root * CLOSEDFORM_C(2.0);
+    const real_t root = cf_sqrt(below * above);
+    const real_t t7 = CLOSEDFORM_C(2.0) * root;
     const real_t t8 = t5 * (T24 * t7);
     const real_t s1 = t6 + t8;
     const real_t t9 = T24 * t4 * t5;
@@ -1007,19 +1007,19 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_ar
     const int unreachable = !((t28 <= t2) & (t28 <= t3));
     const real_t t29 = cf_poison(single, invalid | unreachable);
     const real_t reach = cf_sqrt(t27 + root * root);
-    const real_t t30 = CLOSEDFORM_C(1.0) / reach;
-    const real_t s2 = root * t30;
-    const real_t c2 = T34 * t30;
-    const real_t t31 = reach + t29;
-    const real_t t32 = T13 * s1 + T23 * t11;
+    const real_t t30 = reach + t29;
+    const real_t t31 = T13 * s1 + T23 * t11;
+    const real_t t32 = CLOSEDFORM_C(1.0) / reach;
+    const real_t s2 = root * t32;
     const real_t t33 = T33 * s2;
+    const real_t c2 = T34 * t32;
     const real_t t34 = T13 * t11 - T23 * s1;
     const real_t t35 = t33 + c2 * t34;
-    const real_t h = cf_sqrt(t32 * t32 + t35 * t35);
+    const real_t h = cf_sqrt(t31 * t31 + t35 * t35);
     const real_t t36 = CLOSEDFORM_C(1.0) / h;
-    const real_t t37 = t32 * t36;
+    const real_t t37 = t31 * t36;
     const real_t c4_right_back_noflip = t35 * t36;
-    const real_t t38 = t32 * t37 + t35 * c4_right_back_noflip;
+    const real_t t38 = t31 * t37 + t35 * c4_right_back_noflip;
     const real_t t39 = T33 * c2;
     const real_t R2_33 = t39 - s2 * t34;
     const real_t t40 = c4_right_back_noflip * (T11 * s1 + T21 * t11);
@@ -1051,8 +1051,8 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_ar
     const real_t t59 = CLOSEDFORM_VANISHING * size;
     const real_t t60 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
     const int t61 = (amplitude <= t59) | (reach <= t59) | (h <= t60);
-    const real_t opposite[16] = { s1, s2, t37, t38, -t42, s2, t37, t38, t42, s1_left_out_noflip, t52, t53, t55, t52, t53, -t55 };
-    const real_t adjacent[16] = { -t11, c2, -c4_right_back_noflip, R2_33, t45, -c2, c4_right_back_noflip, -R2_33, -t45, -t47, c4_left_out_noflip, R2_33_left_out_noflip, -t57, -c4_left_out_noflip, -R2_33_left_out_noflip, t57 };
+    const real_t opposite[16] = { s1, root, t31, t38, -t42, root, t31, t38, t42, s1_left_out_noflip, t48, t53, t55, t48, t53, -t55 };
+    const real_t adjacent[16] = { -t11, T34, -t35, R2_33, t45, -T34, t35, -R2_33, -t45, -t47, R2_13_left_out_noflip, R2_33_left_out_noflip, -t57, -R2_13_left_out_noflip, -R2_33_left_out_noflip, t57 };
     real_t angles[16];
     if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);
@@ -1090,13 +1090,13 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_ar
     const real_t t75 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[15]);
     q[0] = t62;
     q[1] = t63;
-    q[2] = t31;
+    q[2] = t30;
     q[3] = cf_wrap_cut(-angles[2]) + t29;
     q[4] = cf_wrap_cut(angles[3]) + t29;
     q[5] = cf_wrap_cut(-angles[4]) + t29;
     q[6] = t62;
     q[7] = t63;
-    q[8] = t31;
+    q[8] = t30;
     q[9] = t64 + t29;
     q[10] = cf_wrap_cut(-angles[3]) + t29;
     q[11] = t65 + t29;
@@ -1114,13 +1114,13 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_ar
     q[23] = t68 + t29;
     q[24] = t69;
     q[25] = t70;
-    q[26] = t31;
+    q[26] = t30;
     q[27] = cf_wrap_cut(-angles[10]) + t29;
     q[28] = cf_wrap_cut(angles[11]) + t29;
     q[29] = cf_wrap_cut(-angles[12]) + t29;
     q[30] = t69;
     q[31] = t70;
-    q[32] = t31;
+    q[32] = t30;
     q[33] = t71 + t29;
     q[34] = cf_wrap_cut(-angles[11]) + t29;
     q[35] = t72 + t29;

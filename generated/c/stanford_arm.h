@@ -11,8 +11,8 @@
  *   jacobian_body: 14 add, 41 multiply, 4 sincos
  *   determinant: 3 multiply, 2 sincos
  *   singularities: 2 sincos
- *   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 9 sqrt
- *   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 7
+ *   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 8 sqrt
+ *   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 6
  *     sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

@@ -14,8 +14,9 @@ FEASIBILITY = 1e-12
 VANISHING = 8.881784197001252e-16
 ROTATION = 1e-06
 
-BLOCK = 8192
-"""Postures that a kernel treats at once: its intermediate arrays then stay in the cache."""
+BLOCK = 8000
+"""Postures that a kernel treats at once: its intermediate arrays then stay in the cache.  It is no
+power of two, for which they would all compete for the same part of it."""
 
 
 class Status(IntEnum):
@@ -78,20 +79,27 @@ def sincos(angle: Any) -> tuple[Any, Any]:
     The error is below 1.3 units in the last place of 1; near its zeros a cosine is therefore less
     accurate than that of libm, which no natural scale of a function of several angles notices.
     """
-    tangent = np.tan(0.5 * angle)
-    square = tangent * tangent
-    factor = 1.0 / (1.0 + square)
-    return (tangent + tangent) * factor, (1.0 - square) * factor
+    sine = np.tan(0.5 * angle)
+    square = sine * sine
+    cosine = 1.0 - square
+    square += 1.0
+    factor = 1.0 / square
+    cosine *= factor
+    sine += sine
+    sine *= factor
+    return sine, cosine
 
 
 def principal(angle: Any) -> Any:
     """An angle of any size in [-pi, pi], give or take rounding; no less accurate if it is large."""
     turns = np.rint(angle * (0.5 / np.pi))
     # 2 pi in three parts; the products with the first two are exact
-    near = angle - turns * (4 * 1.5707963267923333) - turns * (4 * 2.5633441515839558e-12)
-    near = near - turns * (4 * 1.0562999066987428e-23)
+    near = angle - turns * (4 * 1.5707963267923333)
+    near -= turns * (4 * 2.5633441515839558e-12)
+    turns *= 4 * 1.0562999066987428e-23
+    near -= turns
     wide = np.abs(angle) > 400000.0
-    if np.any(wide):
+    if np.count_nonzero(wide):
         return np.where(wide, np.arctan2(np.sin(angle), np.cos(angle)), near)
     return near
 
@@ -99,7 +107,9 @@ def principal(angle: Any) -> Any:
 def wrap(angle: Any) -> Any:
     """The sum of a few angles in (-pi, pi]; one that is there already stays as it is."""
     turns = np.rint(angle * (0.5 / np.pi))
-    wrapped = angle - turns * (2 * np.pi) - turns * 2.4492935982947064e-16
+    wrapped = angle - turns * (2 * np.pi)
+    turns *= 2.4492935982947064e-16
+    wrapped -= turns
     return select(np.abs(wrapped) >= np.pi, np.pi, wrapped)
 
 
@@ -115,20 +125,20 @@ def sign(value: Any) -> Any:
 
 def select(rare: Any, a: Any, b: Any) -> Any:
     """``a`` where a condition holds that hardly ever does, else ``b``."""
-    if np.any(rare):
+    if np.count_nonzero(rare):
         return np.where(rare, a, b)
     return np.float64(b) if isinstance(b, float) else b
 
 
 def poison(failed: Any) -> Any:
     """NaN where ``failed``, else zero: added to an answer, it is one selection for all entries."""
-    return 0.0 / np.logical_not(failed) if np.any(failed) else 0.0
+    return 0.0 / np.logical_not(failed) if np.count_nonzero(failed) else 0.0
 
 
 def status(invalid: Any, unreachable: Any, singular: Any) -> Any:
     """The status of a branch; an invalid input outweighs all, a free joint nothing."""
     told = invalid | unreachable | singular
-    if not np.any(told):
+    if not np.count_nonzero(told):
         return np.zeros_like(told, np.uint8)
     reached = np.logical_not(unreachable)
     valid = np.uint8(1) * unreachable + np.uint8(2) * (singular & reached)
@@ -240,6 +250,7 @@ def _fill(
         r if len(lead) == 1 else r.reshape((-1, *spec.shape))
         for r, spec in zip(results, kernel.outputs, strict=True)
     ]
+    _keep_freed_memory()
     for start in range(0, total, BLOCK):
         block = slice(start, start + BLOCK)
         planes = []
@@ -252,12 +263,21 @@ def _fill(
             result[...] = rows.reshape(result.shape)
 
 
+def _keep_freed_memory() -> None:
+    """Have the arrays of a block lie where those of the block before did.
+
+    The C library of Linux returns memory to the system as soon as 128 KB are free, unless something
+    larger has been freed before.  New pages for every block take as long as to compute it.
+    """
+    np.empty(1 << 21)
+
+
 def _values(kernel: Kernel, planes: Sequence[Any]) -> Sequence[Any]:
     """The planes of the results; where something vanishes, they are computed anew."""
     if kernel.common is None:
         return kernel.compute(*planes)
     *values, rare = kernel.common(*planes)
-    if not np.any(rare):
+    if not np.count_nonzero(rare):
         return values
     shape = np.broadcast_shapes(*map(np.shape, planes))
     if not shape:

@@ -4,18 +4,18 @@
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 45 add, 35 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
-#     sincos, 4 sqrt
-#   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 4 sqrt
+#     sincos, 3 sqrt
+#   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
-#   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 4 sqrt
-#   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 4 sqrt
-#   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 4 sqrt
-#   ik: 394 compare and select, 344 add, 25 atan2, 70 divide, 413 multiply, 1 reduce to a turn, 3
-#     sincos, 31 sqrt
-#   ik where nothing vanishes: 254 compare and select, 200 add, 18 atan2, 38 divide, 223 multiply,
-#     1 reduce to a turn, 3 sincos, 31 sqrt
-#   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 2 sqrt
+#   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
+#   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
+#   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
+#   ik: 396 compare and select, 320 add, 24 atan2, 59 divide, 329 multiply, 1 reduce to a turn, 3
+#     sincos, 16 sqrt
+#   ik where nothing vanishes: 239 compare and select, 158 add, 17 atan2, 25 divide, 137 multiply,
+#     1 reduce to a turn, 3 sincos, 16 sqrt
+#   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
 #   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -100,10 +100,10 @@ _DEFAULT = Parameters()
 
 def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp):
     s1, c1 = _runtime.sincos(theta1)
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
     s, c = _runtime.sincos(theta)
     principal = _runtime.principal(theta)
     t1 = c2L_half * c2R_half
@@ -148,60 +148,52 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     rise = np.sqrt(t18 + t24 * t24)
     c_phi = d / rise
     t25 = t24 / rise
-    del rise, t24
+    del rise
     t26 = t21 + t22
     del t21, t22
     t27 = t19 * (L2 * t16 - a3 * t20) - t26 * t23
     del t16, t19, t23
     base = np.sqrt(t18 + t27 * t27)
     del t18
-    t28 = t27 / base
-    del t27
-    t29 = base - (gs - al)
-    t30 = gs + al
-    t31 = t30 - base
-    wrist = np.sqrt(np.maximum(t29, 0.0)) * np.sqrt(np.maximum(t31, 0.0))
-    t32 = loff + lp * c + wrist
+    t28 = base - (gs - al)
+    t29 = gs + al
+    t30 = t29 - base
+    wrist = np.sqrt(np.maximum(t28, 0.0) * np.maximum(t30, 0.0))
+    t31 = loff + lp * c + wrist
     del c, wrist
-    t33 = t28 * t32
-    t34 = a3 + t17 * c_phi + t25 * t33
+    t32 = t27 / base * t31
+    t33 = a3 + t17 * c_phi + t25 * t32
     s23A = side23A * t20
     del side23A, t20
-    c_psi = d / base
-    del base
-    t35 = L2 + c_psi * t32
-    del t32
-    t36 = L1 * (side2A * t3) + c23A * t34 + s23A * t35
+    t34 = L2 + d / base * t31
+    del base, t31
+    t35 = L1 * (side2A * t3) + c23A * t33 + s23A * t34
     del t3
-    t37 = t17 * t25 - c_phi * t33
-    del t17, t33
-    t38 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t39 = t38 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t36 = t17 * t25 - c_phi * t32
+    del c_phi, t17, t25, t32
+    t37 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t38 = t37 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t37
+    t39 = t38 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
     del t38
-    t40 = t39 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t39
-    t41 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    invalid = np.logical_not(t40 & (0.0 <= loff) & (0.0 <= lp) & t41)
-    del t40, t41
-    t42 = -(_runtime.FEASIBILITY * t30)
-    del t30
-    failed = invalid | np.logical_not((t42 <= t31) & (t42 <= t29))
-    del invalid, t29, t31, t42
-    t43 = _runtime.poison(failed)
+    t40 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    invalid = np.logical_not(t39 & (0.0 <= loff) & (0.0 <= lp) & t40)
+    del t39, t40
+    t41 = -(_runtime.FEASIBILITY * t29)
+    del t29
+    failed = invalid | np.logical_not((t41 <= t30) & (t41 <= t28))
+    del invalid, t28, t30, t41
+    t42 = _runtime.poison(failed)
     del failed
-    t44 = d1 + L1 * (side2A * t26) - c23A * t35 + s23A * t34
-    del c23A, s23A, side2A, t26, t34, t35
-    t45 = _runtime.wrap_cut(np.arctan2(-t28, c_psi)) + t43
-    del c_psi, t28
-    t46 = _runtime.wrap_cut(-np.arctan2(t25, c_phi)) + t43
-    del c_phi, t25
+    t43 = d1 + L1 * (side2A * t26) - c23A * t34 + s23A * t33
+    del c23A, s23A, side2A, t26, t33, t34
     return (
-        c1 * t36 - s1 * t37 + t43,
-        c1 * t37 + s1 * t36 + t43,
-        t44 + t43,
-        t45,
-        t46,
-        _runtime.wrap(principal) + t43,
+        c1 * t35 - s1 * t36 + t42,
+        c1 * t36 + s1 * t35 + t42,
+        t43 + t42,
+        _runtime.wrap_cut(np.arctan2(-t27, d)) + t42,
+        _runtime.wrap_cut(-np.arctan2(t24, d)) + t42,
+        _runtime.wrap(principal) + t42,
     )
 
 
@@ -230,10 +222,10 @@ def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
 def _pose(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp
 ):
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
     s1, c1 = _runtime.sincos(theta1)
     s, c = _runtime.sincos(theta)
     t1 = c3L_half * c3R_half
@@ -322,7 +314,7 @@ def _pose(
     del t18, t19
     t46 = lp * s
     del s
-    wrist = np.sqrt(np.maximum(t41, 0.0)) * np.sqrt(np.maximum(t40, 0.0))
+    wrist = np.sqrt(np.maximum(t41, 0.0) * np.maximum(t40, 0.0))
     del t40, t41
     t47 = loff + lp * c + wrist
     del c, wrist
@@ -435,10 +427,10 @@ def arm_tips(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 
 
 def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2, a3, d1):
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
     s1, c1 = _runtime.sincos(theta1)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
@@ -502,10 +494,10 @@ def _jacobian(
 ):
     s1, c1 = _runtime.sincos(theta1)
     s, c = _runtime.sincos(theta)
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
     t1 = lp * s
     del s
     t2 = c3L_half * c3R_half
@@ -556,7 +548,7 @@ def _jacobian(
     t33 = base - (gs - al)
     t34 = gs + al
     t35 = t34 - base
-    wrist = np.sqrt(np.maximum(t33, 0.0)) * np.sqrt(np.maximum(t35, 0.0))
+    wrist = np.sqrt(np.maximum(t33, 0.0) * np.maximum(t35, 0.0))
     t36 = loff + t32 + wrist
     t37 = t1 * t26 - t31 * t36
     side2A = _runtime.sign(t17 + t18)
@@ -567,7 +559,7 @@ def _jacobian(
     del t8, t9
     c23A = side23A * t16
     del t16
-    t38 = t30 * t26
+    t38 = t26 * t30
     t39 = t1 * c_phi + t38 * t36
     t40 = a3 + t39
     s23A = side23A * t15
@@ -590,57 +582,57 @@ def _jacobian(
     del t33, t35, t46, t47, t48
     t49 = _runtime.poison(failed)
     del failed
-    t50 = c23A * t37
-    outer_15 = c1 * t50 + s1 * t39
-    t51 = c2R_half * c2R_half - s2R_half * s2R_half
-    t52 = s2R_half * c2R_half
+    t50 = c2R_half * c2R_half - s2R_half * s2R_half
+    t51 = s2R_half * c2R_half
     del c2R_half, s2R_half
-    t53 = t52 + t52
-    del t52
-    t54 = c3R_half * c3R_half - s3R_half * s3R_half
-    t55 = s3R_half * c3R_half
-    del c3R_half, s3R_half
-    t56 = t55 + t55
-    del t55
-    s2R3R = t53 * t54 + t51 * t56
-    c2R3R = t51 * t54 - t53 * t56
-    del t54, t56
-    t57 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
-    t58 = d * (1.0 + t25 / t24)
-    del t25
-    inner_52 = (L1 * t51 / 2.0 + t57) / t58
+    t52 = t51 + t51
     del t51
+    t53 = c3R_half * c3R_half - s3R_half * s3R_half
+    t54 = s3R_half * c3R_half
+    del c3R_half, s3R_half
+    t55 = t54 + t54
+    del t54
+    s2R3R = t52 * t53 + t50 * t55
+    c2R3R = t50 * t53 - t52 * t55
+    del t53, t55
+    t56 = L2 * s2R3R * 0.5 + a3 * c2R3R * 0.5
+    t57 = d * (1.0 + t25 / t24)
+    del t25
+    inner_52 = (L1 * t50 * 0.5 + t56) / t57
+    del t50
+    t58 = c23A * t37
+    outer_15 = c1 * t58 + s1 * t39
     t59 = L1 * (side2A * t27)
     del side2A, t27
     t60 = c23A * t42 - s23A * t40
     del t40, t42
-    t61 = c1 * t60 / 2.0
-    t62 = c1 * t59 / 2.0 - t61
-    t63 = c_phi * t41
-    t64 = t26 * t41
-    del t41
-    t65 = t30 * t36
-    del t36
-    t66 = c23A * t64 - s23A * t65
-    t67 = (gs - d / c_psi) * (d * t30)
-    del t30
-    t68 = s23A * c_psi
-    t69 = c23A * t38 + t68
-    t70 = c_psi * c_psi * wrist
-    del wrist
-    t71 = s1 * t63 + c1 * t66 + t67 * (s1 * t31 + c1 * t69) / t70
-    t72 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
+    t61 = c1 * t60 * 0.5
+    t62 = c1 * t59 * 0.5 - t61
+    t63 = L2 * c2R3R * 0.5 - a3 * s2R3R * 0.5
     del c2R3R, s2R3R
-    t73 = d * (1.0 + t29 / t24)
+    t64 = d * (1.0 + t29 / t24)
     del t24, t29
-    t74 = (L1 * t53 / 2.0 - t72) / t73
-    del t53
-    t75 = outer_15 * inner_52 - (t62 - t71 * t74) + t49
-    inner_43 = t72 / t73
-    del t72
-    inner_53 = t57 / t58
-    del t57
-    t76 = t61 - inner_43 * t71 + inner_53 * outer_15 + t49
+    t65 = (L1 * t52 * 0.5 - t63) / t64
+    del t52
+    t66 = c_phi * t41
+    t67 = t26 * t41
+    del t41
+    t68 = t30 * t36
+    del t36
+    t69 = c23A * t67 - s23A * t68
+    t70 = (gs - d / c_psi) * (d * t30)
+    del t30
+    t71 = s23A * c_psi
+    t72 = c23A * t38 + t71
+    t73 = c_psi * c_psi * wrist
+    del wrist
+    t74 = s1 * t66 + c1 * t69 + t70 * (s1 * t31 + c1 * t72) / t73
+    t75 = inner_52 * outer_15 - (t62 - t65 * t74) + t49
+    inner_43 = t63 / t64
+    del t63
+    inner_53 = t56 / t57
+    del t56
+    t76 = t61 - inner_43 * t74 + inner_53 * outer_15 + t49
     t77 = s2L_half * c2L_half
     t78 = t77 + t77
     del t77
@@ -654,46 +646,46 @@ def _jacobian(
     c2L3L = t79 * t80 - t78 * t82
     s2L3L = t78 * t80 + t79 * t82
     del t80, t82
-    t83 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
-    inner_44 = (L1 * t78 / 2.0 - t83) / t73
+    t83 = L2 * c2L3L * 0.5 - a3 * s2L3L * 0.5
+    inner_44 = (L1 * t78 * 0.5 - t83) / t64
     del t78
-    t84 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
+    t84 = L2 * s2L3L * 0.5 + a3 * c2L3L * 0.5
     del c2L3L, s2L3L
-    t85 = (L1 * t79 / 2.0 + t84) / t58
+    t85 = (L1 * t79 * 0.5 + t84) / t57
     del t79
-    t86 = -(t62 + t71 * inner_44 + outer_15 * t85) + t49
+    t86 = -(t62 + t74 * inner_44 + outer_15 * t85) + t49
     del t62
-    t87 = t83 / t73
-    del t73, t83
-    t88 = t84 / t58
-    del t58, t84
+    t87 = t83 / t64
+    del t64, t83
+    t88 = t84 / t57
+    del t57, t84
     t89 = t32 * c_phi - t1 * t38
     del c_phi
-    t90 = c23A * t89 - t1 * t68
-    del t68
+    t90 = c23A * t89 - t1 * t71
+    del t71
     t91 = t1 * t31 + t32 * t26
     del t26, t32
-    outer_25 = s1 * t50 - c1 * t39
-    del t39, t50
-    t92 = s1 * t60 / 2.0
+    outer_25 = s1 * t58 - c1 * t39
+    del t39, t58
+    t92 = s1 * t60 * 0.5
     del t60
-    t93 = s1 * t59 / 2.0 - t92
+    t93 = s1 * t59 * 0.5 - t92
     del t59
-    outer_24 = c1 * t63 - s1 * t66 + t67 * (c1 * t31 - s1 * t69) / t70
-    del t31, t63, t66, t69
-    t94 = inner_52 * outer_25 - (t93 + t74 * outer_24) + t49
+    outer_24 = c1 * t66 - s1 * t69 + t70 * (c1 * t31 - s1 * t72) / t73
+    del t31, t66, t69, t72
+    t94 = inner_52 * outer_25 - (t93 + t65 * outer_24) + t49
     t95 = t92 + inner_43 * outer_24 + inner_53 * outer_25
     t96 = -(t93 - inner_44 * outer_24 + t85 * outer_25)
     del t93
     t97 = 0.0 + t49
-    t98 = outer_33 / 2.0
+    t98 = outer_33 * 0.5
     del outer_33
-    t99 = outer_32 / 2.0 + t98
+    t99 = outer_32 * 0.5 + t98
     del outer_32
     t100 = c23A * c_psi
     del c_psi
-    t101 = c23A * t65 + s23A * t64 - t67 * (t100 - s23A * t38) / t70
-    del c23A, t38, t64, t65, t67, t70
+    t101 = c23A * t68 + s23A * t67 - t70 * (t100 - s23A * t38) / t73
+    del c23A, t38, t67, t68, t70, t73
     outer_35 = s23A * t37
     t102 = t98 - inner_43 * t101 + inner_53 * outer_35 + t49
     return (
@@ -701,7 +693,7 @@ def _jacobian(
         t75,
         t76,
         t86,
-        t61 + t87 * t71 - t88 * outer_15 + t49,
+        t61 + t87 * t74 - t88 * outer_15 + t49,
         c1 * t90 - s1 * t91 + t49,
         c1 * t43 - s1 * t37 + t49,
         t94,
@@ -710,13 +702,13 @@ def _jacobian(
         t92 - t87 * outer_24 - t88 * outer_25 + t49,
         s1 * t90 + c1 * t91 + t49,
         t97,
-        t99 + t74 * t101 + inner_52 * outer_35 + t49,
+        t99 + t65 * t101 + inner_52 * outer_35 + t49,
         t102,
         t99 - inner_44 * t101 - t85 * outer_35 + t49,
         t98 + t87 * t101 - t88 * outer_35 + t49,
         t1 * t100 + s23A * t89 + t49,
         t97,
-        -t74 + t49,
+        -t65 + t49,
         inner_43 + t49,
         inner_44 + t49,
         -t87 + t49,
@@ -762,10 +754,10 @@ def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 def _determinant(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
     s, c = _runtime.sincos(theta)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
@@ -830,7 +822,7 @@ def _determinant(
     t32 = base - (gs - al)
     t33 = gs + al
     t34 = t33 - base
-    wrist = np.sqrt(np.maximum(t32, 0.0)) * np.sqrt(np.maximum(t34, 0.0))
+    wrist = np.sqrt(np.maximum(t32, 0.0) * np.maximum(t34, 0.0))
     t35 = loff + lp * c + wrist
     del c, wrist
     t36 = L2 + c_psi * t35
@@ -880,10 +872,10 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 def _singularities(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
     s, c = _runtime.sincos(theta)
     t1 = c2L_half * c2R_half
     t2 = s2L_half * s2R_half
@@ -936,7 +928,7 @@ def _singularities(
     t28 = base - (gs - al)
     t29 = gs + al
     t30 = t29 - base
-    wrist = np.sqrt(np.maximum(t28, 0.0)) * np.sqrt(np.maximum(t30, 0.0))
+    wrist = np.sqrt(np.maximum(t28, 0.0) * np.maximum(t30, 0.0))
     t31 = loff + lp * c + wrist
     del c
     t32 = a3 + lp * s * (d / rise) + t27 / base * (t25 / rise) * t31
@@ -1004,9 +996,9 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t2 = np.arctan2(x, y)
     t3 = lp * s_pitch
     del s_pitch
-    t4 = d - c_psi * (gs - al)
-    t5 = (gs + al) * c_psi - d
-    t6 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t5, 0.0))
+    t4 = (gs + al) * c_psi - d
+    t5 = d - c_psi * (gs - al)
+    t6 = np.sqrt(np.maximum(t4, 0.0) * np.maximum(t5, 0.0))
     t7 = 1.0 / c_psi
     t8 = loff + lp * c_pitch + t6 * t7
     del c_pitch, t6
@@ -1014,899 +1006,829 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t10 = s_phi * t3 - c_phi * t9
     t11 = h + t10
     below = np.maximum(t11, 0.0)
-    t12 = np.sqrt(below)
-    t13 = h - t10
-    del t10
-    above = np.maximum(t13, 0.0)
-    t14 = np.sqrt(above)
-    t15 = 2.0 * np.arctan2(t12, t14)
-    t16 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t15))
-    t17 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t17
-    t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t18
-    t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t21 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t22 = t19 & (0.0 <= loff) & (0.0 <= lp) & t20 & (np.abs(t21) <= _runtime.ROTATION)
-    del t19, t20, t21
-    invalid = np.logical_not(t22)
-    del t22
-    t23 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t5)
-    del t5
-    t25 = -(_runtime.FEASIBILITY * t1)
+    t12 = h - t10
+    del h, t10
+    above = np.maximum(t12, 0.0)
+    onward = np.sqrt(below * above)
+    t13 = np.arctan2(2.0 * onward, above - below)
+    del above, below
+    t14 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t13))
+    t15 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t16 = t15 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t15
+    t17 = t16 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t16
+    t18 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t19 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t20 = t17 & (0.0 <= loff) & (0.0 <= lp) & t18 & (np.abs(t19) <= _runtime.ROTATION)
+    del t17, t18, t19
+    invalid = np.logical_not(t20)
+    del t20
+    t21 = -(_runtime.FEASIBILITY * (d * 0.5))
+    t22 = (-_runtime.FEASIBILITY <= c_phi) & (t21 <= t4)
+    del t4
+    t23 = -(_runtime.FEASIBILITY * t1)
     del t1
-    t26 = t24 & (t23 <= t4) & (t25 <= t11) & (t25 <= t13)
-    del t11, t13, t23, t24, t25, t4
+    t24 = t22 & (t21 <= t5) & (t23 <= t11) & (t23 <= t12)
+    del t11, t12, t21, t22, t23, t5
     L_2W = L2 + c_psi * t8
     del c_psi, t8
     a_3W = a3 + c_phi * t3 + s_phi * t9
     del t3, t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t27 = L1 + fore
-    t28 = 2.0 * fore
-    t29 = _runtime.FEASIBILITY * (t27 * (L1 * 2.0 + t28))
-    t30 = t27 * t27
-    t31 = z - d1
-    t32 = t31 * t31
-    t33 = 1.0 / h
-    del h
-    t34 = 1.0 / (below + above)
-    t35 = (below - above) * t34
-    del above, below
-    t36 = y * t35
-    s_turn = t34 * (2.0 * t12 * t14)
-    del t12, t14, t34
-    t37 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -(t33 * (t36 - t37)))
-    t38 = x * t35
-    del t35
-    t39 = y * s_turn
-    del s_turn
-    s1 = _runtime.select(nowhere, 0.0, t33 * (t38 + t39))
-    outward = x * c1 + y * s1
-    del c1, s1
-    square = t32 + outward * outward
-    t40 = t30 - square
-    t41 = L1 / 8796093022208.0 + fore / 8796093022208.0
-    t42 = L1 - fore
-    t43 = _runtime.FEASIBILITY * (t27 * (t41 + 2.0 * np.abs(t42)))
-    del t41
-    t44 = t42 * t42
-    t45 = square - t44
+    t25 = L1 + fore
+    t26 = 2.0 * fore
+    t27 = _runtime.FEASIBILITY * (t25 * (L1 * 2.0 + t26))
+    t28 = t25 * t25
+    t29 = z - d1
+    square = t29 * t29 + onward * onward
+    t30 = t28 - square
+    t31 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t32 = L1 - fore
+    t33 = _runtime.FEASIBILITY * (t25 * (t31 + 2.0 * np.abs(t32)))
+    del t31
+    t34 = square - t32 * t32
     del square
-    t46 = t26 & (-t29 <= t40) & (-t43 <= t45)
+    t35 = t24 & (-t27 <= t30) & (-t33 <= t34)
+    del t24, t27, t33
     size = L1 + np.sqrt(L2 * L2 + a3 * a3)
-    t47 = d * size
-    short = L1 * fore <= _runtime.VANISHING * t30
-    M = np.maximum(t45, 0.0)
-    del t45
-    N = np.maximum(t40, 0.0)
-    del t40
-    t48 = 1.0 / (M + N)
-    c_bend = _runtime.select(short, 1.0, t48 * (M - N))
-    t49 = _runtime.VANISHING * t27
-    bare = fore <= t49
-    t50 = 1.0 / fore
-    c_lag = _runtime.select(bare, 1.0, a_3W * t50)
-    t51 = c_bend * c_lag
-    rN = np.sqrt(N)
+    t36 = d * size
+    short = L1 * fore <= _runtime.VANISHING * t28
+    del t28
+    M = np.maximum(t34, 0.0)
+    del t34
+    N = np.maximum(t30, 0.0)
+    del t30
+    t37 = 1.0 / (M + N)
+    t38 = M - N
+    c_bend = _runtime.select(short, 1.0, t37 * t38)
+    t39 = _runtime.VANISHING * t25
+    bare = fore <= t39
+    t40 = 1.0 / fore
+    c_lag = _runtime.select(bare, 1.0, a_3W * t40)
+    t41 = c_bend * c_lag
+    t42 = 2.0 * np.sqrt(M * N)
     del N
-    rM = np.sqrt(M)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, t48 * (2.0 * rN * rM))
-    s_lag = _runtime.select(bare, 0.0, L_2W * t50)
-    del bare, t50
-    t52 = s_bend_front_elbow_down * s_lag
-    c_relative = t51 + t52
-    t53 = c_bend * s_lag
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t37 * t42)
+    s_lag = _runtime.select(bare, 0.0, L_2W * t40)
+    del bare, t40
+    t43 = s_bend_front_elbow_down * s_lag
+    c_relative = t41 + t43
+    t44 = c_bend * s_lag
     del c_bend
-    t54 = s_bend_front_elbow_down * c_lag
-    s_relative = t53 - t54
+    t45 = s_bend_front_elbow_down * c_lag
+    s_relative = t44 - t45
     v_1 = L2 * c_relative - a3 * s_relative
     whole_alpha = L1 * v_1
+    t46 = np.abs(whole_alpha)
     v_2 = L2 * s_relative + a3 * c_relative
     ahead = d * s_psi * t7
     del s_psi, t7
-    t55 = np.abs(t31)
-    folded = t55 + np.abs(outward) <= t49
-    t56 = t31 * fore
-    t57 = t56 * s_bend_front_elbow_down
-    ahead_1 = _runtime.select(short, t27, t42 + t28 * M * t48)
-    del M, t48
-    t58 = outward * ahead_1
-    t59 = t57 - t58
-    t60 = fore * outward * s_bend_front_elbow_down
-    del outward, s_bend_front_elbow_down
-    t61 = t31 * ahead_1
-    del ahead_1
-    up = t60 + t61
-    t62 = 1.0 / np.sqrt(t59 * t59 + up * up)
-    ctheta2A = _runtime.select(folded, 1.0, -(t59 * t62))
+    folded = np.abs(t29) + np.abs(onward) <= t39
+    del t39
+    t47 = fore * s_bend_front_elbow_down
+    del fore, s_bend_front_elbow_down
+    t48 = t29 * t47
+    ahead_1 = _runtime.select(short, t25, t32 + t26 * M * t37)
+    del M, t25, t26, t32, t37
+    t49 = onward * ahead_1
+    out_rear_elbow_up = t48 - t49
+    t50 = onward * t47
+    del onward, t47
+    t51 = t29 * ahead_1
+    del ahead_1, t29
+    up = t50 + t51
+    t52 = out_rear_elbow_up * out_rear_elbow_up + up * up
+    t53 = 1.0 / np.sqrt(t52)
+    del t52
+    t54 = out_rear_elbow_up * t53
+    ctheta2A = _runtime.select(folded, 1.0, -t54)
     higher = d * s_phi / c_phi
     del c_phi, s_phi
-    stheta2A = _runtime.select(folded, 0.0, up * t62)
+    stheta2A = _runtime.select(folded, 0.0, up * t53)
+    del t53
+    t55 = higher * stheta2A
+    p_1 = ahead * ctheta2A + t55
+    t56 = ahead * stheta2A
+    del stheta2A
+    t57 = t56 - higher * ctheta2A
+    del ctheta2A
+    t58 = v_2 * p_1 + v_1 * t57
+    room_alpha = t46 - np.abs(t58)
+    t59 = np.maximum(-(room_alpha * 9.094947017729282e-13), room_alpha)
+    t60 = _runtime.VANISHING * t36
+    spent_alpha = t59 <= t60
+    del t59
+    t61 = size / 100000.0
+    t62 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t63 = 1.0 / (t61 + t62)
     del t62
-    p_1 = ahead * ctheta2A + higher * stheta2A
-    t63 = ahead * stheta2A - higher * ctheta2A
-    del ctheta2A, stheta2A
-    t64 = v_2 * p_1 + v_1 * t63
-    room_alpha = np.abs(whole_alpha) - np.abs(t64)
-    t65 = np.maximum(-(room_alpha / 1099511627776.0), room_alpha)
-    t66 = _runtime.VANISHING * t47
-    spent_alpha = t65 <= t66
-    del t65
-    t67 = size / 100000.0
-    t68 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t69 = 1.0 / (t67 + t68)
-    del t68
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
     del c_relative, s_relative
-    t70 = _runtime.sign(-t64) * (v_1 * p_1 - v_2 * t63)
-    del t64
-    t71 = v_2 * drawn * _runtime.sign(whole_alpha) - t70
-    del t70, whole_alpha
-    t72 = _runtime.select(spent_alpha, t69 * (size * np.abs(t71)), 0.0)
-    t73 = -(_runtime.FEASIBILITY * (t47 + t72)) <= room_alpha
-    del t72
-    t74 = size * size * size * size / 10000000000.0
-    t75 = t71 * (room_alpha - np.abs(-room_alpha)) / (2.0 * (t74 + t71 * t71))
-    del room_alpha, t71
-    turn_alpha = _runtime.select(spent_alpha, t75, 0.0)
-    del t75
-    t76 = 1.0 / L1
-    lean_alpha = _runtime.select(spent_alpha, turn_alpha - t76 * (drawn * turn_alpha), 0.0)
-    p_1_alpha = _runtime.select(spent_alpha, p_1 - t63 * lean_alpha, p_1)
+    t64 = v_2 * drawn * _runtime.sign(whole_alpha)
+    del whole_alpha
+    t65 = _runtime.sign(-t58) * (v_1 * p_1 - v_2 * t57)
+    del t58
+    t66 = t64 - t65
+    del t65
+    t67 = _runtime.select(spent_alpha, t63 * (size * np.abs(t66)), 0.0)
+    t68 = -(_runtime.FEASIBILITY * (t36 + t67)) <= room_alpha
+    del t67
+    t69 = size * size * size * size / 10000000000.0
+    t70 = t66 * (room_alpha - np.abs(-room_alpha)) / (2.0 * (t69 + t66 * t66))
+    del room_alpha, t66
+    turn_alpha = _runtime.select(spent_alpha, t70, 0.0)
+    del t70
+    t71 = 1.0 / L1
+    lean_alpha = _runtime.select(spent_alpha, turn_alpha - t71 * (drawn * turn_alpha), 0.0)
+    p_1_alpha = _runtime.select(spent_alpha, p_1 - t57 * lean_alpha, p_1)
     part_beta = L1 * p_1_alpha
-    t77 = turn_alpha - lean_alpha
-    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t77, v_1)
+    t72 = turn_alpha - lean_alpha
+    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t72, v_1)
     whole_beta = L1 * v_1_alpha
-    t78 = np.abs(part_beta) - np.abs(whole_beta)
-    spent_beta = np.maximum(t78 / 1099511627776.0, -t78) <= t66
-    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t77, v_2)
-    del t77, v_1, v_2
-    t79 = drawn * v_2_alpha * _runtime.sign(whole_beta)
+    t73 = np.abs(part_beta) - np.abs(whole_beta)
+    t74 = np.maximum(t73 * 9.094947017729282e-13, -t73)
+    spent_beta = t74 <= t60
+    del t74
+    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t72, v_2)
+    del t72
+    t75 = drawn * v_2_alpha * _runtime.sign(whole_beta)
     del whole_beta
-    t80 = _runtime.select(spent_alpha, t63 + p_1 * lean_alpha, t63)
-    del p_1, spent_alpha, t63
-    t81 = (L1 - drawn) * t80 * _runtime.sign(part_beta)
-    del part_beta
-    t82 = t79 - t81
-    del t79, t81
-    t83 = _runtime.select(spent_beta, t69 * (size * np.abs(t82)), 0.0)
-    del t69
-    t84 = -(_runtime.FEASIBILITY * (t47 + t83)) <= -t78
-    del t83
-    t85 = np.abs(higher)
-    t86 = np.abs(ahead)
-    t87 = d + t85 + t86
-    t88 = -(_runtime.FEASIBILITY * t87)
-    t89 = t82 * (t78 + np.abs(t78)) / (2.0 * (t74 + t82 * t82))
-    del t78, t82
-    turn_beta = _runtime.select(spent_beta, -t89, 0.0)
-    del t89
-    lean_beta = _runtime.select(spent_beta, turn_beta - t76 * (drawn * turn_beta), 0.0)
-    del drawn
-    t90 = turn_beta - lean_beta
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t90, v_1_alpha)
+    t76 = L1 - drawn
+    t77 = _runtime.select(spent_alpha, t57 + p_1 * lean_alpha, t57)
+    del p_1, spent_alpha, t57
+    t78 = t75 - t76 * t77 * _runtime.sign(part_beta)
+    del part_beta, t75
+    t79 = _runtime.select(spent_beta, t63 * (size * np.abs(t78)), 0.0)
+    t80 = -(_runtime.FEASIBILITY * (t36 + t79)) <= -t73
+    del t79
+    t81 = np.abs(higher)
+    t82 = np.abs(ahead)
+    t83 = d + t81 + t82
+    t84 = -(_runtime.FEASIBILITY * t83)
+    t85 = t78 * (t73 + np.abs(t73)) / (2.0 * (t69 + t78 * t78))
+    del t73, t78
+    turn_beta = _runtime.select(spent_beta, -t85, 0.0)
+    del t85
+    lean_beta = _runtime.select(spent_beta, turn_beta - t71 * (drawn * turn_beta), 0.0)
+    t86 = turn_beta - lean_beta
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t86, v_1_alpha)
     sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t91 = v_1_beta * sigma_uv
-    del v_1_beta
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t80 * lean_beta, p_1_alpha)
-    t92 = sigma_uv * p_1_beta
-    del p_1_beta, sigma_uv
-    t93 = t46 & t73 & t84 & (t88 <= -(t91 + np.abs(t92)))
-    del t73, t84
-    t94 = _runtime.select(spent_beta, t80 + p_1_alpha * lean_beta, t80)
-    del p_1_alpha, t80
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t90, v_2_alpha)
-    del spent_beta, t90, v_1_alpha, v_2_alpha
-    t95 = np.abs(v_2_beta)
-    parallel = -t91 <= _runtime.VANISHING * (64.0 * t95)
-    t96 = _runtime.select(parallel, t94 * _runtime.sign(v_2_beta), t92)
-    del t92
-    whole_y = _runtime.select(parallel, L1 + t95, -t91)
-    t97 = t94 - v_2_beta * t96 / whole_y
-    left_along = L1 - np.abs(t97)
-    t98 = np.maximum(-(left_along / 1099511627776.0), left_along)
-    t99 = _runtime.VANISHING * t87
-    spent_along = t98 <= t99
-    del t98
-    t100 = L1 / 1000000000.0
-    t101 = _runtime.select(spent_along, t95 / (t100 - t91), 0.0)
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t77 * lean_beta, p_1_alpha)
+    t87 = sigma_uv * p_1_beta
+    del p_1_beta
+    t88 = v_1_beta * sigma_uv
+    del sigma_uv, v_1_beta
+    t89 = t35 & t68 & t80 & (t84 <= t87 - t88) & (t84 <= -(t88 + t87))
+    del t68, t80
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t86, v_2_alpha)
+    del t86, v_1_alpha, v_2_alpha
+    t90 = np.abs(v_2_beta)
+    parallel = -t88 <= _runtime.VANISHING * (64.0 * t90)
+    whole_y = _runtime.select(parallel, L1 + t90, -t88)
+    t91 = _runtime.select(spent_beta, t77 + p_1_alpha * lean_beta, t77)
+    del p_1_alpha, spent_beta, t77
+    t92 = _runtime.select(parallel, t91 * _runtime.sign(v_2_beta), t87)
+    del t87
+    t93 = whole_y + t92
+    t94 = whole_y - t92
+    t95 = _runtime.VANISHING * (d * 16.0 + t81 * 16.0 + 16.0 * t82)
+    del t81, t82
+    t96 = _runtime.VANISHING * t95
     del t95
-    t102 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t101)))
-    del t101
-    t103 = v_2_beta * (left_along / 2.0 - np.abs(left_along) / 2.0)
-    t104 = t103 / (t91 * t91 + v_2_beta * v_2_beta) * _runtime.sign(-t97)
-    del t103, t91, t97
-    t105 = _runtime.select(spent_along, t96 + whole_y * t104, t96)
-    del spent_along, t104, t96
-    t106 = whole_y + t105
-    t107 = whole_y - t105
-    del t105, whole_y
-    t108 = t93 & (t102 <= left_along) & (t88 <= t106) & (t88 <= t107)
-    del left_along, t102, t93
-    t109 = _runtime.VANISHING * (d * 16.0 + t85 * 16.0 + 16.0 * t86)
-    del t85, t86
-    t110 = _runtime.VANISHING * t109
-    del t109
-    below_beta = np.maximum(t106, t110)
-    del t106
-    above_beta = np.maximum(t107, t110)
-    del t107
-    t111 = 1.0 / (below_beta + above_beta)
-    t112 = (below_beta - above_beta) * t111
-    t113 = t94 - v_2_beta * t112
-    del t94, v_2_beta
-    t114 = L1 + t113
-    t115 = L1 - t113
-    del t113
-    unreachable = np.logical_not(t108 & (t88 <= t114) & (t88 <= t115))
-    del t108
+    below_beta_0 = np.maximum(t93, t96)
+    above_beta_0 = np.maximum(t94, t96)
+    t97 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    del above_beta_0, below_beta_0
+    t98 = t91 - v_2_beta * t97
+    del t97
+    left_along = L1 - np.abs(t98)
+    t99 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t100 = _runtime.VANISHING * t83
+    spent_along = t99 <= t100
+    del t99
+    t101 = L1 / 1000000000.0
+    t102 = _runtime.select(spent_along, t90 / (t101 - t88), 0.0)
+    del t90
+    t103 = -(_runtime.FEASIBILITY * (t83 * (1.0 + t102)))
+    del t102
+    t104 = t89 & (t84 <= t93) & (t84 <= t94) & (t103 <= left_along)
+    del t103, t89, t93, t94
+    t105 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    del left_along
+    t106 = t105 / (t88 * t88 + v_2_beta * v_2_beta) * _runtime.sign(-t98)
+    del t105, t88, t98
+    t107 = _runtime.select(spent_along, t92 + whole_y * t106, t92)
+    del spent_along, t106, t92
+    t108 = whole_y + t107
+    t109 = whole_y - t107
+    del t107, whole_y
+    below_beta = np.maximum(t108, t96)
+    above_beta = np.maximum(t109, t96)
+    t110 = below_beta - above_beta
+    t111 = v_2_beta * (t110 / (below_beta + above_beta))
+    del v_2_beta
+    t112 = t91 - t111
+    del t111, t91
+    t113 = L1 + t112
+    t114 = t104 & (t84 <= t108) & (t84 <= t109) & (t84 <= t113)
+    del t104, t108, t109
+    t115 = L1 - t112
+    del t112
+    unreachable = np.logical_not(t114 & (t84 <= t115))
+    del t114
     t116 = _runtime.poison(invalid | unreachable)
-    t117 = _runtime.select(folded, 0.0, np.arctan2(up, -t59))
-    del t59, up
+    t117 = _runtime.select(folded, 0.0, np.arctan2(up, -out_rear_elbow_up))
     t118 = np.arctan2(lean_alpha + lean_beta, 1.0)
     del lean_alpha, lean_beta
     t119 = t117 + t118
     del t117
-    below_alpha = np.maximum(t114, t110)
-    del t114
-    above_alpha = np.maximum(t115, t110)
+    below_alpha = np.maximum(t113, t96)
+    del t113
+    above_alpha = np.maximum(t115, t96)
     del t115
-    t120 = 1.0 / (below_alpha + above_alpha)
-    t121 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t122 = np.arctan2((below_alpha - above_alpha) * t120, t120 * t121)
-    del above_alpha, below_alpha, t120, t121
-    t123 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    del above_beta, below_beta
-    t124 = t122 - np.arctan2(t112, t111 * t123)
-    del t111, t112, t123
-    t125 = _runtime.select(short, 0.0, 2.0 * np.arctan2(rN, rM))
-    del rM, rN
-    t126 = np.arctan2(s_lag, c_lag)
-    t127 = t126 + np.arctan2(turn_alpha + turn_beta, 1.0)
-    del turn_alpha, turn_beta
-    t128 = t125 + t118 - t127
-    del t118, t127
-    t129 = _runtime.wrap(principal_pitch)
+    t120 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
+    del above_alpha, below_alpha
+    t121 = np.arctan2(s_lag, c_lag)
+    del c_lag, s_lag
+    t122 = _runtime.select(short, 0.0, np.arctan2(t42, t38))
+    del t38, t42
+    t123 = t121 - t122
+    t124 = t118 - np.arctan2(turn_alpha + turn_beta, 1.0)
+    del t118, turn_alpha, turn_beta
+    t125 = t123 - t124
+    del t124
+    t126 = np.arctan2(t110, 2.0 * np.sqrt(below_beta * above_beta))
+    del above_beta, below_beta, t110
+    t127 = t120 - t126
+    del t126
+    t128 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    c_relative_front_elbow_down = t51 - t52
-    del t51, t52
-    s_relative_front_elbow_down = t53 + t54
-    del t53, t54
+    c_relative_front_elbow_down = t41 - t43
+    del t41, t43
+    s_relative_front_elbow_down = t44 + t45
+    del t44, t45
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
+    t129 = np.abs(whole_alpha_front_elbow_down)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    out_front_elbow_down = t57 + t58
-    del t57, t58
-    t130 = t60 - t61
-    del t60, t61
+    out_front_elbow_down = t48 + t49
+    del t48, t49
+    t130 = t50 - t51
+    del t50, t51
     t131 = out_front_elbow_down * out_front_elbow_down + t130 * t130
     t132 = 1.0 / np.sqrt(t131)
     del t131
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, out_front_elbow_down * t132)
-    t133 = _runtime.select(folded, 0.0, t130 * t132)
+    t133 = out_front_elbow_down * t132
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t133)
+    t134 = _runtime.select(folded, 0.0, t130 * t132)
     del t132
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - higher * t133
-    t134 = ahead * t133 + higher * ctheta2A_front_elbow_down
-    del ctheta2A_front_elbow_down, t133
-    t135 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t134
-    room_alpha_front_elbow_down = np.abs(whole_alpha_front_elbow_down) - np.abs(t135)
-    t136 = room_alpha_front_elbow_down / 1099511627776.0
-    t137 = np.maximum(-t136, room_alpha_front_elbow_down)
-    del t136
-    spent_alpha_front_elbow_down = t137 <= t66
-    del t137
+    t135 = higher * t134
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - t135
+    t136 = ahead * t134
+    del t134
+    t137 = t136 + higher * ctheta2A_front_elbow_down
+    del ctheta2A_front_elbow_down
+    t138 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t137
+    room_alpha_front_elbow_down = t129 - np.abs(t138)
+    t139 = room_alpha_front_elbow_down * 9.094947017729282e-13
+    t140 = np.maximum(-t139, room_alpha_front_elbow_down)
+    del t139
+    spent_alpha_front_elbow_down = t140 <= t60
+    del t140
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t138 = 1.0 / (t67 + np.abs(tilt_front_elbow_down))
-    del tilt_front_elbow_down
+    t141 = 1.0 / (t61 + np.abs(tilt_front_elbow_down))
+    del t61, tilt_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    del c_relative_front_elbow_down, s_relative_front_elbow_down
-    t139 = v_2_front_elbow_down * drawn_front_elbow_down
-    t140 = t139 * _runtime.sign(whole_alpha_front_elbow_down)
-    del t139, whole_alpha_front_elbow_down
-    t141 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t134
-    t142 = t140 - _runtime.sign(-t135) * t141
-    del t135, t140, t141
-    t143 = _runtime.select(spent_alpha_front_elbow_down, t138 * (size * np.abs(t142)), 0.0)
-    t144 = -(_runtime.FEASIBILITY * (t47 + t143)) <= room_alpha_front_elbow_down
-    del t143
-    t145 = room_alpha_front_elbow_down - np.abs(-room_alpha_front_elbow_down)
-    del room_alpha_front_elbow_down
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t142 * t145 / (2.0 * (t74 + t142 * t142)), 0.0)
-    del t142, t145
-    t146 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t76 * t146, 0.0)
+    del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
+    t142 = v_2_front_elbow_down * drawn_front_elbow_down
+    t143 = t142 * _runtime.sign(whole_alpha_front_elbow_down)
+    del t142, whole_alpha_front_elbow_down
+    t144 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t137
+    t145 = t143 - _runtime.sign(-t138) * t144
+    del t138, t144
+    t146 = _runtime.select(spent_alpha_front_elbow_down, t141 * (size * np.abs(t145)), 0.0)
+    t147 = -(_runtime.FEASIBILITY * (t36 + t146)) <= room_alpha_front_elbow_down
     del t146
-    t147 = p_1_front_elbow_down + t134 * lean_alpha_front_elbow_down
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t147, p_1_front_elbow_down)
-    del t147
-    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t148 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
-    t149 = v_1_front_elbow_down - v_2_front_elbow_down * t148
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t149, v_1_front_elbow_down)
+    t148 = room_alpha_front_elbow_down - np.abs(-room_alpha_front_elbow_down)
+    del room_alpha_front_elbow_down
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t145 * t148 / (2.0 * (t69 + t145 * t145)), 0.0)
+    del t145, t148
+    t149 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t71 * t149, 0.0)
     del t149
+    t150 = p_1_front_elbow_down + t137 * lean_alpha_front_elbow_down
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t150, p_1_front_elbow_down)
+    del t150
+    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
+    t151 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
+    t152 = v_1_front_elbow_down - v_2_front_elbow_down * t151
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t152, v_1_front_elbow_down)
+    del t152
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t150 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    spent_beta_front_elbow_down = np.maximum(t150 / 1099511627776.0, -t150) <= t66
-    t151 = v_2_front_elbow_down + v_1_front_elbow_down * t148
-    del t148, v_1_front_elbow_down
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t151, v_2_front_elbow_down)
-    del t151, v_2_front_elbow_down
-    t152 = drawn_front_elbow_down * v_2_alpha_front_elbow_down
-    t153 = t152 * _runtime.sign(whole_beta_front_elbow_down)
-    del t152, whole_beta_front_elbow_down
-    t154 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t153 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t154 = np.maximum(t153 * 9.094947017729282e-13, -t153)
+    spent_beta_front_elbow_down = t154 <= t60
+    del t154
+    t155 = v_2_front_elbow_down + v_1_front_elbow_down * t151
+    del t151
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t155, v_2_front_elbow_down)
+    del t155
+    t156 = drawn_front_elbow_down * v_2_alpha_front_elbow_down
+    t157 = t156 * _runtime.sign(whole_beta_front_elbow_down)
+    del t156, whole_beta_front_elbow_down
+    t158 = L1 - drawn_front_elbow_down
+    t159 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t155 = _runtime.select(spent_alpha_front_elbow_down, t134 - t154, t134)
-    del spent_alpha_front_elbow_down, t134, t154
-    t156 = (L1 - drawn_front_elbow_down) * t155 * _runtime.sign(part_beta_front_elbow_down)
+    t160 = _runtime.select(spent_alpha_front_elbow_down, t137 - t159, t137)
+    del spent_alpha_front_elbow_down, t137, t159
+    t161 = t158 * t160 * _runtime.sign(part_beta_front_elbow_down)
     del part_beta_front_elbow_down
-    t157 = t153 + t156
-    del t153, t156
-    t158 = _runtime.select(spent_beta_front_elbow_down, t138 * (size * np.abs(t157)), 0.0)
-    del t138
-    t159 = -(_runtime.FEASIBILITY * (t47 + t158)) <= -t150
-    del t158
-    t160 = t157 * (t150 + np.abs(t150)) / (2.0 * (t74 + t157 * t157))
-    del t150, t157
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t160, 0.0)
-    del t160
-    t161 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    del drawn_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t76 * t161, 0.0)
-    del t161
-    t162 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
-    t163 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t162
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t163, v_1_alpha_front_elbow_down)
+    t162 = t157 + t161
+    del t157, t161
+    t163 = _runtime.select(spent_beta_front_elbow_down, t141 * (size * np.abs(t162)), 0.0)
+    t164 = -(_runtime.FEASIBILITY * (t36 + t163)) <= -t153
     del t163
-    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t164 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    del v_1_beta_front_elbow_down
-    t165 = p_1_alpha_front_elbow_down + t155 * lean_beta_front_elbow_down
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t165, p_1_alpha_front_elbow_down)
+    t165 = t162 * (t153 + np.abs(t153)) / (2.0 * (t69 + t162 * t162))
+    del t153, t162
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t165, 0.0)
     del t165
-    t166 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    del p_1_beta_front_elbow_down, sigma_uv_front_elbow_down
-    t167 = t46 & t144 & t159 & (t88 <= -(t164 + np.abs(t166)))
-    del t144, t159, t46
-    t168 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t166 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t71 * t166, 0.0)
+    del t166
+    t167 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
+    t168 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t167
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t168, v_1_alpha_front_elbow_down)
+    del t168
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t169 = p_1_alpha_front_elbow_down + t160 * lean_beta_front_elbow_down
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t169, p_1_alpha_front_elbow_down)
+    del t169
+    t170 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    del p_1_beta_front_elbow_down
+    t171 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    del sigma_uv_front_elbow_down, v_1_beta_front_elbow_down
+    t172 = t35 & t147 & t164 & (t84 <= t170 - t171) & (t84 <= -(t171 + t170))
+    del t147, t164
+    t173 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t167
+    del t167, v_1_alpha_front_elbow_down
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t173, v_2_alpha_front_elbow_down)
+    del t173, v_2_alpha_front_elbow_down
+    t174 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t171 <= _runtime.VANISHING * (64.0 * t174)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t174, -t171)
+    t175 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    t169 = _runtime.select(spent_beta_front_elbow_down, t155 - t168, t155)
-    del t155, t168
-    t170 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t162
-    del t162, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t170, v_2_alpha_front_elbow_down)
-    del spent_beta_front_elbow_down, t170, v_2_alpha_front_elbow_down
-    t171 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t164 <= _runtime.VANISHING * (64.0 * t171)
-    t172 = t169 * _runtime.sign(v_2_beta_front_elbow_down)
-    t173 = _runtime.select(parallel_front_elbow_down, -t172, t166)
-    del t166, t172
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t171, -t164)
-    t174 = v_2_beta_front_elbow_down * t173 / whole_y_front_elbow_down
-    rest_front_elbow_down = t169 + t174
-    del t174
+    t176 = _runtime.select(spent_beta_front_elbow_down, t160 - t175, t160)
+    del spent_beta_front_elbow_down, t160, t175
+    t177 = t176 * _runtime.sign(v_2_beta_front_elbow_down)
+    t178 = _runtime.select(parallel_front_elbow_down, -t177, t170)
+    del t170, t177
+    t179 = whole_y_front_elbow_down + t178
+    t180 = whole_y_front_elbow_down - t178
+    below_beta_0_front_elbow_down = np.maximum(t179, t96)
+    above_beta_0_front_elbow_down = np.maximum(t180, t96)
+    t181 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
+    del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
+    t182 = v_2_beta_front_elbow_down * (t181 / total_beta_0_front_elbow_down)
+    del t181, total_beta_0_front_elbow_down
+    rest_front_elbow_down = t176 + t182
+    del t182
     left_along_front_elbow_down = L1 - np.abs(-rest_front_elbow_down)
-    t175 = left_along_front_elbow_down / 1099511627776.0
-    t176 = np.maximum(-t175, left_along_front_elbow_down)
-    del t175
-    spent_along_front_elbow_down = t176 <= t99
-    del t176
-    t177 = _runtime.select(spent_along_front_elbow_down, t171 / (t100 - t164), 0.0)
-    del t171
-    t178 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t177)))
-    del t177
-    t179 = left_along_front_elbow_down / 2.0 - np.abs(left_along_front_elbow_down) / 2.0
-    t180 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t181 = v_2_beta_front_elbow_down * t179 / (t164 * t164 + t180)
-    del t164, t179, t180
-    t182 = whole_y_front_elbow_down * (t181 * _runtime.sign(rest_front_elbow_down))
-    del rest_front_elbow_down, t181
-    t183 = _runtime.select(spent_along_front_elbow_down, t173 + t182, t173)
-    del spent_along_front_elbow_down, t173, t182
-    t184 = whole_y_front_elbow_down + t183
-    t185 = t167 & (t178 <= left_along_front_elbow_down) & (t88 <= t184)
-    del left_along_front_elbow_down, t167, t178
-    t186 = whole_y_front_elbow_down - t183
-    del t183, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t184, t110)
+    t183 = left_along_front_elbow_down * 9.094947017729282e-13
+    t184 = np.maximum(-t183, left_along_front_elbow_down)
+    del t183
+    spent_along_front_elbow_down = t184 <= t100
     del t184
-    above_beta_front_elbow_down = np.maximum(t186, t110)
-    t187 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t185 = _runtime.select(spent_along_front_elbow_down, t174 / (t101 - t171), 0.0)
+    del t174
+    t186 = -(_runtime.FEASIBILITY * (t83 * (1.0 + t185)))
+    del t185
+    t187 = t172 & (t84 <= t179) & (t84 <= t180) & (t186 <= left_along_front_elbow_down)
+    del t172, t179, t180, t186
+    t188 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    del left_along_front_elbow_down
+    t189 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t190 = v_2_beta_front_elbow_down * t188 / (t171 * t171 + t189)
+    del t171, t188, t189
+    t191 = whole_y_front_elbow_down * (t190 * _runtime.sign(rest_front_elbow_down))
+    del rest_front_elbow_down, t190
+    t192 = _runtime.select(spent_along_front_elbow_down, t178 + t191, t178)
+    del spent_along_front_elbow_down, t178, t191
+    t193 = whole_y_front_elbow_down + t192
+    t194 = whole_y_front_elbow_down - t192
+    del t192, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t193, t96)
+    above_beta_front_elbow_down = np.maximum(t194, t96)
+    t195 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t188 = 1.0 / total_beta_front_elbow_down
-    del total_beta_front_elbow_down
-    t189 = t187 * t188
-    del t187
-    along_u_front_elbow_down = t169 + v_2_beta_front_elbow_down * t189
-    del t169, v_2_beta_front_elbow_down
-    t190 = L1 - along_u_front_elbow_down
-    t191 = L1 + along_u_front_elbow_down
+    t196 = v_2_beta_front_elbow_down * (t195 / total_beta_front_elbow_down)
+    del total_beta_front_elbow_down, v_2_beta_front_elbow_down
+    along_u_front_elbow_down = t176 + t196
+    del t176, t196
+    t197 = L1 - along_u_front_elbow_down
+    t198 = t187 & (t84 <= t193) & (t84 <= t194) & (t84 <= t197)
+    del t187, t193, t194
+    t199 = L1 + along_u_front_elbow_down
     del along_u_front_elbow_down
-    t192 = t185 & (t88 <= t186) & (t88 <= t190) & (t88 <= t191)
-    del t185, t186
-    unreachable_2 = np.logical_not(t192)
-    del t192
-    t193 = _runtime.poison(invalid | unreachable_2)
-    t194 = _runtime.select(folded, 0.0, np.arctan2(-t130, out_front_elbow_down))
-    del out_front_elbow_down, t130
-    t195 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    unreachable_2 = np.logical_not(t198 & (t84 <= t199))
+    del t198
+    t200 = _runtime.poison(invalid | unreachable_2)
+    t201 = _runtime.select(folded, 0.0, np.arctan2(-t130, out_front_elbow_down))
+    t202 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
     del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t196 = np.arctan2(t195, 1.0)
-    del t195
-    t197 = t194 + t196
-    del t194
-    below_alpha_front_elbow_down = np.maximum(t190, t110)
-    del t190
-    above_alpha_front_elbow_down = np.maximum(t191, t110)
-    del t191
-    t198 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t199 = 1.0 / total_alpha_front_elbow_down
-    del total_alpha_front_elbow_down
-    t200 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t203 = np.arctan2(t202, 1.0)
+    del t202
+    t204 = t201 + t203
+    del t201
+    below_alpha_front_elbow_down = np.maximum(t197, t96)
+    del t197
+    above_alpha_front_elbow_down = np.maximum(t199, t96)
+    del t199
+    t205 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t206 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t201 = np.arctan2(t198 * t199, t199 * t200)
-    del t198, t199, t200
-    t202 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t207 = np.arctan2(t205, 2.0 * np.sqrt(t206))
+    del t205, t206
+    t208 = t121 + t122
+    del t121, t122
+    t209 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t203 = t125 + t126 - (t196 - np.arctan2(t202, 1.0))
-    del t125, t196, t202
-    t204 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t210 = t208 - (t203 - np.arctan2(t209, 1.0))
+    del t203, t209
+    t211 = below_beta_front_elbow_down * above_beta_front_elbow_down
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t205 = t201 - np.arctan2(t189, t188 * t204)
-    del t188, t189, t204
-    t206 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t15))
-    del t15, t2
-    c1_rear_elbow_up = _runtime.select(nowhere, 1.0, -(t33 * (t36 + t37)))
-    del t36, t37
-    s1_rear_elbow_up = _runtime.select(nowhere, 0.0, t33 * (t38 - t39))
-    del t33, t38, t39
-    outward_rear_elbow_up = x * c1_rear_elbow_up + y * s1_rear_elbow_up
-    del c1_rear_elbow_up, s1_rear_elbow_up
-    t207 = outward_rear_elbow_up * outward_rear_elbow_up
-    square_rear_elbow_up = t32 + t207
-    del t207, t32
-    t208 = t30 - square_rear_elbow_up
-    del t30
-    t209 = square_rear_elbow_up - t44
-    del square_rear_elbow_up, t44
-    t210 = t26 & (-t29 <= t208) & (-t43 <= t209)
-    del t26, t29, t43
-    M_rear_elbow_up = np.maximum(t209, 0.0)
-    del t209
-    N_rear_elbow_up = np.maximum(t208, 0.0)
-    del t208
-    t211 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
-    c_bend_rear_elbow_up = _runtime.select(short, 1.0, t211 * (M_rear_elbow_up - N_rear_elbow_up))
-    t212 = c_lag * c_bend_rear_elbow_up
-    rN_rear_elbow_up = np.sqrt(N_rear_elbow_up)
-    del N_rear_elbow_up
-    rM_rear_elbow_up = np.sqrt(M_rear_elbow_up)
-    t213 = t211 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
-    s_bend_rear_elbow_up = _runtime.select(short, 0.0, t213)
-    del t213
-    t214 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t212 - t214
-    t215 = s_lag * c_bend_rear_elbow_up
-    del c_bend_rear_elbow_up, s_lag
-    t216 = c_lag * s_bend_rear_elbow_up
-    del c_lag
-    s_relative_rear_elbow_up = t215 + t216
-    v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
-    whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
-    v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
-    folded_rear_elbow_up = t55 + np.abs(outward_rear_elbow_up) <= t49
-    del t49, t55
-    t217 = t56 * s_bend_rear_elbow_up
-    del t56
-    ahead_1_rear_elbow_up = _runtime.select(short, t27, t42 + t28 * M_rear_elbow_up * t211)
-    del M_rear_elbow_up, t211, t27, t28, t42
-    t218 = outward_rear_elbow_up * ahead_1_rear_elbow_up
-    out_rear_elbow_up = t217 + t218
-    t219 = fore * outward_rear_elbow_up * s_bend_rear_elbow_up
-    del fore, outward_rear_elbow_up, s_bend_rear_elbow_up
-    t220 = t31 * ahead_1_rear_elbow_up
-    del ahead_1_rear_elbow_up, t31
-    t221 = t219 - t220
-    t222 = out_rear_elbow_up * out_rear_elbow_up + t221 * t221
-    t223 = 1.0 / np.sqrt(t222)
-    del t222
-    ctheta2A_rear_elbow_up = _runtime.select(folded_rear_elbow_up, 1.0, out_rear_elbow_up * t223)
-    t224 = _runtime.select(folded_rear_elbow_up, 0.0, t221 * t223)
-    del t223
-    p_1_rear_elbow_up = ahead * ctheta2A_rear_elbow_up - higher * t224
-    t225 = ahead * t224 + higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t224
-    t226 = v_2_rear_elbow_up * p_1_rear_elbow_up - v_1_rear_elbow_up * t225
-    room_alpha_rear_elbow_up = np.abs(whole_alpha_rear_elbow_up) - np.abs(t226)
-    t227 = -(room_alpha_rear_elbow_up / 1099511627776.0)
-    spent_alpha_rear_elbow_up = np.maximum(t227, room_alpha_rear_elbow_up) <= t66
-    del t227
-    tilt_rear_elbow_up = L_2W * c_relative_rear_elbow_up - a_3W * s_relative_rear_elbow_up
-    t228 = 1.0 / (t67 + np.abs(tilt_rear_elbow_up))
-    del tilt_rear_elbow_up
-    drawn_rear_elbow_up = L1 + L_2W * s_relative_rear_elbow_up + a_3W * c_relative_rear_elbow_up
-    del c_relative_rear_elbow_up, s_relative_rear_elbow_up
-    t229 = v_2_rear_elbow_up * drawn_rear_elbow_up * _runtime.sign(whole_alpha_rear_elbow_up)
-    del whole_alpha_rear_elbow_up
-    t230 = v_1_rear_elbow_up * p_1_rear_elbow_up + v_2_rear_elbow_up * t225
-    t231 = t229 - _runtime.sign(-t226) * t230
-    del t226, t229, t230
-    t232 = _runtime.select(spent_alpha_rear_elbow_up, t228 * (size * np.abs(t231)), 0.0)
-    t233 = -(_runtime.FEASIBILITY * (t47 + t232)) <= room_alpha_rear_elbow_up
-    del t232
-    t234 = room_alpha_rear_elbow_up - np.abs(-room_alpha_rear_elbow_up)
+    t212 = t207 - np.arctan2(t195, 2.0 * np.sqrt(t211))
+    del t195, t211
+    t213 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t13))
+    del t13, t2
+    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, t54)
+    del t54
+    p_1_rear_elbow_up = t55 + ahead * ctheta2A_rear_elbow_up
+    del t55
+    t214 = t56 - higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t56
+    t215 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t214
+    room_alpha_rear_elbow_up = t129 - np.abs(t215)
+    del t129
+    t216 = room_alpha_rear_elbow_up * 9.094947017729282e-13
+    spent_alpha_rear_elbow_up = np.maximum(-t216, room_alpha_rear_elbow_up) <= t60
+    del t216
+    t217 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t214
+    t218 = t143 - _runtime.sign(-t215) * t217
+    del t143, t215, t217
+    t219 = _runtime.select(spent_alpha_rear_elbow_up, t141 * (size * np.abs(t218)), 0.0)
+    t220 = -(_runtime.FEASIBILITY * (t36 + t219)) <= room_alpha_rear_elbow_up
+    del t219
+    t221 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
     del room_alpha_rear_elbow_up
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t231 * t234 / (2.0 * (t74 + t231 * t231)), 0.0)
-    del t231, t234
-    t235 = drawn_rear_elbow_up * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t76 * t235, 0.0)
-    del t235
-    t236 = p_1_rear_elbow_up + t225 * lean_alpha_rear_elbow_up
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t236, p_1_rear_elbow_up)
-    del t236
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t218 * t221 / (2.0 * (t69 + t218 * t218)), 0.0)
+    del t218, t221
+    t222 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t71 * t222, 0.0)
+    del t222
+    t223 = p_1_rear_elbow_up - t214 * lean_alpha_rear_elbow_up
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t223, p_1_rear_elbow_up)
+    del t223
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t237 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_1_rear_elbow_up - v_2_rear_elbow_up * t237, v_1_rear_elbow_up)
+    t224 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
+    t225 = v_1_front_elbow_down - v_2_front_elbow_down * t224
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t225, v_1_front_elbow_down)
+    del t225
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t238 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    spent_beta_rear_elbow_up = np.maximum(t238 / 1099511627776.0, -t238) <= t66
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, v_2_rear_elbow_up + v_1_rear_elbow_up * t237, v_2_rear_elbow_up)
-    del t237, v_1_rear_elbow_up, v_2_rear_elbow_up
-    t239 = drawn_rear_elbow_up * v_2_alpha_rear_elbow_up
-    t240 = t239 * _runtime.sign(whole_beta_rear_elbow_up)
-    del t239, whole_beta_rear_elbow_up
-    t241 = t225 - p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    t226 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t227 = np.maximum(t226 * 9.094947017729282e-13, -t226)
+    spent_beta_rear_elbow_up = t227 <= t60
+    del t227
+    t228 = v_2_front_elbow_down + v_1_front_elbow_down * t224
+    del t224, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t228, v_2_front_elbow_down)
+    del t228, v_2_front_elbow_down
+    t229 = drawn_front_elbow_down * v_2_alpha_rear_elbow_up
+    t230 = t229 * _runtime.sign(whole_beta_rear_elbow_up)
+    del t229, whole_beta_rear_elbow_up
+    t231 = t214 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up
     del p_1_rear_elbow_up
-    t242 = _runtime.select(spent_alpha_rear_elbow_up, t241, t225)
-    del spent_alpha_rear_elbow_up, t225, t241
-    t243 = (L1 - drawn_rear_elbow_up) * t242 * _runtime.sign(part_beta_rear_elbow_up)
-    del part_beta_rear_elbow_up
-    t244 = t240 + t243
-    del t240, t243
-    t245 = _runtime.select(spent_beta_rear_elbow_up, t228 * (size * np.abs(t244)), 0.0)
-    del t228
-    t246 = -(_runtime.FEASIBILITY * (t47 + t245)) <= -t238
-    del t245
-    t247 = t244 * (t238 + np.abs(t238)) / (2.0 * (t74 + t244 * t244))
-    del t238, t244
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t247, 0.0)
-    del t247
-    t248 = drawn_rear_elbow_up * turn_beta_rear_elbow_up
-    del drawn_rear_elbow_up
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t76 * t248, 0.0)
-    del t248
-    t249 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
-    t250 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t249
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t250, v_1_alpha_rear_elbow_up)
-    del t250
+    t232 = _runtime.select(spent_alpha_rear_elbow_up, t231, t214)
+    del spent_alpha_rear_elbow_up, t214, t231
+    t233 = t158 * t232 * _runtime.sign(part_beta_rear_elbow_up)
+    del part_beta_rear_elbow_up, t158
+    t234 = t230 - t233
+    del t230, t233
+    t235 = _runtime.select(spent_beta_rear_elbow_up, t141 * (size * np.abs(t234)), 0.0)
+    del t141
+    t236 = -(_runtime.FEASIBILITY * (t36 + t235)) <= -t226
+    del t235
+    t237 = t234 * (t226 + np.abs(t226)) / (2.0 * (t69 + t234 * t234))
+    del t226, t234
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t237, 0.0)
+    del t237
+    t238 = drawn_front_elbow_down * turn_beta_rear_elbow_up
+    del drawn_front_elbow_down
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t71 * t238, 0.0)
+    del t238
+    t239 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
+    t240 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t239
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t240, v_1_alpha_rear_elbow_up)
+    del t240
     sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t251 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    del v_1_beta_rear_elbow_up
-    t252 = p_1_alpha_rear_elbow_up + t242 * lean_beta_rear_elbow_up
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t252, p_1_alpha_rear_elbow_up)
-    del t252
-    t253 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    del p_1_beta_rear_elbow_up, sigma_uv_rear_elbow_up
-    t254 = t210 & t233 & t246 & (t88 <= -(t251 + np.abs(t253)))
-    del t233, t246
-    t255 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t241 = p_1_alpha_rear_elbow_up - t232 * lean_beta_rear_elbow_up
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t241, p_1_alpha_rear_elbow_up)
+    del t241
+    t242 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    del p_1_beta_rear_elbow_up
+    t243 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    del sigma_uv_rear_elbow_up, v_1_beta_rear_elbow_up
+    t244 = t35 & t220 & t236 & (t84 <= t242 - t243) & (t84 <= -(t243 + t242))
+    del t220, t236
+    t245 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t239
+    del t239, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t245, v_2_alpha_rear_elbow_up)
+    del t245, v_2_alpha_rear_elbow_up
+    t246 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t243 <= _runtime.VANISHING * (64.0 * t246)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t246, -t243)
+    t247 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del p_1_alpha_rear_elbow_up
-    t256 = _runtime.select(spent_beta_rear_elbow_up, t242 - t255, t242)
-    del t242, t255
-    t257 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t249
-    del t249, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t257, v_2_alpha_rear_elbow_up)
-    del spent_beta_rear_elbow_up, t257, v_2_alpha_rear_elbow_up
-    t258 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t251 <= _runtime.VANISHING * (64.0 * t258)
-    t259 = -(t256 * _runtime.sign(v_2_beta_rear_elbow_up))
-    t260 = _runtime.select(parallel_rear_elbow_up, t259, t253)
-    del t253, t259
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t258, -t251)
-    t261 = v_2_beta_rear_elbow_up * t260 / whole_y_rear_elbow_up
-    rest_rear_elbow_up = t256 + t261
-    del t261
-    left_along_rear_elbow_up = L1 - np.abs(-rest_rear_elbow_up)
-    t262 = -(left_along_rear_elbow_up / 1099511627776.0)
-    spent_along_rear_elbow_up = np.maximum(t262, left_along_rear_elbow_up) <= t99
-    del t262
-    t263 = _runtime.select(spent_along_rear_elbow_up, t258 / (t100 - t251), 0.0)
-    del t258
-    t264 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t263)))
-    del t263
-    t265 = left_along_rear_elbow_up / 2.0 - np.abs(left_along_rear_elbow_up) / 2.0
-    t266 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t267 = v_2_beta_rear_elbow_up * t265 / (t251 * t251 + t266)
-    del t251, t265, t266
-    t268 = whole_y_rear_elbow_up * (t267 * _runtime.sign(rest_rear_elbow_up))
-    del rest_rear_elbow_up, t267
-    t269 = _runtime.select(spent_along_rear_elbow_up, t260 + t268, t260)
-    del spent_along_rear_elbow_up, t260, t268
-    t270 = whole_y_rear_elbow_up + t269
-    t271 = t254 & (t264 <= left_along_rear_elbow_up) & (t88 <= t270)
-    del left_along_rear_elbow_up, t254, t264
-    t272 = whole_y_rear_elbow_up - t269
-    del t269, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t270, t110)
-    del t270
-    above_beta_rear_elbow_up = np.maximum(t272, t110)
-    t273 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t248 = _runtime.select(spent_beta_rear_elbow_up, t232 + t247, t232)
+    del spent_beta_rear_elbow_up, t232, t247
+    t249 = _runtime.select(parallel_rear_elbow_up, t248 * _runtime.sign(v_2_beta_rear_elbow_up), t242)
+    del t242
+    t250 = whole_y_rear_elbow_up + t249
+    t251 = whole_y_rear_elbow_up - t249
+    below_beta_0_rear_elbow_up = np.maximum(t250, t96)
+    above_beta_0_rear_elbow_up = np.maximum(t251, t96)
+    t252 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
+    del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
+    t253 = v_2_beta_rear_elbow_up * (t252 / total_beta_0_rear_elbow_up)
+    del t252, total_beta_0_rear_elbow_up
+    t254 = t248 - t253
+    del t253
+    left_along_rear_elbow_up = L1 - np.abs(t254)
+    t255 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t255, left_along_rear_elbow_up) <= t100
+    del t255
+    t256 = _runtime.select(spent_along_rear_elbow_up, t246 / (t101 - t243), 0.0)
+    del t246
+    t257 = -(_runtime.FEASIBILITY * (t83 * (1.0 + t256)))
+    del t256
+    t258 = t244 & (t84 <= t250) & (t84 <= t251) & (t257 <= left_along_rear_elbow_up)
+    del t244, t250, t251, t257
+    t259 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    del left_along_rear_elbow_up
+    t260 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t261 = v_2_beta_rear_elbow_up * t259 / (t243 * t243 + t260)
+    del t243, t259, t260
+    t262 = whole_y_rear_elbow_up * (t261 * _runtime.sign(-t254))
+    del t254, t261
+    t263 = _runtime.select(spent_along_rear_elbow_up, t249 + t262, t249)
+    del spent_along_rear_elbow_up, t249, t262
+    t264 = whole_y_rear_elbow_up + t263
+    t265 = whole_y_rear_elbow_up - t263
+    del t263, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t264, t96)
+    above_beta_rear_elbow_up = np.maximum(t265, t96)
+    t266 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t274 = 1.0 / total_beta_rear_elbow_up
-    del total_beta_rear_elbow_up
-    t275 = t273 * t274
-    del t273
-    along_u_rear_elbow_up = t256 + v_2_beta_rear_elbow_up * t275
-    del t256, v_2_beta_rear_elbow_up
-    t276 = L1 - along_u_rear_elbow_up
-    t277 = L1 + along_u_rear_elbow_up
-    del along_u_rear_elbow_up
-    t278 = t271 & (t88 <= t272) & (t88 <= t276) & (t88 <= t277)
-    del t271, t272
-    unreachable_3 = np.logical_not(t278)
-    del t278
-    t279 = _runtime.poison(invalid | unreachable_3)
-    t280 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(-t221, out_rear_elbow_up))
-    del out_rear_elbow_up, t221
-    t281 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t267 = v_2_beta_rear_elbow_up * (t266 / total_beta_rear_elbow_up)
+    del total_beta_rear_elbow_up, v_2_beta_rear_elbow_up
+    t268 = t248 - t267
+    del t248, t267
+    t269 = L1 + t268
+    t270 = t258 & (t84 <= t264) & (t84 <= t265) & (t84 <= t269)
+    del t258, t264, t265
+    t271 = L1 - t268
+    del t268
+    unreachable_3 = np.logical_not(t270 & (t84 <= t271))
+    del t270
+    t272 = _runtime.poison(invalid | unreachable_3)
+    t273 = _runtime.select(folded, 0.0, np.arctan2(up, out_rear_elbow_up))
+    del out_rear_elbow_up, up
+    t274 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t282 = np.arctan2(t281, 1.0)
-    del t281
-    t283 = t280 + t282
-    del t280
-    below_alpha_rear_elbow_up = np.maximum(t276, t110)
-    del t276
-    above_alpha_rear_elbow_up = np.maximum(t277, t110)
-    del t277
-    t284 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t285 = 1.0 / total_alpha_rear_elbow_up
-    del total_alpha_rear_elbow_up
-    t286 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t275 = np.arctan2(t274, 1.0)
+    del t274
+    t276 = t273 + t275
+    del t273
+    below_alpha_rear_elbow_up = np.maximum(t269, t96)
+    del t269
+    above_alpha_rear_elbow_up = np.maximum(t271, t96)
+    del t271
+    t277 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t278 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t287 = np.arctan2(t284 * t285, t285 * t286)
-    del t284, t285, t286
-    t288 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
-    del rM_rear_elbow_up, rN_rear_elbow_up
-    t289 = _runtime.select(short, 0.0, 2.0 * t288)
-    del t288
-    t290 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t279 = np.arctan2(t277, 2.0 * np.sqrt(t278))
+    del t277, t278
+    t280 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t291 = t126 - t282 + (t289 + np.arctan2(t290, 1.0))
-    del t282, t290
-    t292 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t281 = t208 - (t275 - np.arctan2(t280, 1.0))
+    del t208, t275, t280
+    t282 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t293 = t287 - np.arctan2(t275, t274 * t292)
-    del t274, t275, t292
-    c_relative_rear_elbow_down = t212 + t214
-    del t212, t214
-    s_relative_rear_elbow_down = t215 - t216
-    del t215, t216
-    v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
-    whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
-    v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
-    t294 = t217 - t218
-    del t217, t218
-    up_rear_elbow_down = t219 + t220
-    del t219, t220
-    t295 = t294 * t294 + up_rear_elbow_down * up_rear_elbow_down
-    t296 = 1.0 / np.sqrt(t295)
-    del t295
-    ctheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 1.0, -(t294 * t296))
-    stheta2A_rear_elbow_down = _runtime.select(folded_rear_elbow_up, 0.0, up_rear_elbow_down * t296)
-    del t296
-    p_1_rear_elbow_down = ahead * ctheta2A_rear_elbow_down + higher * stheta2A_rear_elbow_down
-    t297 = ahead * stheta2A_rear_elbow_down - higher * ctheta2A_rear_elbow_down
-    del ahead, ctheta2A_rear_elbow_down, higher, stheta2A_rear_elbow_down
-    t298 = v_2_rear_elbow_down * p_1_rear_elbow_down + v_1_rear_elbow_down * t297
-    room_alpha_rear_elbow_down = np.abs(whole_alpha_rear_elbow_down) - np.abs(t298)
-    t299 = -(room_alpha_rear_elbow_down / 1099511627776.0)
-    spent_alpha_rear_elbow_down = np.maximum(t299, room_alpha_rear_elbow_down) <= t66
-    del t299
-    tilt_rear_elbow_down = L_2W * c_relative_rear_elbow_down - a_3W * s_relative_rear_elbow_down
-    t300 = 1.0 / (t67 + np.abs(tilt_rear_elbow_down))
-    del t67, tilt_rear_elbow_down
-    drawn_rear_elbow_down = L1 + L_2W * s_relative_rear_elbow_down + a_3W * c_relative_rear_elbow_down
-    del L_2W, a_3W, c_relative_rear_elbow_down, s_relative_rear_elbow_down
-    t301 = v_2_rear_elbow_down * drawn_rear_elbow_down * _runtime.sign(whole_alpha_rear_elbow_down)
-    del whole_alpha_rear_elbow_down
-    t302 = v_1_rear_elbow_down * p_1_rear_elbow_down - v_2_rear_elbow_down * t297
-    t303 = t301 - _runtime.sign(-t298) * t302
-    del t298, t301, t302
-    t304 = _runtime.select(spent_alpha_rear_elbow_down, t300 * (size * np.abs(t303)), 0.0)
-    t305 = -(_runtime.FEASIBILITY * (t47 + t304)) <= room_alpha_rear_elbow_down
-    del t304
-    t306 = room_alpha_rear_elbow_down - np.abs(-room_alpha_rear_elbow_down)
+    t283 = t279 - np.arctan2(t266, 2.0 * np.sqrt(t282))
+    del t266, t282
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t133)
+    del t133
+    t284 = t135 - ahead * ctheta2A_rear_elbow_down
+    del ahead, t135
+    t285 = t136 + higher * ctheta2A_rear_elbow_down
+    del ctheta2A_rear_elbow_down, higher, t136
+    part_alpha_rear_elbow_down = v_2 * t284 + v_1 * t285
+    room_alpha_rear_elbow_down = t46 - np.abs(-part_alpha_rear_elbow_down)
+    del t46
+    t286 = room_alpha_rear_elbow_down * 9.094947017729282e-13
+    t287 = np.maximum(-t286, room_alpha_rear_elbow_down)
+    del t286
+    spent_alpha_rear_elbow_down = t287 <= t60
+    del t287
+    t288 = _runtime.sign(part_alpha_rear_elbow_down) * (v_1 * t284 - v_2 * t285)
+    del part_alpha_rear_elbow_down
+    t289 = t64 + t288
+    del t288, t64
+    t290 = _runtime.select(spent_alpha_rear_elbow_down, t63 * (size * np.abs(t289)), 0.0)
+    t291 = -(_runtime.FEASIBILITY * (t36 + t290)) <= room_alpha_rear_elbow_down
+    del t290
+    t292 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
     del room_alpha_rear_elbow_down
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t303 * t306 / (2.0 * (t74 + t303 * t303)), 0.0)
-    del t303, t306
-    t307 = drawn_rear_elbow_down * turn_alpha_rear_elbow_down
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t76 * t307, 0.0)
-    del t307
-    t308 = p_1_rear_elbow_down - t297 * lean_alpha_rear_elbow_down
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t308, p_1_rear_elbow_down)
-    del t308
-    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t309 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
-    t310 = v_1_rear_elbow_down - v_2_rear_elbow_down * t309
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t310, v_1_rear_elbow_down)
-    del t310
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t289 * t292 / (2.0 * (t69 + t289 * t289)), 0.0)
+    del t289, t292
+    t293 = turn_alpha_rear_elbow_down - t71 * (drawn * turn_alpha_rear_elbow_down)
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t293, 0.0)
+    del t293
+    t294 = _runtime.select(spent_alpha_rear_elbow_down, t284 - t285 * lean_alpha_rear_elbow_down, t284)
+    part_beta_rear_elbow_down = -(L1 * t294)
+    t295 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 - v_2 * t295, v_1)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t311 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    spent_beta_rear_elbow_down = np.maximum(t311 / 1099511627776.0, -t311) <= t66
-    del t66
-    t312 = v_2_rear_elbow_down + v_1_rear_elbow_down * t309
-    del t309, v_1_rear_elbow_down
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t312, v_2_rear_elbow_down)
-    del t312, v_2_rear_elbow_down
-    t313 = drawn_rear_elbow_down * v_2_alpha_rear_elbow_down
-    t314 = t313 * _runtime.sign(whole_beta_rear_elbow_down)
-    del t313, whole_beta_rear_elbow_down
-    t315 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    del p_1_rear_elbow_down
-    t316 = _runtime.select(spent_alpha_rear_elbow_down, t297 + t315, t297)
-    del spent_alpha_rear_elbow_down, t297, t315
-    t317 = (L1 - drawn_rear_elbow_down) * t316 * _runtime.sign(part_beta_rear_elbow_down)
-    del part_beta_rear_elbow_down
-    t318 = t314 - t317
-    del t314, t317
-    t319 = _runtime.select(spent_beta_rear_elbow_down, t300 * (size * np.abs(t318)), 0.0)
-    del size, t300
-    t320 = -(_runtime.FEASIBILITY * (t47 + t319)) <= -t311
-    del t319, t47
-    t321 = t318 * (t311 + np.abs(t311)) / (2.0 * (t74 + t318 * t318))
-    del t311, t318, t74
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t321, 0.0)
-    del t321
-    t322 = drawn_rear_elbow_down * turn_beta_rear_elbow_down
-    del drawn_rear_elbow_down
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t76 * t322, 0.0)
-    del t322, t76
-    t323 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
-    t324 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t323
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t324, v_1_alpha_rear_elbow_down)
-    del t324
+    t296 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t297 = np.maximum(t296 * 9.094947017729282e-13, -t296)
+    spent_beta_rear_elbow_down = t297 <= t60
+    del t297, t60
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 + v_1 * t295, v_2)
+    del t295, v_1, v_2
+    t298 = drawn * v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    del whole_beta_rear_elbow_down
+    t299 = _runtime.select(spent_alpha_rear_elbow_down, t285 + t284 * lean_alpha_rear_elbow_down, t285)
+    del spent_alpha_rear_elbow_down, t284, t285
+    t300 = t76 * t299 * _runtime.sign(part_beta_rear_elbow_down)
+    del part_beta_rear_elbow_down, t76
+    t301 = t298 + t300
+    del t298, t300
+    t302 = _runtime.select(spent_beta_rear_elbow_down, t63 * (size * np.abs(t301)), 0.0)
+    del size, t63
+    t303 = -(_runtime.FEASIBILITY * (t36 + t302)) <= -t296
+    del t302, t36
+    t304 = t301 * (t296 + np.abs(t296)) / (2.0 * (t69 + t301 * t301))
+    del t296, t301, t69
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t304, 0.0)
+    del t304
+    t305 = turn_beta_rear_elbow_down - t71 * (drawn * turn_beta_rear_elbow_down)
+    del drawn, t71
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t305, 0.0)
+    del t305
+    t306 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
+    t307 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t306
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t307, v_1_alpha_rear_elbow_down)
+    del t307
     sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t325 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t308 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     del v_1_beta_rear_elbow_down
-    t326 = p_1_alpha_rear_elbow_down - t316 * lean_beta_rear_elbow_down
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t326, p_1_alpha_rear_elbow_down)
-    del t326
-    t327 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    del p_1_beta_rear_elbow_down, sigma_uv_rear_elbow_down
-    t328 = t210 & t305 & t320 & (t88 <= -(t325 + np.abs(t327)))
-    del t210, t305, t320
-    t329 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    del p_1_alpha_rear_elbow_down
-    t330 = _runtime.select(spent_beta_rear_elbow_down, t316 + t329, t316)
-    del t316, t329
-    t331 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t323
-    del t323, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t331, v_2_alpha_rear_elbow_down)
-    del spent_beta_rear_elbow_down, t331, v_2_alpha_rear_elbow_down
-    t332 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t325 <= _runtime.VANISHING * (64.0 * t332)
-    t333 = t330 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t334 = _runtime.select(parallel_rear_elbow_down, t333, t327)
-    del t327, t333
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t332, -t325)
-    t335 = v_2_beta_rear_elbow_down * t334 / whole_y_rear_elbow_down
-    t336 = t330 - t335
-    del t335
-    left_along_rear_elbow_down = L1 - np.abs(t336)
-    t337 = -(left_along_rear_elbow_down / 1099511627776.0)
-    spent_along_rear_elbow_down = np.maximum(t337, left_along_rear_elbow_down) <= t99
-    del t337, t99
-    t338 = _runtime.select(spent_along_rear_elbow_down, t332 / (t100 - t325), 0.0)
-    del t100, t332
-    t339 = -(_runtime.FEASIBILITY * (t87 * (1.0 + t338)))
-    del t338, t87
-    t340 = left_along_rear_elbow_down / 2.0 - np.abs(left_along_rear_elbow_down) / 2.0
-    t341 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t342 = v_2_beta_rear_elbow_down * t340 / (t325 * t325 + t341)
-    del t325, t340, t341
-    t343 = whole_y_rear_elbow_down * (t342 * _runtime.sign(-t336))
-    del t336, t342
-    t344 = _runtime.select(spent_along_rear_elbow_down, t334 + t343, t334)
-    del spent_along_rear_elbow_down, t334, t343
-    t345 = whole_y_rear_elbow_down + t344
-    t346 = t328 & (t339 <= left_along_rear_elbow_down) & (t88 <= t345)
-    del left_along_rear_elbow_down, t328, t339
-    t347 = whole_y_rear_elbow_down - t344
-    del t344, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t345, t110)
-    del t345
-    above_beta_rear_elbow_down = np.maximum(t347, t110)
-    t348 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t309 = _runtime.select(spent_beta_rear_elbow_down, t294 - t299 * lean_beta_rear_elbow_down, t294)
+    p_across_u_rear_elbow_down = sigma_uv_rear_elbow_down * t309
+    del sigma_uv_rear_elbow_down, t309
+    t310 = t35 & t291 & t303 & (t84 <= -(t308 + p_across_u_rear_elbow_down))
+    del t291, t303, t35
+    t311 = t310 & (t84 <= p_across_u_rear_elbow_down - t308)
+    del t310
+    t312 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t306
+    del t306, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t312, v_2_alpha_rear_elbow_down)
+    del t312, v_2_alpha_rear_elbow_down
+    t313 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t308 <= _runtime.VANISHING * (64.0 * t313)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t313, -t308)
+    t314 = _runtime.select(spent_beta_rear_elbow_down, t299 + t294 * lean_beta_rear_elbow_down, t299)
+    del spent_beta_rear_elbow_down, t294, t299
+    t315 = t314 * _runtime.sign(v_2_beta_rear_elbow_down)
+    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t315, p_across_u_rear_elbow_down)
+    del p_across_u_rear_elbow_down, t315
+    t316 = whole_y_rear_elbow_down - part_y_rear_elbow_down
+    t317 = whole_y_rear_elbow_down + part_y_rear_elbow_down
+    below_beta_0_rear_elbow_down = np.maximum(t316, t96)
+    above_beta_0_rear_elbow_down = np.maximum(t317, t96)
+    t318 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
+    del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
+    t319 = v_2_beta_rear_elbow_down * (t318 / total_beta_0_rear_elbow_down)
+    del t318, total_beta_0_rear_elbow_down
+    rest_rear_elbow_down = t314 + t319
+    del t319
+    left_along_rear_elbow_down = L1 - np.abs(-rest_rear_elbow_down)
+    t320 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t321 = np.maximum(-t320, left_along_rear_elbow_down)
+    del t320
+    spent_along_rear_elbow_down = t321 <= t100
+    del t100, t321
+    t322 = _runtime.select(spent_along_rear_elbow_down, t313 / (t101 - t308), 0.0)
+    del t101, t313
+    t323 = -(_runtime.FEASIBILITY * (t83 * (1.0 + t322)))
+    del t322, t83
+    t324 = t311 & (t84 <= t316) & (t84 <= t317) & (t323 <= left_along_rear_elbow_down)
+    del t311, t316, t317, t323
+    t325 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    del left_along_rear_elbow_down
+    t326 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t327 = v_2_beta_rear_elbow_down * t325 / (t308 * t308 + t326)
+    del t308, t325, t326
+    t328 = whole_y_rear_elbow_down * (t327 * _runtime.sign(rest_rear_elbow_down))
+    del rest_rear_elbow_down, t327
+    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down - t328, part_y_rear_elbow_down)
+    del part_y_rear_elbow_down, spent_along_rear_elbow_down, t328
+    t329 = whole_y_rear_elbow_down - eased_rear_elbow_down
+    t330 = whole_y_rear_elbow_down + eased_rear_elbow_down
+    del eased_rear_elbow_down, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t329, t96)
+    above_beta_rear_elbow_down = np.maximum(t330, t96)
+    t331 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t349 = 1.0 / total_beta_rear_elbow_down
-    del total_beta_rear_elbow_down
-    t350 = t348 * t349
-    del t348
-    t351 = t330 - v_2_beta_rear_elbow_down * t350
-    del t330, v_2_beta_rear_elbow_down
-    t352 = L1 + t351
-    t353 = L1 - t351
-    del t351
-    t354 = t346 & (t88 <= t347) & (t88 <= t352) & (t88 <= t353)
-    del t346, t347, t88
-    unreachable_4 = np.logical_not(t354)
-    del t354
-    t355 = _runtime.poison(invalid | unreachable_4)
-    t356 = _runtime.select(folded_rear_elbow_up, 0.0, np.arctan2(up_rear_elbow_down, -t294))
-    del t294, up_rear_elbow_down
-    t357 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t332 = v_2_beta_rear_elbow_down * (t331 / total_beta_rear_elbow_down)
+    del total_beta_rear_elbow_down, v_2_beta_rear_elbow_down
+    along_u_rear_elbow_down = t314 + t332
+    del t314, t332
+    t333 = L1 - along_u_rear_elbow_down
+    t334 = t324 & (t84 <= t329) & (t84 <= t330) & (t84 <= t333)
+    del t324, t329, t330
+    t335 = L1 + along_u_rear_elbow_down
+    del along_u_rear_elbow_down
+    unreachable_4 = np.logical_not(t334 & (t84 <= t335))
+    del t334, t84
+    t336 = _runtime.poison(invalid | unreachable_4)
+    t337 = _runtime.select(folded, 0.0, np.arctan2(-t130, -out_front_elbow_down))
+    del out_front_elbow_down, t130
+    t338 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t358 = np.arctan2(t357, 1.0)
-    del t357
-    t359 = t356 + t358
-    del t356
-    below_alpha_rear_elbow_down = np.maximum(t352, t110)
-    del t352
-    above_alpha_rear_elbow_down = np.maximum(t353, t110)
-    del t110, t353
-    t360 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t361 = 1.0 / total_alpha_rear_elbow_down
-    del total_alpha_rear_elbow_down
-    t362 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t339 = np.arctan2(t338, 1.0)
+    del t338
+    t340 = t337 + t339
+    del t337
+    below_alpha_rear_elbow_down = np.maximum(t333, t96)
+    del t333
+    above_alpha_rear_elbow_down = np.maximum(t335, t96)
+    del t335, t96
+    t341 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t342 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t363 = np.arctan2(t360 * t361, t361 * t362)
-    del t360, t361, t362
-    t364 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t343 = np.arctan2(t341, 2.0 * np.sqrt(t342))
+    del t341, t342
+    t344 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t365 = t126 - t289 - (t358 - np.arctan2(t364, 1.0))
-    del t126, t289, t358, t364
-    t366 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t345 = t123 - (t339 - np.arctan2(t344, 1.0))
+    del t123, t339, t344
+    t346 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t367 = t363 - np.arctan2(t350, t349 * t366)
-    del t349, t350, t366
-    t368 = nowhere | folded | short
-    del folded
-    t369 = _runtime.status(invalid, unreachable, t368 | parallel)
+    t347 = t343 - np.arctan2(t331, 2.0 * np.sqrt(t346))
+    del t331, t346
+    t348 = nowhere | folded | short
+    del folded, nowhere, short
+    t349 = _runtime.status(invalid, unreachable, t348 | parallel)
     del parallel, unreachable
-    t370 = _runtime.status(invalid, unreachable_2, t368 | parallel_front_elbow_down)
-    del parallel_front_elbow_down, t368, unreachable_2
-    t371 = nowhere | folded_rear_elbow_up | short
-    del folded_rear_elbow_up, nowhere, short
-    t372 = _runtime.status(invalid, unreachable_3, t371 | parallel_rear_elbow_up)
+    t350 = _runtime.status(invalid, unreachable_2, t348 | parallel_front_elbow_down)
+    del parallel_front_elbow_down, unreachable_2
+    t351 = _runtime.status(invalid, unreachable_3, t348 | parallel_rear_elbow_up)
     del parallel_rear_elbow_up, unreachable_3
-    t373 = _runtime.status(invalid, unreachable_4, t371 | parallel_rear_elbow_down)
-    del invalid, parallel_rear_elbow_down, t371, unreachable_4
+    t352 = _runtime.status(invalid, unreachable_4, t348 | parallel_rear_elbow_down)
+    del invalid, parallel_rear_elbow_down, t348, unreachable_4
     return (
-        t16 + t116,
-        _runtime.wrap(t119 - t122) + t116,
-        _runtime.wrap(t124 - t128) + t116,
-        _runtime.wrap(t119 + t122) + t116,
-        _runtime.wrap(-(t128 + t124)) + t116,
-        t129 + t116,
-        t16 + t193,
-        _runtime.wrap(t197 - t201) + t193,
-        _runtime.wrap(t203 + t205) + t193,
-        _runtime.wrap(t197 + t201) + t193,
-        _runtime.wrap(t203 - t205) + t193,
-        t129 + t193,
-        t206 + t279,
-        _runtime.wrap(t283 - t287) + t279,
-        _runtime.wrap(t291 + t293) + t279,
-        _runtime.wrap(t283 + t287) + t279,
-        _runtime.wrap(t291 - t293) + t279,
-        t129 + t279,
-        t206 + t355,
-        _runtime.wrap(t359 - t363) + t355,
-        _runtime.wrap(t365 + t367) + t355,
-        _runtime.wrap(t359 + t363) + t355,
-        _runtime.wrap(t365 - t367) + t355,
-        t129 + t355,
-        t369,
-        t370,
-        t372,
-        t373,
+        t14 + t116,
+        _runtime.wrap(t119 - t120) + t116,
+        _runtime.wrap(t125 + t127) + t116,
+        _runtime.wrap(t119 + t120) + t116,
+        _runtime.wrap(t125 - t127) + t116,
+        t128 + t116,
+        t14 + t200,
+        _runtime.wrap(t204 - t207) + t200,
+        _runtime.wrap(t210 + t212) + t200,
+        _runtime.wrap(t204 + t207) + t200,
+        _runtime.wrap(t210 - t212) + t200,
+        t128 + t200,
+        t213 + t272,
+        _runtime.wrap(t276 - t279) + t272,
+        _runtime.wrap(t281 + t283) + t272,
+        _runtime.wrap(t276 + t279) + t272,
+        _runtime.wrap(t281 - t283) + t272,
+        t128 + t272,
+        t213 + t336,
+        _runtime.wrap(t340 - t343) + t336,
+        _runtime.wrap(t345 + t347) + t336,
+        _runtime.wrap(t340 + t343) + t336,
+        _runtime.wrap(t345 - t347) + t336,
+        t128 + t336,
+        t349,
+        t350,
+        t351,
+        t352,
     )
 
 
@@ -1919,9 +1841,9 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     h = np.sqrt(x * x + y * y)
     t1 = lp * s_pitch
     del s_pitch
-    t2 = d - c_psi * (gs - al)
-    t3 = (gs + al) * c_psi - d
-    t4 = np.sqrt(np.maximum(t2, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
+    t2 = (gs + al) * c_psi - d
+    t3 = d - c_psi * (gs - al)
+    t4 = np.sqrt(np.maximum(t2, 0.0) * np.maximum(t3, 0.0))
     t5 = 1.0 / c_psi
     t6 = loff + lp * c_pitch + t4 * t5
     del c_pitch, t4
@@ -1929,560 +1851,452 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t8 = s_phi * t1 - c_phi * t7
     t9 = h + t8
     below = np.maximum(t9, 0.0)
-    t10 = np.sqrt(below)
-    t11 = h - t8
+    t10 = h - t8
     del t8
-    above = np.maximum(t11, 0.0)
-    t12 = np.sqrt(above)
-    t13 = 2.0 * np.arctan2(t10, t12)
-    t14 = np.arctan2(x, y)
-    t15 = _runtime.wrap(t13 - t14)
-    t16 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t16
-    t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t17
-    t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t20 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t21 = t18 & (0.0 <= loff) & (0.0 <= lp) & t19 & (np.abs(t20) <= _runtime.ROTATION)
-    del t18, t19, t20
-    invalid = np.logical_not(t21)
-    del t21
-    t22 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t23 = (-_runtime.FEASIBILITY <= c_phi) & (t22 <= t3)
-    del t3
-    t24 = L1 + L2
-    t25 = -(_runtime.FEASIBILITY * t24)
-    t26 = t23 & (t22 <= t2) & (t25 <= t9) & (t25 <= t11)
-    del t11, t2, t22, t23, t25, t9
+    above = np.maximum(t10, 0.0)
+    onward = np.sqrt(below * above)
+    t11 = np.arctan2(2.0 * onward, above - below)
+    del above, below
+    t12 = np.arctan2(x, y)
+    t13 = _runtime.wrap(t11 - t12)
+    t14 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t15 = t14 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t14
+    t16 = t15 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t15
+    t17 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t18 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t19 = t16 & (0.0 <= loff) & (0.0 <= lp) & t17 & (np.abs(t18) <= _runtime.ROTATION)
+    del t16, t17, t18
+    invalid = np.logical_not(t19)
+    del t19
+    t20 = -(_runtime.FEASIBILITY * (d * 0.5))
+    t21 = (-_runtime.FEASIBILITY <= c_phi) & (t20 <= t2)
+    del t2
+    t22 = L1 + L2
+    t23 = -(_runtime.FEASIBILITY * t22)
+    t24 = t21 & (t20 <= t3) & (t23 <= t9) & (t23 <= t10)
+    del t10, t20, t21, t23, t3, t9
     L_2W = L2 + c_psi * t6
     del c_psi, t6
     a_3W = a3 + c_phi * t1 + s_phi * t7
     del t1, t7
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t27 = L1 + fore
-    t28 = 2.0 * fore
-    t29 = _runtime.FEASIBILITY * (t27 * (L1 * 2.0 + t28))
-    t30 = t27 * t27
-    t31 = z - d1
-    t32 = t31 * t31
-    t33 = 1.0 / h
-    t34 = 1.0 / (below + above)
-    t35 = (below - above) * t34
-    del above, below
-    t36 = y * t35
-    s_turn = t34 * (2.0 * t10 * t12)
-    del t10, t12, t34
-    t37 = x * s_turn
-    t38 = x * t35
-    del t35
-    t39 = y * s_turn
-    del s_turn
-    t40 = x * (t33 * (t36 - t37)) - y * (t33 * (t38 + t39))
-    square = t32 + t40 * t40
-    t41 = t30 - square
-    t42 = L1 / 8796093022208.0 + fore / 8796093022208.0
-    t43 = L1 - fore
-    t44 = _runtime.FEASIBILITY * (t27 * (t42 + 2.0 * np.abs(t43)))
-    del t42
-    t45 = t43 * t43
-    t46 = square - t45
+    t25 = L1 + fore
+    t26 = 2.0 * fore
+    t27 = _runtime.FEASIBILITY * (t25 * (L1 * 2.0 + t26))
+    t28 = t25 * t25
+    t29 = z - d1
+    square = t29 * t29 + onward * onward
+    t30 = t28 - square
+    t31 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t32 = L1 - fore
+    t33 = _runtime.FEASIBILITY * (t25 * (t31 + 2.0 * np.abs(t32)))
+    del t31
+    t34 = square - t32 * t32
     del square
-    t47 = t26 & (-t29 <= t41) & (-t44 <= t46)
+    t35 = t24 & (-t27 <= t30) & (-t33 <= t34)
+    del t24, t27, t33
     play_alpha = d * (L1 + np.sqrt(L2 * L2 + a3 * a3))
-    t48 = -(_runtime.FEASIBILITY * play_alpha)
-    t49 = 1.0 / fore
-    c_lag = a_3W * t49
-    del a_3W
-    M = np.maximum(t46, 0.0)
-    del t46
-    N = np.maximum(t41, 0.0)
-    del t41
-    t50 = 1.0 / (M + N)
-    c_bend = t50 * (M - N)
-    t51 = c_lag * c_bend
-    s_lag = L_2W * t49
-    del L_2W, t49
-    rN = np.sqrt(N)
+    t36 = -(_runtime.FEASIBILITY * play_alpha)
+    M = np.maximum(t34, 0.0)
+    del t34
+    N = np.maximum(t30, 0.0)
+    del t30
+    t37 = 1.0 / (M + N)
+    t38 = M - N
+    t39 = t37 * t38
+    t40 = 1.0 / fore
+    c_lag = a_3W * t40
+    t41 = t39 * c_lag
+    t42 = 2.0 * np.sqrt(M * N)
     del N
-    rM = np.sqrt(M)
-    s_bend_front_elbow_down = t50 * (2.0 * rN * rM)
-    t52 = s_lag * s_bend_front_elbow_down
-    c_relative = t51 + t52
-    t53 = s_lag * c_bend
-    del c_bend
-    t54 = c_lag * s_bend_front_elbow_down
-    s_relative = t53 - t54
-    v_1 = L2 * c_relative - a3 * s_relative
-    whole_alpha = L1 * v_1
-    t55 = np.abs(whole_alpha)
-    v_2 = L2 * s_relative + a3 * c_relative
-    del c_relative, s_relative
+    s_bend_front_elbow_down = t37 * t42
+    s_lag = L_2W * t40
+    del t40
+    t43 = s_bend_front_elbow_down * s_lag
+    t44 = t41 + t43
+    t45 = t39 * s_lag
+    del s_lag, t39
+    t46 = s_bend_front_elbow_down * c_lag
+    del c_lag
+    t47 = t45 - t46
+    t48 = L2 * t44 - a3 * t47
+    whole_alpha = L1 * t48
+    t49 = np.abs(whole_alpha)
     ahead = d * s_psi * t5
     del s_psi, t5
-    t56 = t31 * fore
-    t57 = t56 * s_bend_front_elbow_down
-    ahead_1 = t43 + t28 * M * t50
-    del M, t50
-    t58 = t40 * ahead_1
-    t59 = t57 + t58
-    t60 = fore * t40 * s_bend_front_elbow_down
+    t50 = fore * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    t61 = t31 * ahead_1
+    t51 = onward * t50
+    ahead_1 = t32 + t26 * M * t37
+    del M, t26, t32, t37
+    t52 = t29 * ahead_1
+    up = t51 + t52
+    t53 = t29 * t50
+    del t50
+    t54 = onward * ahead_1
     del ahead_1
-    t62 = t60 - t61
-    t63 = 1.0 / np.sqrt(t59 * t59 + t62 * t62)
-    t64 = t59 * t63
+    out_rear_elbow_up = t53 - t54
+    t55 = out_rear_elbow_up * out_rear_elbow_up + up * up
+    t56 = 1.0 / np.sqrt(t55)
+    del t55
+    stheta2A = up * t56
+    t57 = ahead * stheta2A
     higher = d * s_phi / c_phi
     del c_phi, s_phi
-    t65 = t62 * t63
-    del t63
-    t66 = ahead * t64 + higher * t65
-    t67 = ahead * t65 - higher * t64
-    del t64, t65
-    room_alpha = t55 - np.abs(-(v_2 * t66 + v_1 * t67))
-    room_beta = t55 - np.abs(-(L1 * t66))
-    del t55
-    t68 = t47 & (t48 <= room_alpha) & (t48 <= room_beta)
-    t69 = np.abs(higher)
-    t70 = np.abs(ahead)
-    play_along = d + t69 + t70
-    t71 = -(_runtime.FEASIBILITY * play_along)
+    t58 = out_rear_elbow_up * t56
+    del t56
+    t59 = higher * t58
+    t60 = t57 + t59
+    v_2 = L2 * t47 + a3 * t44
+    del t44, t47
+    t61 = ahead * t58
+    del t58
+    t62 = higher * stheta2A
+    del stheta2A
+    t63 = t61 - t62
+    room_alpha = t49 - np.abs(t48 * t60 - v_2 * t63)
+    room_beta = t49 - np.abs(-(L1 * t63))
+    t64 = t35 & (t36 <= room_alpha) & (t36 <= room_beta)
+    t65 = np.abs(higher)
+    t66 = np.abs(ahead)
+    play_along = d + t65 + t66
+    t67 = -(_runtime.FEASIBILITY * play_along)
     sigma_uv = _runtime.sign(-whole_alpha)
     del whole_alpha
-    t72 = v_1 * sigma_uv
-    del v_1
-    eased = sigma_uv * t66
-    del sigma_uv, t66
-    left_along = L1 - np.abs(-(t67 + v_2 * eased / t72))
-    t73 = t68 & (t71 <= -(t72 + np.abs(-eased))) & (t71 <= left_along)
-    del t68
-    t74 = -(t72 + eased)
-    t75 = eased - t72
-    del eased
-    t76 = _runtime.VANISHING * (d * 16.0 + t69 * 16.0 + 16.0 * t70)
-    del t69, t70
-    t77 = _runtime.VANISHING * t76
+    t68 = t48 * sigma_uv
+    p_across_u = sigma_uv * t63
+    del t63
+    t69 = -(t68 + p_across_u)
+    t70 = t67 <= t69
+    t71 = p_across_u - t68
+    del p_across_u
+    t72 = t67 <= t71
+    t73 = _runtime.VANISHING * (d * 16.0 + t65 * 16.0 + 16.0 * t66)
+    del t65, t66
+    t74 = _runtime.VANISHING * t73
+    del t73
+    below_beta_0 = np.maximum(t69, t74)
+    del t69
+    above_beta_0 = np.maximum(t71, t74)
+    del t71
+    t75 = below_beta_0 - above_beta_0
+    t76 = t60 - v_2 * (t75 / (below_beta_0 + above_beta_0))
+    del t60
+    left_along = L1 - np.abs(t76)
+    t77 = t64 & t70 & t72 & t70 & t72 & (t67 <= left_along)
+    del t64
+    t78 = L1 + t76
+    t79 = L1 - t76
     del t76
-    below_beta = np.maximum(t74, t77)
-    above_beta = np.maximum(t75, t77)
-    t78 = 1.0 / (below_beta + above_beta)
-    t79 = (below_beta - above_beta) * t78
-    along_u = t67 + v_2 * t79
-    del t67
-    t80 = L1 - along_u
-    t81 = t73 & (t71 <= t74) & (t71 <= t75) & (t71 <= t80)
-    del t73, t74, t75
-    t82 = L1 + along_u
-    del along_u
-    unreachable = np.logical_not(t81 & (t71 <= t82))
-    del t81
-    t83 = _runtime.poison(invalid | unreachable)
-    t84 = np.arctan2(0.0, 1.0)
-    t85 = t84 + np.arctan2(-t62, -t59)
-    del t59, t62
-    below_alpha = np.maximum(t80, t77)
+    t80 = t77 & t70 & t72 & (t67 <= t78) & (t67 <= t79)
+    del t70, t72, t77
+    unreachable = np.logical_not(t80)
     del t80
-    above_alpha = np.maximum(t82, t77)
-    del t82
-    t86 = 1.0 / (below_alpha + above_alpha)
-    t87 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t88 = np.arctan2((below_alpha - above_alpha) * t86, t86 * t87)
-    del above_alpha, below_alpha, t86, t87
-    t89 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
-    del above_beta, below_beta
-    t90 = t88 - np.arctan2(t79, t78 * t89)
-    del t78, t79, t89
-    t91 = 2.0 * np.arctan2(rN, rM)
-    del rM, rN
-    t92 = np.arctan2(s_lag, c_lag)
-    t93 = t91 - t92
-    t94 = _runtime.wrap(principal_pitch)
+    t81 = _runtime.poison(invalid | unreachable)
+    t82 = np.arctan2(0.0, 1.0)
+    t83 = t82 + np.arctan2(up, -out_rear_elbow_up)
+    below_alpha = np.maximum(t78, t74)
+    del t78
+    above_alpha = np.maximum(t79, t74)
+    del t79
+    t84 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
+    del above_alpha, below_alpha
+    t85 = np.arctan2(t75, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
+    del above_beta_0, below_beta_0, t75
+    t86 = t84 - t85
+    del t85
+    t87 = np.arctan2(t42, t38)
+    del t38, t42
+    t88 = np.arctan2(L_2W, a_3W)
+    del L_2W, a_3W
+    t89 = t87 - t88
+    t90 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    c_relative_front_elbow_down = t51 - t52
-    del t51, t52
-    s_relative_front_elbow_down = t53 + t54
+    t91 = t41 - t43
+    del t41, t43
+    t92 = t45 + t46
+    del t45, t46
+    t93 = L2 * t91 - a3 * t92
+    whole_alpha_front_elbow_down = L1 * t93
+    t94 = np.abs(whole_alpha_front_elbow_down)
+    v_2_front_elbow_down = L2 * t92 + a3 * t91
+    del t91, t92
+    out_front_elbow_down = t53 + t54
     del t53, t54
-    v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t95 = np.abs(whole_alpha_front_elbow_down)
-    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    del c_relative_front_elbow_down, s_relative_front_elbow_down
-    out_front_elbow_down = t57 - t58
-    del t57, t58
-    up_front_elbow_down = t60 + t61
-    del t60, t61
-    t96 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t95 = t51 - t52
+    del t51, t52
+    t96 = out_front_elbow_down * out_front_elbow_down + t95 * t95
     t97 = 1.0 / np.sqrt(t96)
     del t96
-    t98 = out_front_elbow_down * t97
-    stheta2A_front_elbow_down = up_front_elbow_down * t97
+    ctheta2A_front_elbow_down = out_front_elbow_down * t97
+    t98 = ahead * ctheta2A_front_elbow_down
+    t99 = t95 * t97
     del t97
-    t99 = ahead * t98 + higher * stheta2A_front_elbow_down
-    t100 = ahead * stheta2A_front_elbow_down - higher * t98
-    del stheta2A_front_elbow_down, t98
-    t101 = v_2_front_elbow_down * t99 + v_1_front_elbow_down * t100
-    room_alpha_front_elbow_down = t95 - np.abs(t101)
-    del t101
-    room_beta_front_elbow_down = t95 - np.abs(L1 * t99)
-    del t95
-    t102 = t47 & (t48 <= room_alpha_front_elbow_down) & (t48 <= room_beta_front_elbow_down)
-    del t47
+    t100 = higher * t99
+    p_1_front_elbow_down = t98 - t100
+    t101 = ahead * t99
+    del ahead, t99
+    t102 = higher * ctheta2A_front_elbow_down
+    del ctheta2A_front_elbow_down, higher
+    t103 = t101 + t102
+    t104 = v_2_front_elbow_down * p_1_front_elbow_down - t93 * t103
+    room_alpha_front_elbow_down = t94 - np.abs(t104)
+    del t104
+    room_beta_front_elbow_down = t94 - np.abs(L1 * p_1_front_elbow_down)
+    t105 = t35 & (t36 <= room_alpha_front_elbow_down) & (t36 <= room_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    t103 = v_1_front_elbow_down * sigma_uv_front_elbow_down
-    del v_1_front_elbow_down
-    t104 = sigma_uv_front_elbow_down * t99
-    del sigma_uv_front_elbow_down, t99
-    t105 = np.abs(t100 + v_2_front_elbow_down * t104 / t103)
-    left_along_front_elbow_down = L1 - t105
+    t106 = sigma_uv_front_elbow_down * p_1_front_elbow_down
+    del p_1_front_elbow_down
+    t107 = t93 * sigma_uv_front_elbow_down
+    t108 = t106 - t107
+    t109 = t67 <= t108
+    t110 = -(t107 + t106)
+    del t106
+    t111 = t67 <= t110
+    below_beta_0_front_elbow_down = np.maximum(t108, t74)
+    del t108
+    above_beta_0_front_elbow_down = np.maximum(t110, t74)
+    del t110
+    t112 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
+    t113 = v_2_front_elbow_down * (t112 / total_beta_0_front_elbow_down)
+    del total_beta_0_front_elbow_down
+    along_u_front_elbow_down = t103 + t113
+    del t103, t113
+    left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
+    t114 = t105 & t109 & t111 & t109 & t111 & (t67 <= left_along_front_elbow_down)
     del t105
-    t106 = t102 & (t71 <= -(t103 + np.abs(t104))) & (t71 <= left_along_front_elbow_down)
-    del t102
-    t107 = t104 - t103
-    t108 = -(t103 + t104)
-    del t104
-    below_beta_front_elbow_down = np.maximum(t107, t77)
-    above_beta_front_elbow_down = np.maximum(t108, t77)
-    t109 = below_beta_front_elbow_down - above_beta_front_elbow_down
-    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t110 = 1.0 / total_beta_front_elbow_down
-    del total_beta_front_elbow_down
-    t111 = t109 * t110
-    del t109
-    t112 = t100 - v_2_front_elbow_down * t111
-    del t100
-    t113 = L1 + t112
-    t114 = t106 & (t71 <= t107) & (t71 <= t108) & (t71 <= t113)
-    del t106, t107, t108
-    t115 = L1 - t112
-    del t112
-    unreachable_2 = np.logical_not(t114 & (t71 <= t115))
-    del t114
-    t116 = _runtime.poison(invalid | unreachable_2)
-    t117 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    del out_front_elbow_down, up_front_elbow_down
-    t118 = t84 + t117
+    t115 = L1 - along_u_front_elbow_down
+    t116 = L1 + along_u_front_elbow_down
+    del along_u_front_elbow_down
+    t117 = t114 & t109 & t111 & (t67 <= t115) & (t67 <= t116)
+    del t109, t111, t114
+    unreachable_2 = np.logical_not(t117)
     del t117
-    below_alpha_front_elbow_down = np.maximum(t113, t77)
-    del t113
-    above_alpha_front_elbow_down = np.maximum(t115, t77)
+    t118 = _runtime.poison(invalid | unreachable_2)
+    t119 = t82 + np.arctan2(-t95, out_front_elbow_down)
+    below_alpha_front_elbow_down = np.maximum(t115, t74)
     del t115
-    t119 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t120 = 1.0 / total_alpha_front_elbow_down
-    del total_alpha_front_elbow_down
-    t121 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    above_alpha_front_elbow_down = np.maximum(t116, t74)
+    del t116
+    t120 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t121 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t122 = np.arctan2(t119 * t120, t120 * t121)
-    del t119, t120, t121
-    t123 = t91 + t92
-    del t91
-    t124 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
-    del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t125 = t122 - np.arctan2(t111, t110 * t124)
-    del t110, t111, t124
-    t126 = _runtime.wrap(-(t14 + t13))
-    del t13, t14
-    t127 = x * (t33 * (t36 + t37)) - y * (t33 * (t38 - t39))
-    del t33, t36, t37, t38, t39
-    square_rear_elbow_up = t32 + t127 * t127
-    del t32
-    t128 = t30 - square_rear_elbow_up
-    t129 = square_rear_elbow_up - t45
-    del square_rear_elbow_up, t45
-    t130 = t26 & (-t29 <= t128) & (-t44 <= t129)
-    del t26, t29, t44
-    M_rear_elbow_up = np.maximum(t129, 0.0)
+    t122 = np.arctan2(t120, 2.0 * np.sqrt(t121))
+    del t120, t121
+    t123 = t87 + t88
+    del t87, t88
+    t124 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
+    del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
+    t125 = t122 - np.arctan2(t112, 2.0 * np.sqrt(t124))
+    del t112, t124
+    t126 = _runtime.wrap(-(t12 + t11))
+    del t11, t12
+    t127 = t61 + t62
+    del t61, t62
+    t128 = t57 - t59
+    del t57, t59
+    t129 = np.abs(v_2_front_elbow_down * t127 + t93 * t128)
+    del t93
+    room_alpha_rear_elbow_up = t94 - t129
     del t129
-    N_rear_elbow_up = np.maximum(t128, 0.0)
-    del t128
-    t131 = 1.0 / (M_rear_elbow_up + N_rear_elbow_up)
-    c_bend_rear_elbow_up = t131 * (M_rear_elbow_up - N_rear_elbow_up)
-    t132 = c_lag * c_bend_rear_elbow_up
-    rN_rear_elbow_up = np.sqrt(N_rear_elbow_up)
-    del N_rear_elbow_up
-    rM_rear_elbow_up = np.sqrt(M_rear_elbow_up)
-    s_bend_rear_elbow_up = t131 * (2.0 * rN_rear_elbow_up * rM_rear_elbow_up)
-    t133 = s_lag * s_bend_rear_elbow_up
-    c_relative_rear_elbow_up = t132 - t133
-    t134 = s_lag * c_bend_rear_elbow_up
-    del c_bend_rear_elbow_up, s_lag
-    t135 = c_lag * s_bend_rear_elbow_up
-    del c_lag
-    s_relative_rear_elbow_up = t134 + t135
-    v_1_rear_elbow_up = L2 * c_relative_rear_elbow_up - a3 * s_relative_rear_elbow_up
-    whole_alpha_rear_elbow_up = L1 * v_1_rear_elbow_up
-    t136 = np.abs(whole_alpha_rear_elbow_up)
-    v_2_rear_elbow_up = L2 * s_relative_rear_elbow_up + a3 * c_relative_rear_elbow_up
-    del c_relative_rear_elbow_up, s_relative_rear_elbow_up
-    t137 = t56 * s_bend_rear_elbow_up
-    del t56
-    ahead_1_rear_elbow_up = t43 + t28 * M_rear_elbow_up * t131
-    del M_rear_elbow_up, t131, t28, t43
-    t138 = t127 * ahead_1_rear_elbow_up
-    out_rear_elbow_up = t137 - t138
-    t139 = fore * t127 * s_bend_rear_elbow_up
-    del s_bend_rear_elbow_up
-    t140 = t31 * ahead_1_rear_elbow_up
-    del ahead_1_rear_elbow_up
-    up_rear_elbow_up = t139 + t140
-    t141 = out_rear_elbow_up * out_rear_elbow_up + up_rear_elbow_up * up_rear_elbow_up
-    t142 = 1.0 / np.sqrt(t141)
-    del t141
-    t143 = out_rear_elbow_up * t142
-    stheta2A_rear_elbow_up = up_rear_elbow_up * t142
+    room_beta_rear_elbow_up = t94 - np.abs(L1 * t127)
+    del t94
+    t130 = t35 & (t36 <= room_alpha_rear_elbow_up) & (t36 <= room_beta_rear_elbow_up)
+    t131 = sigma_uv_front_elbow_down * t127
+    del sigma_uv_front_elbow_down, t127
+    t132 = t131 - t107
+    t133 = t67 <= t132
+    t134 = -(t107 + t131)
+    del t131
+    t135 = t67 <= t134
+    below_beta_0_rear_elbow_up = np.maximum(t132, t74)
+    del t132
+    above_beta_0_rear_elbow_up = np.maximum(t134, t74)
+    del t134
+    t136 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
+    t137 = v_2_front_elbow_down * (t136 / total_beta_0_rear_elbow_up)
+    del total_beta_0_rear_elbow_up
+    t138 = t128 - t137
+    del t128, t137
+    left_along_rear_elbow_up = L1 - np.abs(t138)
+    t139 = t130 & t133 & t135 & t133 & t135 & (t67 <= left_along_rear_elbow_up)
+    del t130
+    t140 = L1 + t138
+    t141 = L1 - t138
+    del t138
+    t142 = t139 & t133 & t135 & (t67 <= t140) & (t67 <= t141)
+    del t133, t135, t139
+    unreachable_3 = np.logical_not(t142)
     del t142
-    t144 = ahead * t143 + higher * stheta2A_rear_elbow_up
-    t145 = ahead * stheta2A_rear_elbow_up - higher * t143
-    del stheta2A_rear_elbow_up, t143
-    t146 = v_2_rear_elbow_up * t144 + v_1_rear_elbow_up * t145
-    room_alpha_rear_elbow_up = t136 - np.abs(t146)
-    del t146
-    room_beta_rear_elbow_up = t136 - np.abs(L1 * t144)
-    del t136
-    t147 = t130 & (t48 <= room_alpha_rear_elbow_up) & (t48 <= room_beta_rear_elbow_up)
-    sigma_uv_rear_elbow_up = _runtime.sign(-whole_alpha_rear_elbow_up)
-    del whole_alpha_rear_elbow_up
-    t148 = v_1_rear_elbow_up * sigma_uv_rear_elbow_up
-    del v_1_rear_elbow_up
-    t149 = sigma_uv_rear_elbow_up * t144
-    del sigma_uv_rear_elbow_up, t144
-    t150 = np.abs(t145 + v_2_rear_elbow_up * t149 / t148)
-    left_along_rear_elbow_up = L1 - t150
-    del t150
-    t151 = t147 & (t71 <= -(t148 + np.abs(t149))) & (t71 <= left_along_rear_elbow_up)
-    del t147
-    t152 = t149 - t148
-    t153 = -(t148 + t149)
-    del t149
-    below_beta_rear_elbow_up = np.maximum(t152, t77)
-    above_beta_rear_elbow_up = np.maximum(t153, t77)
-    t154 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
-    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t155 = 1.0 / total_beta_rear_elbow_up
-    del total_beta_rear_elbow_up
-    t156 = t154 * t155
-    del t154
-    t157 = t145 - v_2_rear_elbow_up * t156
-    del t145
-    t158 = L1 + t157
-    t159 = t151 & (t71 <= t152) & (t71 <= t153) & (t71 <= t158)
-    del t151, t152, t153
-    t160 = L1 - t157
-    del t157
-    unreachable_3 = np.logical_not(t159 & (t71 <= t160))
-    del t159
-    t161 = _runtime.poison(invalid | unreachable_3)
-    t162 = np.arctan2(up_rear_elbow_up, out_rear_elbow_up)
-    del out_rear_elbow_up, up_rear_elbow_up
-    t163 = t84 + t162
-    del t162
-    below_alpha_rear_elbow_up = np.maximum(t158, t77)
-    del t158
-    above_alpha_rear_elbow_up = np.maximum(t160, t77)
-    del t160
-    t164 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t165 = 1.0 / total_alpha_rear_elbow_up
-    del total_alpha_rear_elbow_up
-    t166 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t143 = _runtime.poison(invalid | unreachable_3)
+    t144 = t82 + np.arctan2(up, out_rear_elbow_up)
+    del out_rear_elbow_up, up
+    below_alpha_rear_elbow_up = np.maximum(t140, t74)
+    del t140
+    above_alpha_rear_elbow_up = np.maximum(t141, t74)
+    del t141
+    t145 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t146 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t167 = np.arctan2(t164 * t165, t165 * t166)
-    del t164, t165, t166
-    t168 = np.arctan2(rN_rear_elbow_up, rM_rear_elbow_up)
-    del rM_rear_elbow_up, rN_rear_elbow_up
-    t169 = 2.0 * t168
-    del t168
-    t170 = t92 + t169
-    t171 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t172 = t167 - np.arctan2(t156, t155 * t171)
-    del t155, t156, t171
-    c_relative_rear_elbow_down = t132 + t133
-    del t132, t133
-    s_relative_rear_elbow_down = t134 - t135
-    del t134, t135
-    v_1_rear_elbow_down = L2 * c_relative_rear_elbow_down - a3 * s_relative_rear_elbow_down
-    whole_alpha_rear_elbow_down = L1 * v_1_rear_elbow_down
-    t173 = np.abs(whole_alpha_rear_elbow_down)
-    v_2_rear_elbow_down = L2 * s_relative_rear_elbow_down + a3 * c_relative_rear_elbow_down
-    del c_relative_rear_elbow_down, s_relative_rear_elbow_down
-    t174 = t137 + t138
-    del t137, t138
-    t175 = t139 - t140
-    del t139, t140
-    t176 = 1.0 / np.sqrt(t174 * t174 + t175 * t175)
-    t177 = t174 * t176
-    t178 = t175 * t176
-    del t176
-    t179 = ahead * t177 + higher * t178
-    t180 = ahead * t178 - higher * t177
-    del ahead, higher, t177, t178
-    t181 = v_2_rear_elbow_down * t179 + v_1_rear_elbow_down * t180
-    room_alpha_rear_elbow_down = t173 - np.abs(-t181)
-    del t181
-    room_beta_rear_elbow_down = t173 - np.abs(-(L1 * t179))
-    del t173
-    t182 = t130 & (t48 <= room_alpha_rear_elbow_down) & (t48 <= room_beta_rear_elbow_down)
-    del t130, t48
-    sigma_uv_rear_elbow_down = _runtime.sign(-whole_alpha_rear_elbow_down)
-    del whole_alpha_rear_elbow_down
-    t183 = v_1_rear_elbow_down * sigma_uv_rear_elbow_down
-    del v_1_rear_elbow_down
-    eased_rear_elbow_down = sigma_uv_rear_elbow_down * t179
-    del sigma_uv_rear_elbow_down, t179
-    t184 = t71 <= -(t183 + np.abs(-eased_rear_elbow_down))
-    t185 = v_2_rear_elbow_down * eased_rear_elbow_down / t183
-    left_along_rear_elbow_down = L1 - np.abs(-(t180 + t185))
-    del t185
-    t186 = t182 & t184 & (t71 <= left_along_rear_elbow_down)
-    del t182, t184
-    t187 = -(t183 + eased_rear_elbow_down)
-    t188 = eased_rear_elbow_down - t183
-    del eased_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t187, t77)
-    above_beta_rear_elbow_down = np.maximum(t188, t77)
-    t189 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
-    total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t190 = 1.0 / total_beta_rear_elbow_down
-    del total_beta_rear_elbow_down
-    t191 = t189 * t190
-    del t189
-    along_u_rear_elbow_down = t180 + v_2_rear_elbow_down * t191
-    del t180
-    t192 = L1 - along_u_rear_elbow_down
-    t193 = t186 & (t71 <= t187) & (t71 <= t188) & (t71 <= t192)
-    del t186, t187, t188
-    t194 = L1 + along_u_rear_elbow_down
+    t147 = np.arctan2(t145, 2.0 * np.sqrt(t146))
+    del t145, t146
+    t148 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
+    del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
+    t149 = t147 - np.arctan2(t136, 2.0 * np.sqrt(t148))
+    del t136, t148
+    t150 = t98 + t100
+    del t100, t98
+    t151 = t101 - t102
+    del t101, t102
+    room_alpha_rear_elbow_down = t49 - np.abs(-(v_2 * t150 + t48 * t151))
+    del t48
+    room_beta_rear_elbow_down = t49 - np.abs(-(L1 * t150))
+    del t49
+    t152 = t35 & (t36 <= room_alpha_rear_elbow_down) & (t36 <= room_beta_rear_elbow_down)
+    del t35, t36
+    p_across_u_rear_elbow_down = sigma_uv * t150
+    del sigma_uv, t150
+    t153 = -(t68 + p_across_u_rear_elbow_down)
+    t154 = t67 <= t153
+    t155 = p_across_u_rear_elbow_down - t68
+    del p_across_u_rear_elbow_down
+    t156 = t67 <= t155
+    below_beta_0_rear_elbow_down = np.maximum(t153, t74)
+    del t153
+    above_beta_0_rear_elbow_down = np.maximum(t155, t74)
+    del t155
+    t157 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
+    along_u_rear_elbow_down = t151 + v_2 * (t157 / total_beta_0_rear_elbow_down)
+    del t151, total_beta_0_rear_elbow_down
+    left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
+    t158 = t152 & t154 & t156 & t154 & t156 & (t67 <= left_along_rear_elbow_down)
+    del t152
+    t159 = L1 - along_u_rear_elbow_down
+    t160 = L1 + along_u_rear_elbow_down
     del along_u_rear_elbow_down
-    unreachable_4 = np.logical_not(t193 & (t71 <= t194))
-    del t193, t71
-    t195 = _runtime.poison(invalid | unreachable_4)
-    t196 = t84 + np.arctan2(-t175, -t174)
-    del t174, t175, t84
-    below_alpha_rear_elbow_down = np.maximum(t192, t77)
-    del t192
-    above_alpha_rear_elbow_down = np.maximum(t194, t77)
-    del t194, t77
-    t197 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t198 = 1.0 / total_alpha_rear_elbow_down
-    del total_alpha_rear_elbow_down
-    t199 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t161 = t158 & t154 & t156 & (t67 <= t159) & (t67 <= t160)
+    del t154, t156, t158, t67
+    unreachable_4 = np.logical_not(t161)
+    del t161
+    t162 = _runtime.poison(invalid | unreachable_4)
+    t163 = t82 + np.arctan2(-t95, -out_front_elbow_down)
+    del out_front_elbow_down, t82, t95
+    below_alpha_rear_elbow_down = np.maximum(t159, t74)
+    del t159
+    above_alpha_rear_elbow_down = np.maximum(t160, t74)
+    del t160, t74
+    t164 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t165 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t200 = np.arctan2(t197 * t198, t198 * t199)
-    del t197, t198, t199
-    t201 = t92 - t169
-    del t169, t92
-    t202 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t203 = t200 - np.arctan2(t191, t190 * t202)
-    del t190, t191, t202
-    t204 = _runtime.status(invalid, unreachable, np.False_)
+    t166 = np.arctan2(t164, 2.0 * np.sqrt(t165))
+    del t164, t165
+    t167 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
+    del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
+    t168 = t166 - np.arctan2(t157, 2.0 * np.sqrt(t167))
+    del t157, t167
+    t169 = _runtime.status(invalid, unreachable, np.False_)
     del unreachable
-    t205 = _runtime.status(invalid, unreachable_2, np.False_)
+    t170 = _runtime.status(invalid, unreachable_2, np.False_)
     del unreachable_2
-    t206 = _runtime.status(invalid, unreachable_3, np.False_)
+    t171 = _runtime.status(invalid, unreachable_3, np.False_)
     del unreachable_3
-    t207 = _runtime.status(invalid, unreachable_4, np.False_)
+    t172 = _runtime.status(invalid, unreachable_4, np.False_)
     del invalid, unreachable_4
-    t208 = (h <= t24 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t30)
-    del h, t24, t30
-    t209 = np.abs(t31)
-    del t31
-    t210 = _runtime.VANISHING * t27
-    del t27
-    t211 = t208 | (t209 + np.abs(-t40) <= t210) | (fore <= t210)
-    del fore, t208, t40
-    t212 = np.maximum(-(room_alpha / 1099511627776.0), room_alpha)
+    t173 = (h <= t22 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t28)
+    del h, t22, t28
+    t174 = _runtime.VANISHING * t25
+    del t25
+    t175 = t173 | (np.abs(t29) + np.abs(onward) <= t174)
+    del onward, t173, t29
+    t176 = np.maximum(-(room_alpha * 9.094947017729282e-13), room_alpha)
     del room_alpha
-    t213 = _runtime.VANISHING * play_alpha
+    t177 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t214 = np.maximum(-(room_beta / 1099511627776.0), room_beta)
+    t178 = np.maximum(-(room_beta * 9.094947017729282e-13), room_beta)
     del room_beta
-    parallel = -t72 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
-    del t72, v_2
-    t215 = t211 | (t212 <= t213) | (t214 <= t213) | parallel
-    del parallel, t211, t212, t214
-    t216 = np.maximum(-(left_along / 1099511627776.0), left_along)
+    t179 = t175 | (fore <= t174) | (t176 <= t177) | (t178 <= t177)
+    del fore, t174, t175, t176, t178
+    parallel = -t68 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
+    del t68, v_2
+    t180 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t217 = _runtime.VANISHING * play_along
+    t181 = _runtime.VANISHING * play_along
     del play_along
-    t218 = room_alpha_front_elbow_down / 1099511627776.0
-    t219 = np.maximum(-t218, room_alpha_front_elbow_down)
-    del room_alpha_front_elbow_down, t218
-    t220 = -(room_beta_front_elbow_down / 1099511627776.0)
-    spent_beta_front_elbow_down = np.maximum(t220, room_beta_front_elbow_down) <= t213
-    del room_beta_front_elbow_down, t220
-    t221 = t215 | (t216 <= t217) | (t219 <= t213) | spent_beta_front_elbow_down
-    del spent_beta_front_elbow_down, t215, t216, t219
-    t222 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t182 = room_alpha_front_elbow_down * 9.094947017729282e-13
+    t183 = np.maximum(-t182, room_alpha_front_elbow_down)
+    del room_alpha_front_elbow_down, t182
+    t184 = t179 | parallel | (t180 <= t181) | (t183 <= t177)
+    del parallel, t179, t180, t183
+    t185 = room_beta_front_elbow_down * 9.094947017729282e-13
+    t186 = np.maximum(-t185, room_beta_front_elbow_down)
+    del room_beta_front_elbow_down, t185
+    t187 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t223 = left_along_front_elbow_down / 1099511627776.0
-    t224 = np.maximum(-t223, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t223
-    t225 = t221 | (-t103 <= t222) | (t224 <= t217) | (t209 + np.abs(-t127) <= t210)
-    del t103, t127, t209, t210, t221, t222, t224
-    t226 = -(room_alpha_rear_elbow_up / 1099511627776.0)
-    spent_alpha_rear_elbow_up = np.maximum(t226, room_alpha_rear_elbow_up) <= t213
-    del room_alpha_rear_elbow_up, t226
-    t227 = np.maximum(-(room_beta_rear_elbow_up / 1099511627776.0), room_beta_rear_elbow_up)
-    del room_beta_rear_elbow_up
-    t228 = t225 | spent_alpha_rear_elbow_up | (t227 <= t213)
-    del spent_alpha_rear_elbow_up, t225, t227
-    t229 = _runtime.VANISHING * (64.0 * np.abs(v_2_rear_elbow_up))
-    del v_2_rear_elbow_up
-    t230 = -(left_along_rear_elbow_up / 1099511627776.0)
-    spent_along_rear_elbow_up = np.maximum(t230, left_along_rear_elbow_up) <= t217
-    del left_along_rear_elbow_up, t230
-    t231 = t228 | (-t148 <= t229) | spent_along_rear_elbow_up
-    del spent_along_rear_elbow_up, t148, t228, t229
-    t232 = -(room_alpha_rear_elbow_down / 1099511627776.0)
-    spent_alpha_rear_elbow_down = np.maximum(t232, room_alpha_rear_elbow_down) <= t213
-    del room_alpha_rear_elbow_down, t232
-    t233 = -(room_beta_rear_elbow_down / 1099511627776.0)
-    spent_beta_rear_elbow_down = np.maximum(t233, room_beta_rear_elbow_down) <= t213
-    del room_beta_rear_elbow_down, t213, t233
-    t234 = t231 | spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
-    del spent_alpha_rear_elbow_down, spent_beta_rear_elbow_down, t231
-    t235 = _runtime.VANISHING * (64.0 * np.abs(v_2_rear_elbow_down))
-    del v_2_rear_elbow_down
-    t236 = -(left_along_rear_elbow_down / 1099511627776.0)
-    spent_along_rear_elbow_down = np.maximum(t236, left_along_rear_elbow_down) <= t217
-    del left_along_rear_elbow_down, t217, t236
-    t237 = t234 | (-t183 <= t235) | spent_along_rear_elbow_down
-    del spent_along_rear_elbow_down, t183, t234, t235
+    t188 = left_along_front_elbow_down * 9.094947017729282e-13
+    t189 = np.maximum(-t188, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t188
+    t190 = t184 | (t186 <= t177) | (-t107 <= t187) | (t189 <= t181)
+    del t107, t184, t186, t187, t189
+    t191 = room_alpha_rear_elbow_up * 9.094947017729282e-13
+    spent_alpha_rear_elbow_up = np.maximum(-t191, room_alpha_rear_elbow_up) <= t177
+    del room_alpha_rear_elbow_up, t191
+    t192 = room_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t192, room_beta_rear_elbow_up) <= t177
+    del room_beta_rear_elbow_up, t192
+    t193 = t190 | spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
+    del spent_alpha_rear_elbow_up, spent_beta_rear_elbow_up, t190
+    t194 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t194, left_along_rear_elbow_up) <= t181
+    del left_along_rear_elbow_up, t194
+    t195 = room_alpha_rear_elbow_down * 9.094947017729282e-13
+    t196 = np.maximum(-t195, room_alpha_rear_elbow_down)
+    del room_alpha_rear_elbow_down, t195
+    t197 = t193 | spent_along_rear_elbow_up | (t196 <= t177)
+    del spent_along_rear_elbow_up, t193, t196
+    t198 = room_beta_rear_elbow_down * 9.094947017729282e-13
+    spent_beta_rear_elbow_down = np.maximum(-t198, room_beta_rear_elbow_down) <= t177
+    del room_beta_rear_elbow_down, t177, t198
+    t199 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t200 = np.maximum(-t199, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t199
+    t201 = t197 | spent_beta_rear_elbow_down | (t200 <= t181)
+    del spent_beta_rear_elbow_down, t181, t197, t200
     return (
-        t15 + t83,
-        _runtime.wrap(t85 - t88) + t83,
-        _runtime.wrap(t90 - t93) + t83,
-        _runtime.wrap(t85 + t88) + t83,
-        _runtime.wrap(-(t93 + t90)) + t83,
-        t94 + t83,
-        t15 + t116,
-        _runtime.wrap(t118 - t122) + t116,
-        _runtime.wrap(t123 + t125) + t116,
-        _runtime.wrap(t118 + t122) + t116,
-        _runtime.wrap(t123 - t125) + t116,
-        t94 + t116,
-        t126 + t161,
-        _runtime.wrap(t163 - t167) + t161,
-        _runtime.wrap(t170 + t172) + t161,
-        _runtime.wrap(t163 + t167) + t161,
-        _runtime.wrap(t170 - t172) + t161,
-        t94 + t161,
-        t126 + t195,
-        _runtime.wrap(t196 - t200) + t195,
-        _runtime.wrap(t201 + t203) + t195,
-        _runtime.wrap(t196 + t200) + t195,
-        _runtime.wrap(t201 - t203) + t195,
-        t94 + t195,
-        t204,
-        t205,
-        t206,
-        t207,
-        t237,
+        t13 + t81,
+        _runtime.wrap(t83 - t84) + t81,
+        _runtime.wrap(t86 - t89) + t81,
+        _runtime.wrap(t83 + t84) + t81,
+        _runtime.wrap(-(t89 + t86)) + t81,
+        t90 + t81,
+        t13 + t118,
+        _runtime.wrap(t119 - t122) + t118,
+        _runtime.wrap(t123 + t125) + t118,
+        _runtime.wrap(t119 + t122) + t118,
+        _runtime.wrap(t123 - t125) + t118,
+        t90 + t118,
+        t126 + t143,
+        _runtime.wrap(t144 - t147) + t143,
+        _runtime.wrap(t123 + t149) + t143,
+        _runtime.wrap(t144 + t147) + t143,
+        _runtime.wrap(t123 - t149) + t143,
+        t90 + t143,
+        t126 + t162,
+        _runtime.wrap(t163 - t166) + t162,
+        _runtime.wrap(t168 - t89) + t162,
+        _runtime.wrap(t163 + t166) + t162,
+        _runtime.wrap(-(t89 + t168)) + t162,
+        t90 + t162,
+        t169,
+        t170,
+        t171,
+        t172,
+        t201,
     )
 
 
@@ -2521,17 +2335,17 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
 def _wrist_length(psi, phi, d, gs, al):
     c_psi = np.cos(psi)
     c_phi = np.cos(phi)
-    t1 = d - c_psi * (gs - al)
-    t2 = (gs + al) * c_psi - d
-    t3 = np.sqrt(np.maximum(t1, 0.0)) * np.sqrt(np.maximum(t2, 0.0))
+    t1 = (gs + al) * c_psi - d
+    t2 = d - c_psi * (gs - al)
+    t3 = np.sqrt(np.maximum(t1, 0.0) * np.maximum(t2, 0.0))
     t4 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t5 = t4 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
     del t4
-    t6 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t7 = (-_runtime.FEASIBILITY <= c_phi) & (t6 <= t2)
-    del c_phi, t2
-    failed = np.logical_not(t5) | np.logical_not(t7 & (t6 <= t1))
-    del t1, t5, t6, t7
+    t6 = -(_runtime.FEASIBILITY * (d * 0.5))
+    t7 = (-_runtime.FEASIBILITY <= c_phi) & (t6 <= t1)
+    del c_phi, t1
+    failed = np.logical_not(t5) | np.logical_not(t7 & (t6 <= t2))
+    del t2, t5, t6, t7
     return (
         t3 / c_psi + _runtime.poison(failed),
     )

@@ -4,18 +4,18 @@
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
-#     sincos, 8 sqrt
-#   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 8 sqrt
+#     sincos, 6 sqrt
+#   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 55 compare and select, 208 add, 53 divide, 320 multiply, 6 sincos, 8 sqrt
-#   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 8 sqrt
-#   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 8 sqrt
-#   ik: 374 compare and select, 374 add, 27 atan2, 49 divide, 517 multiply, 1 reduce to a turn, 3
-#     sincos, 31 sqrt
-#   ik where nothing vanishes: 276 compare and select, 274 add, 23 atan2, 35 divide, 388 multiply,
-#     1 reduce to a turn, 3 sincos, 31 sqrt
-#   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 2 sqrt
+#   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
+#   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
+#   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
+#   ik: 341 compare and select, 342 add, 27 atan2, 40 divide, 455 multiply, 1 reduce to a turn, 3
+#     sincos, 16 sqrt
+#   ik where nothing vanishes: 253 compare and select, 250 add, 23 atan2, 27 divide, 332 multiply,
+#     1 reduce to a turn, 3 sincos, 16 sqrt
+#   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
 #   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
@@ -102,10 +102,10 @@ _DEFAULT = Parameters()
 def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp):
     s1, c1 = _runtime.sincos(theta1)
     s, c = _runtime.sincos(theta)
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
     principal = _runtime.principal(theta)
     t1 = lp * s
     del s
@@ -177,23 +177,23 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     small_left = t40 * t40 / large_left
     del t40
     M_left = _runtime.select(t39, large_left, small_left) * t30
-    t41 = t29 * t30 / 2.0 - (gap - M_left / 2.0)
+    t41 = t29 * t30 * 0.5 - (gap - M_left * 0.5)
     del M_left, t29
     M_virtual = np.maximum(t41, 0.0)
     N_left = _runtime.select(t39, small_left, large_left) * t30
     del large_left, small_left, t39
     t42 = _runtime.select(t27, small_right, large_right)
     del large_right, small_right, t27
-    t43 = gap + N_left / 2.0 + t42 * t30 / 2.0
+    t43 = gap + N_left * 0.5 + t42 * t30 * 0.5
     del N_left, t30, t42
     N_virtual = np.maximum(t43, 0.0)
     whole_virtual = M_virtual + N_virtual
     c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     del bare_virtual
-    t44 = 2.0 * _runtime.sign(-t28) * np.sqrt(N_virtual)
+    t44 = 2.0 * _runtime.sign(-t28) * np.sqrt(M_virtual * N_virtual)
     del N_virtual, t28
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t44 * np.sqrt(M_virtual) / whole_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t44 / whole_virtual)
     del t44
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     t45 = c2L_half * t8 + s2L_half * t9
@@ -232,26 +232,23 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     t54 = d * d
     tilted = np.sqrt(t54 + t53 * t53)
     t55 = t53 / tilted
-    del t53
     c_phi = d / tilted
+    t56 = t22 * stheta23A - t35 * ctheta23A
+    del t22, t35
     base = np.sqrt(t54 + gap)
     del gap, t54
-    t56 = (t22 * stheta23A - t35 * ctheta23A) / base
-    del t22, t35
-    t57 = base - (gs - al)
-    t58 = gs + al
-    t59 = t58 - base
-    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
+    t57 = gs + al
+    t58 = t57 - base
+    t59 = base - (gs - al)
+    wrist = np.sqrt(np.maximum(t58, 0.0) * np.maximum(t59, 0.0))
     t60 = loff + lp * c + wrist
     del c, wrist
-    t61 = t56 * t60
+    t61 = t56 / base * t60
     t62 = t1 * t55 + c_phi * t61
     t63 = a3 + t1 * c_phi - t55 * t61
-    del t1, t61
-    c_psi = tilted / base
-    del base, tilted
-    t64 = L2 + t60 * c_psi
-    del t60
+    del c_phi, t1, t55, t61
+    t64 = L2 + t60 * (tilted / base)
+    del base, t60
     t65 = L1 * ctheta2A + ctheta23A * t63 + stheta23A * t64
     del ctheta2A
     t66 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
@@ -264,18 +261,18 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     del t68, t69
     t70 = -(_runtime.FEASIBILITY * (d * t23))
     del t23
-    t71 = -(_runtime.FEASIBILITY * t58)
-    del t58
-    t72 = (t70 <= t43) & (t70 <= t41) & (t71 <= t59) & (t71 <= t57)
-    del t41, t43, t57, t59, t70, t71
+    t71 = -(_runtime.FEASIBILITY * t57)
+    del t57
+    t72 = (t70 <= t43) & (t70 <= t41) & (t71 <= t58) & (t71 <= t59)
+    del t41, t43, t58, t59, t70, t71
     t73 = _runtime.poison(invalid | np.logical_not(t72))
     del invalid, t72
     t74 = d1 + L1 * stheta2A - ctheta23A * t64 + stheta23A * t63
     del ctheta23A, stheta23A, stheta2A, t63, t64
-    t75 = _runtime.wrap_cut(np.arctan2(-t56, c_psi)) + t73
-    del c_psi, t56
-    t76 = _runtime.wrap_cut(-np.arctan2(-t55, c_phi)) + t73
-    del c_phi, t55
+    t75 = _runtime.wrap_cut(np.arctan2(-t56, tilted)) + t73
+    del t56, tilted
+    t76 = _runtime.wrap_cut(-np.arctan2(-t53, d)) + t73
+    del t53
     return (
         s1 * t62 + c1 * t65 + t73,
         s1 * t65 - c1 * t62 + t73,
@@ -315,10 +312,10 @@ def _pose(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp
 ):
     s1, c1 = _runtime.sincos(theta1)
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
     s, c = _runtime.sincos(theta)
     t1 = c3R_half * c3L_half
     t2 = s3R_half * s3L_half
@@ -397,23 +394,23 @@ def _pose(
     small_left = t43 * t43 / large_left
     del t43
     M_left = _runtime.select(t42, large_left, small_left) * t34
-    t44 = t33 * t34 / 2.0 - (gap - M_left / 2.0)
+    t44 = t33 * t34 * 0.5 - (gap - M_left * 0.5)
     del M_left, t33
     M_virtual = np.maximum(t44, 0.0)
     N_left = _runtime.select(t42, small_left, large_left) * t34
     del large_left, small_left, t42
     t45 = _runtime.select(t31, small_right, large_right)
     del large_right, small_right, t31
-    t46 = gap + N_left / 2.0 + t45 * t34 / 2.0
+    t46 = gap + N_left * 0.5 + t45 * t34 * 0.5
     del N_left, t34, t45
     N_virtual = np.maximum(t46, 0.0)
     whole_virtual = M_virtual + N_virtual
     t47 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t27, t47)
     del t47
-    t48 = 2.0 * _runtime.sign(-t32) * np.sqrt(N_virtual)
+    t48 = 2.0 * _runtime.sign(-t32) * np.sqrt(M_virtual * N_virtual)
     del t32
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t48 * np.sqrt(M_virtual) / whole_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t48 / whole_virtual)
     del t48
     t49 = fore * s_bend_virtual
     out_virtual = r_I * ahead_1_virtual - t23 * t49
@@ -443,93 +440,97 @@ def _pose(
     t54 = t37 * ctheta23A + t38 * stheta23A
     tilted = np.sqrt(t53 + t54 * t54)
     c_phi = d / tilted
-    t55 = t54 / tilted
+    t55 = c * c_phi
+    t56 = t54 / tilted
     del t54
+    t57 = s * t56
     base = np.sqrt(t53 + gap)
     del gap, t53
-    t56 = (t37 * stheta23A - t38 * ctheta23A) / base
+    t58 = (t37 * stheta23A - t38 * ctheta23A) / base
     del t37, t38
-    t57 = t55 * t56
-    hand_11 = c * c_phi + s * t57
-    t58 = c_phi * t56
-    hand_21 = c * t55 - s * t58
-    t59 = c1 * stheta23A
+    hand_11 = t55 + t57 * t58
+    t59 = c * t56
+    t60 = s * c_phi
+    hand_21 = t59 - t60 * t58
+    t61 = c1 * stheta23A
     c_psi = tilted / base
     del tilted
-    t60 = s * c_psi
-    t61 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t62 = t61 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t61
-    t63 = t62 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t62
-    t64 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    invalid = np.logical_not(t63 & (0.0 <= loff) & (0.0 <= lp) & t64)
-    del t63, t64
-    t65 = -(_runtime.FEASIBILITY * (d * t27))
-    del t27
-    t66 = gs + al
-    t67 = -(_runtime.FEASIBILITY * t66)
-    t68 = t66 - base
-    del t66
-    t69 = base - (gs - al)
-    del base
-    t70 = (t65 <= t46) & (t65 <= t44) & (t67 <= t68) & (t67 <= t69)
-    del t44, t46, t65, t67
-    t71 = _runtime.poison(invalid | np.logical_not(t70))
-    del invalid, t70
-    t72 = t52 * hand_11 + s1 * hand_21 - t59 * t60 + t71
-    t73 = t55 * c_psi
-    hand_22 = c_phi * c_psi
-    t74 = -(t52 * t73 - s1 * hand_22 + t59 * t56) + t71
-    hand_13 = s * c_phi - c * t57
-    t75 = s * t55 + c * t58
-    hand_33 = c * c_psi
-    t76 = t52 * hand_13 + s1 * t75 + t59 * hand_33 + t71
-    del t52, t59
-    t77 = lp * s
+    t62 = s * c_psi
     del s
-    wrist = np.sqrt(np.maximum(t69, 0.0)) * np.sqrt(np.maximum(t68, 0.0))
-    del t68, t69
-    t78 = loff + lp * c + wrist
+    t63 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t64 = t63 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t63
+    t65 = t64 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t64
+    t66 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    invalid = np.logical_not(t65 & (0.0 <= loff) & (0.0 <= lp) & t66)
+    del t65, t66
+    t67 = -(_runtime.FEASIBILITY * (d * t27))
+    del t27
+    t68 = gs + al
+    t69 = -(_runtime.FEASIBILITY * t68)
+    t70 = t68 - base
+    del t68
+    t71 = base - (gs - al)
+    del base
+    t72 = (t67 <= t46) & (t67 <= t44) & (t69 <= t70) & (t69 <= t71)
+    del t44, t46, t67, t69
+    t73 = _runtime.poison(invalid | np.logical_not(t72))
+    del invalid, t72
+    t74 = t52 * hand_11 + s1 * hand_21 - t61 * t62 + t73
+    t75 = t56 * c_psi
+    hand_22 = c_phi * c_psi
+    t76 = -(t52 * t75 - s1 * hand_22 + t61 * t58) + t73
+    hand_13 = t60 - t59 * t58
+    del t59
+    t77 = t57 + t55 * t58
+    del t55
+    hand_33 = c * c_psi
+    t78 = t52 * hand_13 + s1 * t77 + t61 * hand_33 + t73
+    del t52, t61
+    wrist = np.sqrt(np.maximum(t70, 0.0) * np.maximum(t71, 0.0))
+    del t70, t71
+    t79 = loff + lp * c + wrist
     del c, wrist
-    t79 = t77 * t55 + t58 * t78
-    del t55, t58
-    t80 = a3 + t77 * c_phi - t57 * t78
-    del c_phi, t57, t77
-    t81 = L2 + c_psi * t78
-    del c_psi, t78
-    t82 = L1 * ctheta2A + ctheta23A * t80 + stheta23A * t81
+    t80 = t58 * t79
+    t81 = lp * t57 + c_phi * t80
+    del c_phi, t57
+    t82 = a3 + lp * t60 - t56 * t80
+    del t56, t60, t80
+    t83 = L2 + c_psi * t79
+    del c_psi, t79
+    t84 = L1 * ctheta2A + ctheta23A * t82 + stheta23A * t83
     del ctheta2A
-    t83 = s1 * ctheta23A
-    t84 = s1 * stheta23A
-    t85 = t83 * hand_11 - c1 * hand_21 - t84 * t60 + t71
+    t85 = s1 * ctheta23A
+    t86 = s1 * stheta23A
+    t87 = t85 * hand_11 - c1 * hand_21 - t86 * t62 + t73
     del hand_21
-    t86 = -(t83 * t73 + c1 * hand_22 + t84 * t56) + t71
+    t88 = -(t85 * t75 + c1 * hand_22 + t86 * t58) + t73
     del hand_22
-    t87 = t83 * hand_13 - c1 * t75 + t84 * hand_33 + t71
-    del t75, t83, t84
-    t88 = stheta23A * hand_13 - ctheta23A * hand_33 + t71
+    t89 = t85 * hand_13 - c1 * t77 + t86 * hand_33 + t73
+    del t77, t85, t86
+    t90 = stheta23A * hand_13 - ctheta23A * hand_33 + t73
     del hand_13, hand_33
-    t89 = d1 + L1 * stheta2A - ctheta23A * t81 + stheta23A * t80
-    del stheta2A, t80, t81
-    t90 = 0.0 + t71
+    t91 = d1 + L1 * stheta2A - ctheta23A * t83 + stheta23A * t82
+    del stheta2A, t82, t83
+    t92 = 0.0 + t73
     return (
-        t72,
         t74,
         t76,
-        s1 * t79 + c1 * t82 + t71,
-        t85,
-        t86,
+        t78,
+        s1 * t81 + c1 * t84 + t73,
         t87,
-        s1 * t82 - c1 * t79 + t71,
-        ctheta23A * t60 + stheta23A * hand_11 + t71,
-        ctheta23A * t56 - stheta23A * t73 + t71,
         t88,
-        t89 + t71,
+        t89,
+        s1 * t84 - c1 * t81 + t73,
+        ctheta23A * t62 + stheta23A * hand_11 + t73,
+        ctheta23A * t58 - stheta23A * t75 + t73,
         t90,
-        t90,
-        t90,
-        1.0 + t71,
+        t91 + t73,
+        t92,
+        t92,
+        t92,
+        1.0 + t73,
     )
 
 
@@ -609,10 +610,10 @@ def arm_tips(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 
 def _invariant_point(theta1, theta2R, theta3R, theta2L, theta3L, _theta, L1, L2, a3, d1):
     s1, c1 = _runtime.sincos(theta1)
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
     t1 = c3L_half * c3R_half
     t2 = s3L_half * s3R_half
     t3 = t1 - t2
@@ -673,10 +674,10 @@ def _jacobian(
 ):
     s1, c1 = _runtime.sincos(theta1)
     s, c = _runtime.sincos(theta)
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
     t1 = lp * s
     del s
     t2 = c3R_half * c3L_half
@@ -745,23 +746,23 @@ def _jacobian(
     small_left = t40 * t40 / large_left
     del t40
     M_left = _runtime.select(t39, large_left, small_left) * t30
-    t41 = t29 * t30 / 2.0 - (gap - M_left / 2.0)
+    t41 = t29 * t30 * 0.5 - (gap - M_left * 0.5)
     del M_left, t29
     M_virtual = np.maximum(t41, 0.0)
     N_left = _runtime.select(t39, small_left, large_left) * t30
     del large_left, small_left, t39
     t42 = _runtime.select(t27, small_right, large_right)
     del large_right, small_right, t27
-    t43 = gap + N_left / 2.0 + t42 * t30 / 2.0
+    t43 = gap + N_left * 0.5 + t42 * t30 * 0.5
     del N_left, t30, t42
     N_virtual = np.maximum(t43, 0.0)
     whole_virtual = M_virtual + N_virtual
     c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
     s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
     del bare_virtual
-    t44 = 2.0 * _runtime.sign(-t28) * np.sqrt(N_virtual)
+    t44 = 2.0 * _runtime.sign(-t28) * np.sqrt(M_virtual * N_virtual)
     del N_virtual, t28
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t44 * np.sqrt(M_virtual) / whole_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t44 / whole_virtual)
     del t44
     c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
     t45 = c2L_half * t8 + s2L_half * t9
@@ -813,109 +814,109 @@ def _jacobian(
     t61 = c_phi * t60
     t62 = lp * c
     del c
-    t63 = base - (gs - al)
-    t64 = gs + al
-    t65 = t64 - base
-    wrist = np.sqrt(np.maximum(t63, 0.0)) * np.sqrt(np.maximum(t65, 0.0))
+    t63 = gs + al
+    t64 = t63 - base
+    t65 = base - (gs - al)
+    wrist = np.sqrt(np.maximum(t64, 0.0) * np.maximum(t65, 0.0))
     t66 = loff + t62 + wrist
     t67 = t1 * t58 + t61 * t66
+    t68 = c1 * t67
     outer_32 = L1 * ctheta2A
-    t68 = t58 * t60
-    t69 = t1 * c_phi - t66 * t68
-    t70 = a3 + t69
+    t69 = t58 * t60
+    t70 = t1 * c_phi - t66 * t69
+    t71 = a3 + t70
     c_psi = tilted / base
     del base
-    t71 = t66 * c_psi
-    t72 = L2 + t71
-    outer_33 = ctheta23A * t70 + stheta23A * t72
-    t73 = outer_32 + outer_33
-    t74 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t75 = t74 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t74
-    t76 = t75 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    t72 = t66 * c_psi
+    t73 = L2 + t72
+    outer_33 = ctheta23A * t71 + stheta23A * t73
+    t74 = outer_32 + outer_33
+    t75 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t76 = t75 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
     del t75
-    t77 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
-    t78 = -(_runtime.FEASIBILITY * (d * t23))
+    t77 = t76 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t76
+    t78 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t79 = -(_runtime.FEASIBILITY * (d * t23))
     del t23
-    t79 = -(_runtime.FEASIBILITY * t64)
-    del t64
-    t80 = (t78 <= t43) & (t78 <= t41) & (t79 <= t65) & (t79 <= t63)
-    del t41, t43, t63, t65, t78, t79
-    failed = np.logical_not(t76 & (0.0 <= lp) & t77) | np.logical_not(t80)
-    del t76, t77, t80
-    t81 = _runtime.poison(failed)
+    t80 = -(_runtime.FEASIBILITY * t63)
+    del t63
+    t81 = (t79 <= t43) & (t79 <= t41) & (t80 <= t64) & (t80 <= t65)
+    del t41, t43, t64, t65, t79, t80
+    failed = np.logical_not(t77 & (0.0 <= lp) & t78) | np.logical_not(t81)
+    del t77, t78, t81
+    t82 = _runtime.poison(failed)
     del failed
-    t82 = c_phi * t71
-    t83 = t58 * t71
-    del t71
-    t84 = t60 * t66
+    t83 = c_phi * t72
+    t84 = t58 * t72
+    del t72
+    t85 = t60 * t66
     del t66
-    t85 = ctheta23A * t83 + stheta23A * t84
-    t86 = d * (gs - d / (c_phi * c_psi))
-    t87 = t60 * t86
+    t86 = ctheta23A * t84 + stheta23A * t85
+    t87 = d * (gs - d / (c_phi * c_psi))
+    t88 = t60 * t87
     del t60
-    t88 = stheta23A * c_psi
-    t89 = t88 - ctheta23A * t68
-    t90 = s1 * t61 + c1 * t89
-    t91 = c_phi * wrist * (c_psi * c_psi)
-    t92 = s1 * t82 - c1 * t85 + t87 * t90 / t91
-    t93 = tilted * tilted
-    t94 = 1.0 + t59 * t59 / t93
-    t95 = t59 * t55 / (tilted * t93 * t94)
-    del t93
+    t89 = stheta23A * c_psi
+    t90 = t89 - ctheta23A * t69
+    t91 = s1 * t61 + c1 * t90
+    t92 = c_phi * wrist * (c_psi * c_psi)
+    t93 = s1 * t83 - c1 * t86 + t88 * t91 / t92
+    t94 = tilted * tilted
+    t95 = 1.0 + t59 * t59 / t94
+    t96 = t59 * t55 / (tilted * t94 * t95)
+    del t94
     c2R3R = t26 * t49 - t25 * t54
     s2R3R = t26 * t54 + t25 * t49
     del t25, t26
-    mid_13 = L2 * c2R3R / 2.0 - a3 * s2R3R / 2.0
-    t96 = L1 * t54 / 2.0 - mid_13
+    mid_13 = L2 * c2R3R * 0.5 - a3 * s2R3R * 0.5
+    t97 = L1 * t54 * 0.5 - mid_13
     del t54
-    mid_23 = L2 * s2R3R / 2.0 + a3 * c2R3R / 2.0
+    mid_23 = L2 * s2R3R * 0.5 + a3 * c2R3R * 0.5
     del c2R3R, s2R3R
-    mid_22 = L1 * t49 / 2.0 + mid_23
+    mid_22 = L1 * t49 * 0.5 + mid_23
     del t49
-    t97 = L1 * stheta2A
-    t98 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
-    t99 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
+    t98 = L1 * stheta2A
+    t99 = L2 * (ctheta2A * ctheta23A + stheta2A * stheta23A)
+    t100 = a3 * (stheta2A * ctheta23A - ctheta2A * stheta23A)
     del ctheta2A, stheta2A
-    t100 = L1 * (t98 + t99)
-    del t98, t99
-    t101 = (outer_32 * t96 - t97 * mid_22) / t100
-    t102 = ctheta23A * t96 - stheta23A * mid_22 + t59 * t101
-    turn_12 = 1.0 / (tilted * t94)
-    del t94, tilted
-    t103 = ctheta23A * mid_22 + stheta23A * t96 - t55 * t101
-    inner_42 = t95 * t102 - turn_12 * t103
-    del t103
-    t104 = ctheta23A * t67
-    t105 = t58 * t86
-    del t86
+    t101 = L1 * (t99 + t100)
+    del t100, t99
+    t102 = (outer_32 * t97 - t98 * mid_22) / t101
+    t103 = ctheta23A * t97 - stheta23A * mid_22 + t59 * t102
+    turn_12 = 1.0 / (tilted * t95)
+    del t95, tilted
+    t104 = ctheta23A * mid_22 + stheta23A * t97 - t55 * t102
+    inner_42 = t96 * t103 - turn_12 * t104
+    del t104
+    t105 = t58 * t87
+    del t87
     t106 = c_phi * c_phi * wrist * c_psi
     del wrist
-    t107 = c1 * t104 - s1 * t69 - t90 * t105 / t106
-    del t90
+    t107 = ctheta23A * t68 - s1 * t70 - t91 * t105 / t106
+    del t91
     t108 = 1.0 / (d * (1.0 + t57 / t56))
     del t56, t57
-    inner_52 = t108 * t102
-    del t102
-    t109 = c1 * t97
+    inner_52 = t108 * t103
+    del t103
+    t109 = c1 * t98
     virtual_11 = L2 * stheta23A + a3 * ctheta23A
     t110 = L2 * ctheta23A - a3 * stheta23A
-    rate_12 = (virtual_11 * t96 + t110 * mid_22) / t100
-    del mid_22, t96
-    t111 = t92 * inner_42 + t107 * inner_52 + t109 * rate_12
-    t112 = ctheta23A * t72 - stheta23A * t70
-    del t70, t72
+    rate_12 = (virtual_11 * t97 + t110 * mid_22) / t101
+    del mid_22, t97
+    t111 = t93 * inner_42 + t107 * inner_52 + t109 * rate_12
+    t112 = ctheta23A * t73 - stheta23A * t71
+    del t71, t73
     outer_13 = c1 * t112
-    t113 = (mid_13 * virtual_11 - mid_23 * t110) / t100
-    rate_23 = (mid_13 * outer_32 + mid_23 * t97) / t100
+    t113 = (mid_13 * virtual_11 - mid_23 * t110) / t101
+    rate_23 = (mid_13 * outer_32 + mid_23 * t98) / t101
     line_13 = mid_13 * ctheta23A + mid_23 * stheta23A + t59 * rate_23
     t114 = mid_23 * ctheta23A - mid_13 * stheta23A + t55 * rate_23
     del mid_13, mid_23
-    t115 = t95 * line_13 + turn_12 * t114
+    t115 = t96 * line_13 + turn_12 * t114
     del t114
     t116 = t108 * line_13
     del line_13
-    t117 = t109 * t113 + t115 * t92 + t116 * t107 + rate_23 * outer_13
+    t117 = t109 * t113 + t115 * t93 + t116 * t107 + rate_23 * outer_13
     t118 = s2L_half * c2L_half
     t119 = t118 + t118
     del t118
@@ -924,112 +925,113 @@ def _jacobian(
     c2L3L = t38 * t120 - t37 * t119
     s2L3L = t38 * t119 + t37 * t120
     del t37, t38
-    mid_15 = L2 * c2L3L / 2.0 - a3 * s2L3L / 2.0
-    gap_14 = L1 * t119 / 2.0 - mid_15
+    mid_15 = L2 * c2L3L * 0.5 - a3 * s2L3L * 0.5
+    gap_14 = L1 * t119 * 0.5 - mid_15
     del t119
-    mid_25 = L2 * s2L3L / 2.0 + a3 * c2L3L / 2.0
+    mid_25 = L2 * s2L3L * 0.5 + a3 * c2L3L * 0.5
     del c2L3L, s2L3L
-    mid_24 = L1 * t120 / 2.0 + mid_25
+    mid_24 = L1 * t120 * 0.5 + mid_25
     del t120
-    t121 = (outer_32 * gap_14 - t97 * mid_24) / t100
+    t121 = (outer_32 * gap_14 - t98 * mid_24) / t101
     line_14 = ctheta23A * gap_14 - stheta23A * mid_24 - t59 * t121
     line_24 = ctheta23A * mid_24 + stheta23A * gap_14 + t55 * t121
-    t122 = t95 * line_14 - turn_12 * line_24
+    t122 = t96 * line_14 - turn_12 * line_24
     del line_24
     t123 = t108 * line_14
     del line_14
-    rate_14 = (virtual_11 * gap_14 + t110 * mid_24) / t100
+    rate_14 = (virtual_11 * gap_14 + t110 * mid_24) / t101
     del gap_14, mid_24
-    t124 = t92 * t122 + t107 * t123 - t109 * rate_14 - outer_13 * t121
-    t125 = (mid_15 * virtual_11 - mid_25 * t110) / t100
+    t124 = t93 * t122 + t107 * t123 - t109 * rate_14 - outer_13 * t121
+    t125 = (mid_15 * virtual_11 - mid_25 * t110) / t101
     del t110, virtual_11
-    rate_25 = (mid_15 * outer_32 + mid_25 * t97) / t100
-    del t100
+    rate_25 = (mid_15 * outer_32 + mid_25 * t98) / t101
+    del t101
     t126 = mid_15 * ctheta23A + mid_25 * stheta23A - t59 * rate_25
     del t59
     line_25 = mid_25 * ctheta23A - mid_15 * stheta23A - t55 * rate_25
     del mid_15, mid_25, t55
-    inner_45 = t95 * t126 + turn_12 * line_25
-    del line_25, t95, turn_12
+    inner_45 = t96 * t126 + turn_12 * line_25
+    del line_25, t96, turn_12
     inner_55 = t108 * t126
     del t108, t126
-    t127 = t109 * t125 - inner_45 * t92 - inner_55 * t107
-    del t107, t109, t92
+    t127 = t109 * t125 - inner_45 * t93 - inner_55 * t107
+    del t107, t109, t93
     t128 = t62 * t58 - t1 * t61
     del t58
-    t129 = t62 * c_phi + t1 * t68
+    t129 = t62 * c_phi + t1 * t69
     del c_phi, t62
-    t130 = t1 * t88 - ctheta23A * t129
-    del t88
-    t131 = c1 * t61 - s1 * t89
-    del t61, t89
-    outer_24 = c1 * t82 + s1 * t85 + t87 * t131 / t91
-    del t82, t85
-    t132 = s1 * t104 + c1 * t69 + t105 * t131 / t106
-    del t104, t131, t69
-    t133 = s1 * t97
-    del t97
-    t134 = inner_42 * outer_24 - inner_52 * t132 - t133 * rate_12
+    t130 = t1 * t89 - ctheta23A * t129
+    del t89
+    t131 = s1 * t67
+    t132 = c1 * t61 - s1 * t90
+    del t61, t90
+    outer_24 = c1 * t83 + s1 * t86 + t88 * t132 / t92
+    del t83, t86
+    t133 = ctheta23A * t131 + c1 * t70 + t105 * t132 / t106
+    del t132, t70
+    t134 = s1 * t98
+    del t98
+    t135 = inner_42 * outer_24 - inner_52 * t133 - t134 * rate_12
     outer_23 = s1 * t112
     del t112
-    t135 = t113 * t133 - t115 * outer_24 + t116 * t132 + rate_23 * outer_23
-    t136 = t122 * outer_24 - t123 * t132 + t133 * rate_14
-    t137 = t125 * t133 + inner_45 * outer_24 - inner_55 * t132
-    del outer_24, t132, t133
-    t138 = 0.0 + t81
-    t139 = ctheta23A * c_psi
+    t136 = t113 * t134 - t115 * outer_24 + t116 * t133 + rate_23 * outer_23
+    t137 = t122 * outer_24 - t123 * t133 + t134 * rate_14
+    t138 = t125 * t134 + inner_45 * outer_24 - inner_55 * t133
+    del outer_24, t133, t134
+    t139 = 0.0 + t82
+    t140 = ctheta23A * c_psi
     del c_psi
-    t140 = t139 + stheta23A * t68
-    del t68
-    t141 = stheta23A * t83 - ctheta23A * t84 + t87 * t140 / t91
-    del ctheta23A, t83, t84, t87, t91
-    t142 = stheta23A * t67 + t105 * t140 / t106
-    del t105, t106, t140
-    t143 = inner_42 * t141 - inner_52 * t142 + outer_32 * rate_12
+    t141 = t140 + stheta23A * t69
+    del t69
+    t142 = stheta23A * t84 - ctheta23A * t85 + t88 * t141 / t92
+    del ctheta23A, t84, t85, t88, t92
+    t143 = stheta23A * t67 + t105 * t141 / t106
+    del t105, t106, t141, t67
+    t144 = inner_42 * t142 - inner_52 * t143 + outer_32 * rate_12
     del rate_12
-    t144 = rate_23 * outer_33 - (outer_32 * t113 + t115 * t141 - t116 * t142)
+    t145 = rate_23 * outer_33 - (outer_32 * t113 + t115 * t142 - t116 * t143)
     del rate_23, t113
-    t145 = t122 * t141 - t123 * t142 - outer_32 * rate_14
+    t146 = t122 * t142 - t123 * t143 - outer_32 * rate_14
     del rate_14
-    t146 = outer_32 * t125 - inner_45 * t141 + inner_55 * t142
-    del outer_32, t125, t141, t142
+    t147 = outer_32 * t125 - inner_45 * t142 + inner_55 * t143
+    del outer_32, t125, t142, t143
     return (
-        c1 * t67 - s1 * t73 + t81,
-        -(t111 + t101 * outer_13) + t81,
-        t117 + t81,
-        t124 + t81,
-        t127 + rate_25 * outer_13 + t81,
-        s1 * t128 - c1 * t130 + t81,
-        s1 * t67 + c1 * t73 + t81,
-        t134 - t101 * outer_23 + t81,
-        t135 + t81,
-        -(t136 + t121 * outer_23) + t81,
-        t137 + rate_25 * outer_23 + t81,
-        -(c1 * t128 + s1 * t130) + t81,
-        t138,
-        t143 - outer_33 * t101 + t81,
-        t144 + t81,
-        -(t145 + outer_33 * t121) + t81,
-        rate_25 * outer_33 - t146 + t81,
-        t1 * t139 + stheta23A * t129 + t81,
-        t138,
-        inner_42 + t81,
-        -t115 + t81,
-        -t122 + t81,
-        inner_45 + t81,
-        t138,
-        t138,
-        inner_52 + t81,
-        -t116 + t81,
-        -t123 + t81,
-        inner_55 + t81,
-        t138,
-        t138,
-        t138,
-        t138,
-        t138,
-        t138,
-        1.0 + t81,
+        t68 - s1 * t74 + t82,
+        -(t111 + t102 * outer_13) + t82,
+        t117 + t82,
+        t124 + t82,
+        t127 + rate_25 * outer_13 + t82,
+        s1 * t128 - c1 * t130 + t82,
+        t131 + c1 * t74 + t82,
+        t135 - t102 * outer_23 + t82,
+        t136 + t82,
+        -(t137 + t121 * outer_23) + t82,
+        t138 + rate_25 * outer_23 + t82,
+        -(c1 * t128 + s1 * t130) + t82,
+        t139,
+        t144 - outer_33 * t102 + t82,
+        t145 + t82,
+        -(t146 + outer_33 * t121) + t82,
+        rate_25 * outer_33 - t147 + t82,
+        t1 * t140 + stheta23A * t129 + t82,
+        t139,
+        inner_42 + t82,
+        -t115 + t82,
+        -t122 + t82,
+        inner_45 + t82,
+        t139,
+        t139,
+        inner_52 + t82,
+        -t116 + t82,
+        -t123 + t82,
+        inner_55 + t82,
+        t139,
+        t139,
+        t139,
+        t139,
+        t139,
+        t139,
+        1.0 + t82,
     )
 
 
@@ -1062,10 +1064,10 @@ def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) ->
 def _determinant(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
     s, c = _runtime.sincos(theta)
     t1 = s2L_half * c2L_half
     t2 = t1 + t1
@@ -1162,23 +1164,23 @@ def _determinant(
     small_left = t51 * t51 / large_left
     del t51
     M_left = _runtime.select(t50, large_left, small_left) * t45
-    t52 = t44 * t45 / 2.0 - (gap - M_left / 2.0)
+    t52 = t44 * t45 * 0.5 - (gap - M_left * 0.5)
     del M_left, t44
     M_virtual = np.maximum(t52, 0.0)
     N_left = _runtime.select(t50, small_left, large_left) * t45
     del large_left, small_left, t50
     t53 = _runtime.select(t42, small_right, large_right)
     del large_right, small_right, t42
-    t54 = gap + N_left / 2.0 + t53 * t45 / 2.0
+    t54 = gap + N_left * 0.5 + t53 * t45 * 0.5
     del N_left, t45, t53
     N_virtual = np.maximum(t54, 0.0)
     whole_virtual = M_virtual + N_virtual
     t55 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t41, t55)
     del t55
-    t56 = 2.0 * _runtime.sign(-t43) * np.sqrt(N_virtual)
+    t56 = 2.0 * _runtime.sign(-t43) * np.sqrt(M_virtual * N_virtual)
     del t43
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t56 * np.sqrt(M_virtual) / whole_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t56 / whole_virtual)
     del t56
     t57 = fore * s_bend_virtual
     out_virtual = r_I * ahead_1_virtual - t37 * t57
@@ -1207,10 +1209,10 @@ def _determinant(
     tilted = np.sqrt(t60 + t61 * t61)
     base = np.sqrt(t60 + gap)
     del gap, t60
-    t62 = base - (gs - al)
-    t63 = gs + al
-    t64 = t63 - base
-    wrist = np.sqrt(np.maximum(t62, 0.0)) * np.sqrt(np.maximum(t64, 0.0))
+    t62 = gs + al
+    t63 = t62 - base
+    t64 = base - (gs - al)
+    wrist = np.sqrt(np.maximum(t63, 0.0) * np.maximum(t64, 0.0))
     t65 = loff + lp * c + wrist
     del c, wrist
     t66 = L2 + tilted / base * t65
@@ -1234,10 +1236,10 @@ def _determinant(
     t76 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     t77 = -(_runtime.FEASIBILITY * (d * t41))
     del t41
-    t78 = -(_runtime.FEASIBILITY * t63)
-    del t63
-    t79 = (t77 <= t54) & (t77 <= t52) & (t78 <= t64) & (t78 <= t62)
-    del t52, t54, t62, t64, t77, t78
+    t78 = -(_runtime.FEASIBILITY * t62)
+    del t62
+    t79 = (t77 <= t54) & (t77 <= t52) & (t78 <= t63) & (t78 <= t64)
+    del t52, t54, t63, t64, t77, t78
     failed = np.logical_not(t75 & (0.0 <= lp) & t76) | np.logical_not(t79)
     del t75, t76, t79
     return (
@@ -1272,10 +1274,10 @@ def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None)
 def _singularities(
     theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d, gs, al, loff, lp
 ):
-    s2L_half, c2L_half = _runtime.sincos(theta2L / 2.0)
-    s2R_half, c2R_half = _runtime.sincos(theta2R / 2.0)
-    s3R_half, c3R_half = _runtime.sincos(theta3R / 2.0)
-    s3L_half, c3L_half = _runtime.sincos(theta3L / 2.0)
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
     s, c = _runtime.sincos(theta)
     t1 = c3R_half * c3L_half
     t2 = s3R_half * s3L_half
@@ -1353,23 +1355,23 @@ def _singularities(
     small_left = t44 * t44 / large_left
     del t44
     M_left = _runtime.select(t43, large_left, small_left) * t35
-    t45 = t34 * t35 / 2.0 - (gap - M_left / 2.0)
+    t45 = t34 * t35 * 0.5 - (gap - M_left * 0.5)
     del M_left, t34
     M_virtual = np.maximum(t45, 0.0)
     N_left = _runtime.select(t43, small_left, large_left) * t35
     del large_left, small_left, t43
     t46 = _runtime.select(t32, small_right, large_right)
     del large_right, small_right, t32
-    t47 = gap + N_left / 2.0 + t46 * t35 / 2.0
+    t47 = gap + N_left * 0.5 + t46 * t35 * 0.5
     del N_left, t35, t46
     N_virtual = np.maximum(t47, 0.0)
     whole_virtual = M_virtual + N_virtual
     t48 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
     ahead_1_virtual = _runtime.select(short_virtual, t28, t48)
     del t48
-    t49 = 2.0 * _runtime.sign(-t33) * np.sqrt(N_virtual)
+    t49 = 2.0 * _runtime.sign(-t33) * np.sqrt(M_virtual * N_virtual)
     del t33
-    s_bend_virtual = _runtime.select(short_virtual, 0.0, t49 * np.sqrt(M_virtual) / whole_virtual)
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t49 / whole_virtual)
     del t49
     t50 = fore * s_bend_virtual
     out_virtual = r_I * ahead_1_virtual - t23 * t50
@@ -1403,10 +1405,10 @@ def _singularities(
     del gap, t54
     t56 = t55 / tilted * ((t38 * stheta23A - t39 * ctheta23A) / base)
     del t38, t39, t55
-    t57 = base - (gs - al)
-    t58 = gs + al
-    t59 = t58 - base
-    wrist = np.sqrt(np.maximum(t57, 0.0)) * np.sqrt(np.maximum(t59, 0.0))
+    t57 = gs + al
+    t58 = t57 - base
+    t59 = base - (gs - al)
+    wrist = np.sqrt(np.maximum(t58, 0.0) * np.maximum(t59, 0.0))
     t60 = loff + lp * c + wrist
     del c
     t61 = a3 + lp * s * (d / tilted) - t56 * t60
@@ -1422,10 +1424,10 @@ def _singularities(
     t67 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
     t68 = -(_runtime.FEASIBILITY * (d * t28))
     del t28
-    t69 = -(_runtime.FEASIBILITY * t58)
-    del t58
-    t70 = (t68 <= t47) & (t68 <= t45) & (t69 <= t59) & (t69 <= t57)
-    del t45, t47, t57, t59, t68, t69
+    t69 = -(_runtime.FEASIBILITY * t57)
+    del t57
+    t70 = (t68 <= t47) & (t68 <= t45) & (t69 <= t58) & (t69 <= t59)
+    del t45, t47, t58, t59, t68, t69
     failed = np.logical_not(t66 & (0.0 <= lp) & t67) | np.logical_not(t70)
     del t66, t67, t70
     t71 = _runtime.poison(failed)
@@ -1495,1096 +1497,961 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del s_pitch
     t4 = c_phi * c_psi
     t5 = 1.0 / t4
-    t6 = d - (gs - al) * t4
-    t7 = (gs + al) * t4 - d
+    t6 = (gs + al) * t4 - d
+    t7 = d - (gs - al) * t4
     del t4
-    t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    t8 = np.sqrt(np.maximum(t6, 0.0) * np.maximum(t7, 0.0))
     t9 = loff + lp * c_pitch + t5 * t8
     del c_pitch, t8
     t10 = s_psi * t9
     t11 = s_phi * t3 - c_phi * t10
     t12 = h + t11
     below = np.maximum(t12, 0.0)
-    t13 = np.sqrt(below)
-    t14 = h - t11
-    del t11
-    above = np.maximum(t14, 0.0)
-    t15 = np.sqrt(above)
-    t16 = 2.0 * np.arctan2(t13, t15)
-    t17 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t16))
-    t18 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t19 = t18 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t18
-    t20 = t19 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t19
-    t21 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t22 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t23 = t20 & (0.0 <= loff) & (0.0 <= lp) & t21 & (np.abs(t22) <= _runtime.ROTATION)
-    del t20, t21, t22
-    invalid = np.logical_not(t23)
-    del t23
-    t24 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t7)
-    del t7
-    t26 = -(_runtime.FEASIBILITY * t1)
+    t13 = h - t11
+    del h, t11
+    above = np.maximum(t13, 0.0)
+    onward = np.sqrt(below * above)
+    t14 = np.arctan2(2.0 * onward, above - below)
+    del above, below
+    t15 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t14))
+    t16 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t16
+    t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t17
+    t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t20 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t21 = t18 & (0.0 <= loff) & (0.0 <= lp) & t19 & (np.abs(t20) <= _runtime.ROTATION)
+    del t18, t19, t20
+    invalid = np.logical_not(t21)
+    del t21
+    t22 = -(_runtime.FEASIBILITY * (d * 0.5))
+    t23 = (-_runtime.FEASIBILITY <= c_phi) & (t22 <= t6)
+    del t6
+    t24 = -(_runtime.FEASIBILITY * t1)
     del t1
-    t27 = t25 & (t24 <= t6) & (t26 <= t12) & (t26 <= t14)
-    del t12, t14, t24, t25, t26, t6
+    t25 = t23 & (t22 <= t7) & (t24 <= t12) & (t24 <= t13)
+    del t12, t13, t22, t23, t24, t7
     L_2W = L2 + c_psi * t9
     del c_psi, t9
     a_3W = a3 + c_phi * t3 + s_phi * t10
     del t10, t3
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t28 = L1 + fore
-    t29 = L1 * 2.0
-    t30 = 2.0 * fore
-    t31 = -(_runtime.FEASIBILITY * (t28 * (t29 + t30)))
-    t32 = t28 * t28
-    t33 = z - d1
-    t34 = t33 * t33
-    t35 = 1.0 / h
-    del h
-    t36 = 1.0 / (below + above)
-    t37 = (below - above) * t36
-    del above, below
-    t38 = y * t37
-    s_turn = t36 * (2.0 * t13 * t15)
-    del t13, t15, t36
-    t39 = x * s_turn
-    c1 = _runtime.select(nowhere, 1.0, -(t35 * (t38 - t39)))
-    t40 = x * t37
-    del t37
-    t41 = y * s_turn
-    del s_turn
-    s1 = _runtime.select(nowhere, 0.0, t35 * (t40 + t41))
-    outward = x * c1 + y * s1
-    del c1, s1
-    square = t34 + outward * outward
-    t42 = t32 - square
-    t43 = L1 / 8796093022208.0 + fore / 8796093022208.0
-    t44 = L1 - fore
-    t45 = _runtime.FEASIBILITY * (t28 * (t43 + 2.0 * np.abs(t44)))
-    del t43
-    t46 = t44 * t44
-    t47 = square - t46
+    t26 = L1 + fore
+    t27 = L1 * 2.0
+    t28 = 2.0 * fore
+    t29 = -(_runtime.FEASIBILITY * (t26 * (t27 + t28)))
+    t30 = t26 * t26
+    t31 = z - d1
+    square = t31 * t31 + onward * onward
+    t32 = t30 - square
+    t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t34 = L1 - fore
+    t35 = _runtime.FEASIBILITY * (t26 * (t33 + 2.0 * np.abs(t34)))
+    del t33
+    t36 = square - t34 * t34
     del square
-    t48 = t27 & (t31 <= t42) & (-t45 <= t47)
+    t37 = t25 & (t29 <= t32) & (-t35 <= t36)
+    del t25, t29, t35
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    t49 = d * size
-    short = L1 * fore <= _runtime.VANISHING * t32
-    N = np.maximum(t42, 0.0)
-    del t42
-    M = np.maximum(t47, 0.0)
-    del t47
-    t50 = 1.0 / (N + M)
-    c_bend = _runtime.select(short, 1.0, -((N - M) * t50))
-    t51 = _runtime.VANISHING * t28
-    bare = fore <= t51
-    t52 = 1.0 / fore
-    s_lag = _runtime.select(bare, 0.0, L_2W * t52)
-    t53 = c_bend * s_lag
-    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t50 * (2.0 * np.sqrt(N) * np.sqrt(M)))
+    t38 = d * size
+    short = L1 * fore <= _runtime.VANISHING * t30
+    del t30
+    N = np.maximum(t32, 0.0)
+    del t32
+    M = np.maximum(t36, 0.0)
+    del t36
+    t39 = 1.0 / (N + M)
+    c_bend = _runtime.select(short, 1.0, -((N - M) * t39))
+    t40 = _runtime.VANISHING * t26
+    bare = fore <= t40
+    t41 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t41)
+    t42 = c_bend * s_lag
+    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t39 * (2.0 * np.sqrt(N * M)))
     del N
-    c_lag = _runtime.select(bare, 1.0, a_3W * t52)
-    del bare, t52
-    t54 = s_bend_front_elbow_down_alike * c_lag
-    s_relative = t53 - t54
-    t55 = c_bend * c_lag
-    del c_bend
-    t56 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t55 + t56
+    c_lag = _runtime.select(bare, 1.0, a_3W * t41)
+    del bare, t41
+    t43 = s_bend_front_elbow_down_alike * c_lag
+    s_relative = t42 - t43
+    t44 = c_bend * c_lag
+    del c_bend, c_lag
+    t45 = s_lag * s_bend_front_elbow_down_alike
+    del s_lag
+    c_relative = t44 + t45
     straight_mid = L2 * s_relative + a3 * c_relative
-    t57 = 0.0 <= straight_mid
-    t58 = L2 * c_relative - a3 * s_relative
+    t46 = 0.0 <= straight_mid
+    t47 = L2 * c_relative - a3 * s_relative
     large_mid = fore_arm + np.abs(straight_mid)
     del straight_mid
-    small_mid = t58 * t58 / large_mid
-    N_mid = t29 * _runtime.select(t57, small_mid, large_mid)
-    t59 = 1.0 / c_phi
+    small_mid = t47 * t47 / large_mid
+    N_mid = t27 * _runtime.select(t46, small_mid, large_mid)
+    t48 = 1.0 / c_phi
     del c_phi
-    t60 = np.abs(t33)
-    folded = t60 + np.abs(outward) <= t51
-    t61 = t33 * fore
-    t62 = s_bend_front_elbow_down_alike * t61
-    ahead_1 = _runtime.select(short, t28, t44 + t50 * (t30 * M))
-    del M, t50
-    t63 = outward * ahead_1
-    t64 = t62 - t63
-    t65 = fore * outward * s_bend_front_elbow_down_alike
-    del outward, s_bend_front_elbow_down_alike
-    t66 = t33 * ahead_1
-    del ahead_1
-    up = t65 + t66
-    t67 = 1.0 / np.sqrt(t64 * t64 + up * up)
-    ctheta2A = _runtime.select(folded, 1.0, -(t64 * t67))
-    del t64
-    stheta2A = _runtime.select(folded, 0.0, up * t67)
-    del t67, up
+    folded = np.abs(t31) + np.abs(onward) <= t40
+    del t40
+    t49 = fore * s_bend_front_elbow_down_alike
+    del fore, s_bend_front_elbow_down_alike
+    t50 = t31 * t49
+    ahead_1 = _runtime.select(short, t26, t34 + t39 * (t28 * M))
+    del M, t26, t28, t34, t39
+    t51 = onward * ahead_1
+    t52 = t50 - t51
+    t53 = onward * t49
+    del onward, t49
+    t54 = t31 * ahead_1
+    del ahead_1, t31
+    up = t53 + t54
+    t55 = 1.0 / np.sqrt(t52 * t52 + up * up)
+    t56 = t52 * t55
+    del t52
+    ctheta2A = _runtime.select(folded, 1.0, -t56)
+    stheta2A = _runtime.select(folded, 0.0, up * t55)
+    del t55, up
     ctheta23A = c_relative * ctheta2A - s_relative * stheta2A
     stheta23A = c_relative * stheta2A + s_relative * ctheta2A
-    t68 = t59 * (s_phi * ctheta23A) - t5 * (s_psi * stheta23A)
-    t69 = d * t68
-    del t68
-    t70 = t5 * (s_psi * ctheta23A) + t59 * (s_phi * stheta23A)
-    t71 = d * t70
-    del t70
-    gap = t69 * t69 + t71 * t71
-    t72 = N_mid - gap
-    del N_mid
+    t57 = t48 * (s_phi * ctheta23A) - t5 * (s_psi * stheta23A)
+    t58 = d * t57
+    del t57
+    t59 = t5 * (s_psi * ctheta23A) + t48 * (s_phi * stheta23A)
+    t60 = d * t59
+    del t59
+    gap = t58 * t58 + t60 * t60
+    t61 = N_mid - gap
     point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
-    point_21 = L1 * stheta2A - L2 * ctheta23A + a3 * stheta23A
+    t62 = L1 * stheta2A
+    point_21 = t62 - L2 * ctheta23A + a3 * stheta23A
     del ctheta23A, stheta23A
-    t73 = 2.0 * t69 * point_11 + 2.0 * t71 * point_21
-    room_right = t72 + t73
-    t74 = np.maximum(-(room_right / 1099511627776.0), room_right)
-    t75 = _runtime.VANISHING * t49
-    spent_right = t74 <= t75
-    del t74
-    t76 = size / 100000.0
-    t77 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t78 = 1.0 / (t76 + t77)
-    del t77
+    t63 = 2.0 * t58 * point_11 + 2.0 * t60 * point_21
+    room_right = t61 + t63
+    t64 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
+    t65 = _runtime.VANISHING * t38
+    spent_right = t64 <= t65
+    del t64
+    t66 = size / 100000.0
+    t67 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t68 = 1.0 / (t66 + t67)
+    del t67
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    del c_relative, s_relative
-    t79 = 2.0 * drawn
-    t80 = t71 - point_21
-    t81 = t69 - point_11
-    t82 = t79 * (ctheta2A * t80 - stheta2A * t81)
-    t83 = _runtime.select(spent_right, t78 * (size * np.abs(-t82)), 0.0)
-    t84 = -(_runtime.FEASIBILITY * (t49 + t83)) <= room_right
-    del t83
-    room_left = t72 - t73
+    t69 = 2.0 * drawn
+    t70 = t60 - point_21
+    t71 = t58 - point_11
+    t72 = t69 * (ctheta2A * t70 - stheta2A * t71)
+    t73 = _runtime.select(spent_right, t68 * (size * np.abs(-t72)), 0.0)
+    t74 = -(_runtime.FEASIBILITY * (t38 + t73)) <= room_right
+    del t73
+    room_left = t61 - t63
+    del t61
+    t75 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
+    spent_left = t75 <= t65
+    del t75
+    h_left_0 = t60 + point_21
+    del point_21, t60
+    r_left_0 = t58 + point_11
+    del point_11, t58
+    slope_left = t69 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
+    t76 = _runtime.select(spent_left, t68 * (size * np.abs(slope_left)), 0.0)
+    t77 = -(_runtime.FEASIBILITY * (t38 + t76)) <= room_left
+    del t76
+    t78 = -(_runtime.FEASIBILITY * t38)
+    t79 = size * size
+    t80 = t79 * t79 / 10000000000.0
+    t81 = t72 * (room_right - np.abs(room_right)) / (2.0 * (t80 + t72 * t72))
+    t82 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t80 + slope_left * slope_left))
+    turn = _runtime.select(spent_right, t81, 0.0) + _runtime.select(spent_left, -t82, 0.0)
+    del spent_left, spent_right, t81, t82
+    t83 = t72 * turn
     del t72
-    t85 = np.maximum(-(room_left / 1099511627776.0), room_left)
-    spent_left = t85 <= t75
-    del t85
-    h_left_0 = t71 + point_21
-    del point_21, t71
-    r_left_0 = t69 + point_11
-    del point_11, t69
-    slope_left = t79 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
-    del t79
-    t86 = _runtime.select(spent_left, t78 * (size * np.abs(slope_left)), 0.0)
-    del t78
-    t87 = -(_runtime.FEASIBILITY * (t49 + t86)) <= room_left
-    del t86
-    t88 = -(_runtime.FEASIBILITY * t49)
-    t89 = size * size
-    t90 = t89 * t89 / 10000000000.0
-    t91 = t82 * (room_right - np.abs(room_right)) / (2.0 * (t90 + t82 * t82))
-    t92 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t90 + slope_left * slope_left))
-    turn = _runtime.select(spent_right, t91, 0.0) + _runtime.select(spent_left, -t92, 0.0)
-    del spent_left, spent_right, t91, t92
-    t93 = t82 * turn
-    del t82
-    t94 = room_right - t93
+    t84 = room_right - t83
     del room_right
-    t95 = drawn * turn
-    del drawn
-    t96 = ctheta2A * t95
-    t97 = t80 + t96 + t81 * turn
-    t98 = stheta2A * t95
-    del t95
-    t99 = t81 - t80 * turn - t98
-    del t80, t81
-    t100 = t97 * t97 + t99 * t99
-    t101 = gap * gap
-    t102 = L1 - fore_arm
-    t103 = t102 * t102
-    M_mid = t29 * _runtime.select(t57, large_mid, small_mid)
-    del large_mid, small_mid, t57
-    t104 = M_mid + gap
-    t105 = _runtime.select(t89 * t100 < t101, t103 - t100, t73 - t93 - t104)
-    del t100, t93
-    t106 = t48 & t84 & t87 & (t88 <= t94) & (t88 <= -t105)
-    del t84, t87
-    t107 = slope_left * turn
+    t85 = drawn * turn
+    t86 = ctheta2A * t85
+    t87 = t70 + t86 + t71 * turn
+    t88 = stheta2A * t85
+    del t85
+    t89 = t71 - t70 * turn - t88
+    del t70, t71
+    t90 = t87 * t87 + t89 * t89
+    t91 = gap * gap
+    t92 = L1 - fore_arm
+    t93 = t92 * t92
+    M_mid = t27 * _runtime.select(t46, large_mid, small_mid)
+    del large_mid, small_mid, t46
+    t94 = M_mid + gap
+    t95 = _runtime.select(t79 * t90 < t91, t93 - t90, t63 - t83 - t94)
+    del t83, t90
+    t96 = t37 & t74 & t77 & (t78 <= t84) & (t78 <= -t95)
+    del t74, t77
+    t97 = slope_left * turn
     del slope_left
-    t108 = room_left + t107
+    t98 = room_left + t97
     del room_left
-    h_left = h_left_0 - t96 + r_left_0 * turn
+    h_left = h_left_0 - t86 + r_left_0 * turn
+    del t86
+    r_left = r_left_0 + t88 - h_left_0 * turn
+    del h_left_0, r_left_0, t88, turn
+    t99 = h_left * h_left + r_left * r_left
+    t100 = _runtime.select(t79 * t99 < t91, t99 - t93, t63 + t94 - t97)
+    del t63, t91, t94, t97, t99
+    unreachable = np.logical_not(t96 & (t78 <= t98) & (t78 <= t100))
     del t96
-    r_left = r_left_0 + t98 - h_left_0 * turn
-    del h_left_0, r_left_0, t98, turn
-    t109 = h_left * h_left + r_left * r_left
-    t110 = _runtime.select(t89 * t109 < t101, t109 - t103, t73 + t104 - t107)
-    del t101, t104, t107, t109, t73
-    unreachable = np.logical_not(t106 & (t88 <= t108) & (t88 <= t110))
-    del t106
-    t111 = _runtime.poison(invalid | unreachable)
-    t112 = t17 + t111
-    t113 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.abs(-t97) + np.abs(-t99) <= t113
-    t114 = np.arctan2(stheta2A, ctheta2A)
-    del ctheta2A, stheta2A
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t89
-    t115 = _runtime.VANISHING * (_runtime.VANISHING * (t49 * 16.0))
-    M_right = np.maximum(-t105, t115)
-    del t105
-    N_right = np.maximum(t94, t115)
-    del t94
-    t116 = 1.0 / (M_right + N_right)
-    t117 = 2.0 * _runtime.sign(-t58)
-    del t58
-    rN_right = np.sqrt(N_right)
-    del N_right
-    rM_right = np.sqrt(M_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t116 * (t117 * rN_right * rM_right))
-    t118 = fore_arm * s_bend_right
+    t101 = _runtime.poison(invalid | unreachable)
+    t102 = t15 + t101
+    t103 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.abs(-t87) + np.abs(-t89) <= t103
+    t104 = np.arctan2(stheta2A, ctheta2A)
+    del ctheta2A
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t79
+    t105 = _runtime.VANISHING * (_runtime.VANISHING * (t38 * 16.0))
+    M_right = np.maximum(-t95, t105)
+    del t95
+    N_right = np.maximum(t84, t105)
+    del t84
+    t106 = 1.0 / (M_right + N_right)
+    sigma_right = _runtime.sign(-t47)
+    del t47
+    t107 = 2.0 * sigma_right
+    t108 = np.sqrt(M_right * N_right)
+    s_bend_right = _runtime.select(short_right, 0.0, t106 * (t107 * t108))
+    t109 = fore_arm * s_bend_right
     del s_bend_right
-    t119 = 2.0 * fore_arm
-    ahead_1_right = _runtime.select(short_right, size, t102 + t119 * M_right * t116)
-    del M_right, t116
-    t120 = np.arctan2(t99 * t118 - t97 * ahead_1_right, -(t99 * ahead_1_right + t97 * t118))
-    del ahead_1_right, t118, t97, t99
-    t121 = _runtime.wrap_cut(_runtime.select(folded_right, t114, t120))
-    del t120
-    t122 = t121 + t111
-    del t121
+    t110 = 2.0 * fore_arm
+    ahead_1_right = _runtime.select(short_right, size, t92 + t110 * M_right * t106)
+    del t106
+    t111 = np.arctan2(t89 * t109 - t87 * ahead_1_right, -(t89 * ahead_1_right + t87 * t109))
+    del ahead_1_right, t109, t87, t89
+    t112 = _runtime.wrap_cut(_runtime.select(folded_right, t104, t111))
+    del t111
+    t113 = t112 + t101
+    del t112
     bare_right = fore_arm <= _runtime.VANISHING * size
-    t123 = 1.0 / fore_arm
-    t124 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t123), _runtime.select(bare_right, 1.0, a3 * t123))
-    del bare_right, t123
-    t125 = _runtime.select(short_right, 0.0, t117 * np.arctan2(rN_right, rM_right))
-    del rM_right, rN_right
-    t126 = _runtime.wrap(t124 + t125) + t111
-    del t125
-    folded_left = np.abs(h_left) + np.abs(r_left) <= t113
-    M_left = np.maximum(t110, 0.0)
-    del t110
-    N_left = np.maximum(t108, 0.0)
-    del t108
-    t127 = 1.0 / (M_left + N_left)
-    ahead_1_left = _runtime.select(short_right, size, t102 + t119 * M_left * t127)
-    t128 = h_left * ahead_1_left
-    rN_left = np.sqrt(N_left)
-    del N_left
-    rM_left = np.sqrt(M_left)
-    del M_left
-    s_bend_left = _runtime.select(short_right, 0.0, t127 * (t117 * rN_left * rM_left))
-    del t127
-    t129 = fore_arm * s_bend_left
+    t114 = 1.0 / fore_arm
+    t115 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t114), _runtime.select(bare_right, 1.0, a3 * t114))
+    del bare_right, t114
+    t116 = sigma_right * np.arctan2(2.0 * t108, M_right - N_right)
+    del M_right, N_right, t108
+    t117 = t115 + _runtime.select(short_right, 0.0, t116)
+    del t116
+    t118 = _runtime.wrap(t117) + t101
+    del t117
+    folded_left = np.abs(h_left) + np.abs(r_left) <= t103
+    M_left = np.maximum(t100, 0.0)
+    del t100
+    N_left = np.maximum(t98, 0.0)
+    del t98
+    t119 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t92 + t110 * M_left * t119)
+    t120 = h_left * ahead_1_left
+    t121 = np.sqrt(M_left * N_left)
+    s_bend_left = _runtime.select(short_right, 0.0, t119 * (t107 * t121))
+    del t119
+    t122 = fore_arm * s_bend_left
     del s_bend_left
-    t130 = r_left * t129
-    t131 = r_left * ahead_1_left
+    t123 = r_left * t122
+    t124 = r_left * ahead_1_left
     del ahead_1_left, r_left
-    t132 = h_left * t129
-    del h_left, t129
-    t133 = _runtime.select(folded_left, t114, np.arctan2(t128 - t130, t131 + t132))
-    t134 = _runtime.select(short_right, 0.0, t117 * np.arctan2(rN_left, rM_left))
-    del rM_left, rN_left, t117
-    t135 = _runtime.wrap(principal_pitch)
+    t125 = h_left * t122
+    del h_left, t122
+    t126 = _runtime.select(folded_left, t104, np.arctan2(t120 - t123, t124 + t125))
+    t127 = sigma_right * np.arctan2(2.0 * t121, M_left - N_left)
+    del M_left, N_left, t121
+    t128 = _runtime.select(short_right, 0.0, t127)
+    del t127
+    t129 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t136 = t135 + t111
-    t137 = _runtime.select(folded_left, t114, np.arctan2(t128 + t130, t131 - t132))
-    del t114, t128, t130, t131, t132
-    s_relative_front_elbow_down_alike = t53 + t54
-    del t53, t54
-    c_relative_front_elbow_down_alike = t55 - t56
-    del t55, t56
+    t130 = t129 + t101
+    t131 = _runtime.select(folded_left, t104, np.arctan2(t120 + t123, t124 - t125))
+    del t104, t120, t123, t124, t125
+    s_relative_front_elbow_down_alike = t42 + t43
+    del t42, t43
+    c_relative_front_elbow_down_alike = t44 - t45
+    del t44, t45
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t138 = 0.0 <= straight_mid_front_elbow_down_alike
-    t139 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    t132 = 0.0 <= straight_mid_front_elbow_down_alike
+    t133 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
     del straight_mid_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t139 * t139 / large_mid_front_elbow_down_alike
-    t140 = _runtime.select(t138, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    out_front_elbow_down_alike = t62 + t63
-    del t62, t63
-    t141 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t142 = t65 - t66
-    del t65, t66
-    t143 = 1.0 / np.sqrt(t141 + t142 * t142)
-    del t141
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, out_front_elbow_down_alike * t143)
+    small_mid_front_elbow_down_alike = t133 * t133 / large_mid_front_elbow_down_alike
+    t134 = _runtime.select(t132, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    N_mid_front_elbow_down_alike = t27 * t134
+    del t134
+    out_front_elbow_down_alike = t50 + t51
+    del t50, t51
+    t135 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t136 = t53 - t54
+    del t53, t54
+    t137 = 1.0 / np.sqrt(t135 + t136 * t136)
+    del t135
+    t138 = out_front_elbow_down_alike * t137
     del out_front_elbow_down_alike
-    t144 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t145 = _runtime.select(folded, 0.0, t142 * t143)
-    del t142, t143
-    ctheta23A_front_elbow_down_alike = t144 + s_relative_front_elbow_down_alike * t145
-    del t144
-    t146 = t59 * (s_phi * ctheta23A_front_elbow_down_alike)
-    t147 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t148 = c_relative_front_elbow_down_alike * t145 - t147
-    del t147
-    t149 = d * (t146 + t5 * (s_psi * t148))
-    del t146
-    t150 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
-    t151 = d * (t150 - t59 * (s_phi * t148))
-    del t150
-    gap_front_elbow_down_alike = t149 * t149 + t151 * t151
-    t152 = t29 * t140 - gap_front_elbow_down_alike
-    del t140
-    t153 = L1 * ctheta2A_front_elbow_down_alike - L2 * t148
-    point_11_front_elbow_down_alike = t153 + a3 * ctheta23A_front_elbow_down_alike
-    del t153
-    t154 = L1 * t145 + L2 * ctheta23A_front_elbow_down_alike
-    del ctheta23A_front_elbow_down_alike
-    t155 = t154 + a3 * t148
-    del t148, t154
-    t156 = 2.0 * t149 * point_11_front_elbow_down_alike - 2.0 * t151 * t155
-    room_right_front_elbow_down_alike = t152 + t156
-    t157 = room_right_front_elbow_down_alike / 1099511627776.0
-    t158 = np.maximum(-t157, room_right_front_elbow_down_alike)
-    del t157
-    spent_right_front_elbow_down_alike = t158 <= t75
-    del t158
-    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t159 = 1.0 / (t76 + np.abs(tilt_front_elbow_down_alike))
-    del tilt_front_elbow_down_alike
-    t160 = L1 + L_2W * s_relative_front_elbow_down_alike
-    del s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t160 + a_3W * c_relative_front_elbow_down_alike
-    del c_relative_front_elbow_down_alike, t160
-    t161 = 2.0 * drawn_front_elbow_down_alike
-    t162 = t151 + t155
-    t163 = t149 - point_11_front_elbow_down_alike
-    t164 = ctheta2A_front_elbow_down_alike * t162 + t145 * t163
-    t165 = t161 * t164
-    del t164
-    t166 = _runtime.select(spent_right_front_elbow_down_alike, t159 * (size * np.abs(-t165)), 0.0)
-    t167 = -(_runtime.FEASIBILITY * (t49 + t166)) <= room_right_front_elbow_down_alike
-    del t166
-    room_left_front_elbow_down_alike = t152 - t156
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t138)
+    t139 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t140 = _runtime.select(folded, 0.0, t136 * t137)
+    del t136, t137
+    ctheta23A_front_elbow_down_alike = t139 + s_relative_front_elbow_down_alike * t140
+    del t139
+    t141 = t48 * (s_phi * ctheta23A_front_elbow_down_alike)
+    t142 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t143 = c_relative_front_elbow_down_alike * t140 - t142
+    del t142
+    t144 = d * (t141 + t5 * (s_psi * t143))
+    del t141
+    t145 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
+    t146 = d * (t145 - t48 * (s_phi * t143))
+    del t145
+    gap_front_elbow_down_alike = t144 * t144 + t146 * t146
+    t147 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
+    t148 = L1 * ctheta2A_front_elbow_down_alike - L2 * t143
+    point_11_front_elbow_down_alike = t148 + a3 * ctheta23A_front_elbow_down_alike
+    del t148
+    t149 = L1 * t140
+    t150 = t149 + L2 * ctheta23A_front_elbow_down_alike + a3 * t143
+    del ctheta23A_front_elbow_down_alike, t143
+    t151 = 2.0 * t144 * point_11_front_elbow_down_alike - 2.0 * t146 * t150
+    room_right_front_elbow_down_alike = t147 + t151
+    t152 = room_right_front_elbow_down_alike * 9.094947017729282e-13
+    t153 = np.maximum(-t152, room_right_front_elbow_down_alike)
     del t152
-    t168 = room_left_front_elbow_down_alike / 1099511627776.0
-    t169 = np.maximum(-t168, room_left_front_elbow_down_alike)
+    spent_right_front_elbow_down_alike = t153 <= t65
+    del t153
+    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
+    t154 = 1.0 / (t66 + np.abs(tilt_front_elbow_down_alike))
+    del t66, tilt_front_elbow_down_alike
+    t155 = L1 + L_2W * s_relative_front_elbow_down_alike
+    del L_2W
+    drawn_front_elbow_down_alike = t155 + a_3W * c_relative_front_elbow_down_alike
+    del a_3W, t155
+    t156 = 2.0 * drawn_front_elbow_down_alike
+    t157 = t146 + t150
+    t158 = t144 - point_11_front_elbow_down_alike
+    t159 = ctheta2A_front_elbow_down_alike * t157 + t140 * t158
+    t160 = t156 * t159
+    del t159
+    t161 = _runtime.select(spent_right_front_elbow_down_alike, t154 * (size * np.abs(-t160)), 0.0)
+    t162 = -(_runtime.FEASIBILITY * (t38 + t161)) <= room_right_front_elbow_down_alike
+    del t161
+    room_left_front_elbow_down_alike = t147 - t151
+    del t147
+    t163 = room_left_front_elbow_down_alike * 9.094947017729282e-13
+    t164 = np.maximum(-t163, room_left_front_elbow_down_alike)
+    del t163
+    spent_left_front_elbow_down_alike = t164 <= t65
+    del t164
+    h_left_0_front_elbow_down_alike = t146 - t150
+    del t146, t150
+    t165 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = t144 + point_11_front_elbow_down_alike
+    del point_11_front_elbow_down_alike, t144
+    t166 = t165 + t140 * r_left_0_front_elbow_down_alike
+    del t165
+    slope_left_front_elbow_down_alike = t156 * t166
+    del t166
+    t167 = size * np.abs(slope_left_front_elbow_down_alike)
+    t168 = _runtime.select(spent_left_front_elbow_down_alike, t154 * t167, 0.0)
+    del t167
+    t169 = -(_runtime.FEASIBILITY * (t38 + t168)) <= room_left_front_elbow_down_alike
     del t168
-    spent_left_front_elbow_down_alike = t169 <= t75
-    del t169
-    h_left_0_front_elbow_down_alike = t151 - t155
-    del t151, t155
-    t170 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = t149 + point_11_front_elbow_down_alike
-    del point_11_front_elbow_down_alike, t149
-    t171 = t170 + t145 * r_left_0_front_elbow_down_alike
-    del t170
-    slope_left_front_elbow_down_alike = t161 * t171
-    del t161, t171
-    t172 = size * np.abs(slope_left_front_elbow_down_alike)
-    t173 = _runtime.select(spent_left_front_elbow_down_alike, t159 * t172, 0.0)
-    del t159, t172
-    t174 = -(_runtime.FEASIBILITY * (t49 + t173)) <= room_left_front_elbow_down_alike
-    del t173
-    t175 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
-    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t165 * t175 / (2.0 * (t90 + t165 * t165)), 0.0)
-    del spent_right_front_elbow_down_alike, t175
-    t176 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
-    t177 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t178 = slope_left_front_elbow_down_alike * t176 / (2.0 * (t90 + t177))
-    del t176, t177
-    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t178, 0.0)
-    del spent_left_front_elbow_down_alike, t178
+    t170 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
+    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t160 * t170 / (2.0 * (t80 + t160 * t160)), 0.0)
+    del spent_right_front_elbow_down_alike, t170
+    t171 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
+    t172 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t173 = slope_left_front_elbow_down_alike * t171 / (2.0 * (t80 + t172))
+    del t171, t172
+    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t173, 0.0)
+    del spent_left_front_elbow_down_alike, t173
     turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
     del turn_left_front_elbow_down_alike, turn_right_front_elbow_down_alike
-    t179 = t165 * turn_front_elbow_down_alike
-    del t165
-    t180 = room_right_front_elbow_down_alike - t179
+    t174 = t160 * turn_front_elbow_down_alike
+    del t160
+    t175 = room_right_front_elbow_down_alike - t174
     del room_right_front_elbow_down_alike
-    t181 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
-    del drawn_front_elbow_down_alike
-    t182 = ctheta2A_front_elbow_down_alike * t181
-    t183 = t162 + t182 + t163 * turn_front_elbow_down_alike
-    t184 = t145 * t181
-    del t181
-    t185 = t163 - t162 * turn_front_elbow_down_alike + t184
-    del t162, t163
-    t186 = t183 * t183 + t185 * t185
-    t187 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t188 = _runtime.select(t138, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t138
-    M_mid_front_elbow_down_alike = t29 * t188
-    del t188
-    t189 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t190 = _runtime.select(t89 * t186 < t187, t103 - t186, t156 - t179 - t189)
-    del t179, t186
-    t191 = t48 & t167 & t174 & (t88 <= t180) & (t88 <= -t190)
-    del t167, t174, t48
-    t192 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
+    t176 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
+    t177 = ctheta2A_front_elbow_down_alike * t176
+    t178 = t157 + t177 + t158 * turn_front_elbow_down_alike
+    t179 = t140 * t176
+    del t176
+    t180 = t158 - t157 * turn_front_elbow_down_alike + t179
+    del t157, t158
+    t181 = t178 * t178 + t180 * t180
+    t182 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t183 = _runtime.select(t132, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t132
+    M_mid_front_elbow_down_alike = t27 * t183
+    del t183, t27
+    t184 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t185 = _runtime.select(t79 * t181 < t182, t93 - t181, t151 - t174 - t184)
+    del t174, t181
+    t186 = t37 & t162 & t169 & (t78 <= t175) & (t78 <= -t185)
+    del t162, t169
+    t187 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
     del slope_left_front_elbow_down_alike
-    t193 = room_left_front_elbow_down_alike + t192
+    t188 = room_left_front_elbow_down_alike + t187
     del room_left_front_elbow_down_alike
-    t194 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t182 + t194
-    del t182, t194
-    t195 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    t196 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    t189 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
+    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t177 + t189
+    del t177, t189
+    t190 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
+    t191 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
     del h_left_0_front_elbow_down_alike, turn_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t184 - t196
-    del r_left_0_front_elbow_down_alike, t184, t196
-    t197 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t198 = t195 + t197
-    del t195, t197
-    t199 = _runtime.select(t89 * t198 < t187, t198 - t103, t156 + t189 - t192)
-    del t156, t187, t189, t192, t198
-    unreachable_2 = np.logical_not(t191 & (t88 <= t193) & (t88 <= t199))
-    del t191
-    t200 = _runtime.poison(invalid | unreachable_2)
-    t201 = t17 + t200
-    del t17
-    folded_right_front_elbow_down_alike = np.abs(-t183) + np.abs(-t185) <= t113
-    t202 = np.arctan2(-t145, ctheta2A_front_elbow_down_alike)
-    del ctheta2A_front_elbow_down_alike, t145
-    M_right_front_elbow_down_alike = np.maximum(-t190, t115)
-    del t190
-    N_right_front_elbow_down_alike = np.maximum(t180, t115)
-    del t180
+    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t179 - t191
+    del r_left_0_front_elbow_down_alike, t179, t191
+    t192 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
+    t193 = t190 + t192
+    del t190, t192
+    t194 = _runtime.select(t79 * t193 < t182, t193 - t93, t151 + t184 - t187)
+    del t151, t182, t184, t187, t193
+    unreachable_2 = np.logical_not(t186 & (t78 <= t188) & (t78 <= t194))
+    del t186
+    t195 = _runtime.poison(invalid | unreachable_2)
+    t196 = t15 + t195
+    del t15
+    folded_right_front_elbow_down_alike = np.abs(-t178) + np.abs(-t180) <= t103
+    t197 = np.arctan2(-t140, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike
+    M_right_front_elbow_down_alike = np.maximum(-t185, t105)
+    del t185
+    N_right_front_elbow_down_alike = np.maximum(t175, t105)
+    del t175
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t203 = 1.0 / whole_right_front_elbow_down_alike
+    t198 = 1.0 / whole_right_front_elbow_down_alike
     del whole_right_front_elbow_down_alike
-    t204 = 2.0 * _runtime.sign(-t139)
-    del t139
-    rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    del N_right_front_elbow_down_alike
-    rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    t205 = t204 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t203 * t205)
-    del t205
-    t206 = fore_arm * s_bend_right_front_elbow_down_alike
+    sigma_right_front_elbow_down_alike = _runtime.sign(-t133)
+    del t133
+    t199 = 2.0 * sigma_right_front_elbow_down_alike
+    t200 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t201 = np.sqrt(t200)
+    del t200
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t198 * (t199 * t201))
+    t202 = fore_arm * s_bend_right_front_elbow_down_alike
     del s_bend_right_front_elbow_down_alike
-    t207 = t102 + t119 * M_right_front_elbow_down_alike * t203
-    del M_right_front_elbow_down_alike, t203
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t207)
-    del t207
-    up_right_front_elbow_down_alike = t185 * t206 - t183 * ahead_1_right_front_elbow_down_alike
-    t208 = t185 * ahead_1_right_front_elbow_down_alike + t183 * t206
-    del ahead_1_right_front_elbow_down_alike, t183, t185, t206
-    t209 = np.arctan2(up_right_front_elbow_down_alike, -t208)
-    del t208, up_right_front_elbow_down_alike
-    t210 = _runtime.select(folded_right_front_elbow_down_alike, t202, t209)
+    t203 = t92 + t110 * M_right_front_elbow_down_alike * t198
+    del t198
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t203)
+    del t203
+    up_right_front_elbow_down_alike = t180 * t202 - t178 * ahead_1_right_front_elbow_down_alike
+    t204 = t180 * ahead_1_right_front_elbow_down_alike + t178 * t202
+    del ahead_1_right_front_elbow_down_alike, t178, t180, t202
+    t205 = np.arctan2(up_right_front_elbow_down_alike, -t204)
+    del t204, up_right_front_elbow_down_alike
+    t206 = _runtime.select(folded_right_front_elbow_down_alike, t197, t205)
+    del t205
+    t207 = _runtime.wrap_cut(t206) + t195
+    del t206
+    t208 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    del M_right_front_elbow_down_alike, N_right_front_elbow_down_alike
+    t209 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t201, t208)
+    del t201, t208
+    t210 = t115 + _runtime.select(short_right, 0.0, t209)
     del t209
-    t211 = _runtime.wrap_cut(t210) + t200
+    t211 = _runtime.wrap(t210) + t195
     del t210
-    t212 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    del rM_right_front_elbow_down_alike, rN_right_front_elbow_down_alike
-    t213 = _runtime.select(short_right, 0.0, t204 * t212)
+    t212 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t212 <= t103
     del t212
-    t214 = _runtime.wrap(t124 + t213) + t200
-    del t213
-    t215 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t215 <= t113
-    del t215
-    M_left_front_elbow_down_alike = np.maximum(t199, 0.0)
-    del t199
-    N_left_front_elbow_down_alike = np.maximum(t193, 0.0)
-    del t193
+    M_left_front_elbow_down_alike = np.maximum(t194, 0.0)
+    del t194
+    N_left_front_elbow_down_alike = np.maximum(t188, 0.0)
+    del t188
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t216 = 1.0 / whole_left_front_elbow_down_alike
+    t213 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    t217 = t102 + t119 * M_left_front_elbow_down_alike * t216
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t217)
-    del t217
-    t218 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
-    del N_left_front_elbow_down_alike
-    rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    del M_left_front_elbow_down_alike
-    t219 = t204 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t216 * t219)
-    del t216, t219
-    t220 = fore_arm * s_bend_left_front_elbow_down_alike
+    t214 = t92 + t110 * M_left_front_elbow_down_alike * t213
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t214)
+    del t214
+    t215 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t216 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t217 = np.sqrt(t216)
+    del t216
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t213 * (t199 * t217))
+    del t213
+    t218 = fore_arm * s_bend_left_front_elbow_down_alike
     del s_bend_left_front_elbow_down_alike
-    t221 = r_left_front_elbow_down_alike * t220
-    t222 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t219 = r_left_front_elbow_down_alike * t218
+    t220 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
-    t223 = h_left_front_elbow_down_alike * t220
-    del h_left_front_elbow_down_alike, t220
-    t224 = _runtime.select(folded_left_front_elbow_down_alike, t202, np.arctan2(t218 - t221, t222 + t223))
-    t225 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    del rM_left_front_elbow_down_alike, rN_left_front_elbow_down_alike
-    t226 = _runtime.select(short_right, 0.0, t204 * t225)
-    del t204, t225
-    t227 = t135 + t200
-    t228 = _runtime.select(folded_left_front_elbow_down_alike, t202, np.arctan2(t218 + t221, t222 - t223))
-    del t202, t218, t221, t222, t223
-    t229 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t16))
-    del t16, t2
-    c1_rear_elbow_up_alike = _runtime.select(nowhere, 1.0, -(t35 * (t38 + t39)))
-    del t38, t39
-    s1_rear_elbow_up_alike = _runtime.select(nowhere, 0.0, t35 * (t40 - t41))
-    del t35, t40, t41
-    outward_rear_elbow_up_alike = x * c1_rear_elbow_up_alike + y * s1_rear_elbow_up_alike
-    del c1_rear_elbow_up_alike, s1_rear_elbow_up_alike
-    t230 = outward_rear_elbow_up_alike * outward_rear_elbow_up_alike
-    square_rear_elbow_up_alike = t34 + t230
-    del t230, t34
-    t231 = t32 - square_rear_elbow_up_alike
-    del t32
-    t232 = square_rear_elbow_up_alike - t46
-    del square_rear_elbow_up_alike, t46
-    t233 = t27 & (t31 <= t231) & (-t45 <= t232)
-    del t27, t31, t45
-    N_rear_elbow_up_alike = np.maximum(t231, 0.0)
-    del t231
-    M_rear_elbow_up_alike = np.maximum(t232, 0.0)
+    t221 = h_left_front_elbow_down_alike * t218
+    del h_left_front_elbow_down_alike, t218
+    t222 = _runtime.select(folded_left_front_elbow_down_alike, t197, np.arctan2(t215 - t219, t220 + t221))
+    t223 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    del M_left_front_elbow_down_alike, N_left_front_elbow_down_alike
+    t224 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t217, t223)
+    del t217, t223
+    t225 = _runtime.select(short_right, 0.0, t224)
+    del t224
+    t226 = t129 + t195
+    t227 = _runtime.select(folded_left_front_elbow_down_alike, t197, np.arctan2(t215 + t219, t220 - t221))
+    del t197, t215, t219, t220, t221
+    t228 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t14))
+    del t14, t2
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, t56)
+    del t56
+    t229 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t229 - s_relative_front_elbow_down_alike * stheta2A
+    del t229
+    t230 = t48 * (s_phi * ctheta23A_rear_elbow_up_alike)
+    t231 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    del s_relative_front_elbow_down_alike
+    stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + t231
+    del c_relative_front_elbow_down_alike, t231
+    t232 = t230 - t5 * (s_psi * stheta23A_rear_elbow_up_alike)
+    del t230
+    t233 = d * t232
     del t232
-    t234 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
-    whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
-    t235 = 1.0 / whole_rear_elbow_up_alike
-    del whole_rear_elbow_up_alike
-    c_bend_rear_elbow_up_alike = _runtime.select(short, 1.0, -(t234 * t235))
+    t234 = t48 * (s_phi * stheta23A_rear_elbow_up_alike)
+    t235 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) + t234
     del t234
-    t236 = s_lag * c_bend_rear_elbow_up_alike
-    t237 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
-    del N_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = _runtime.select(short, 0.0, t235 * t237)
-    del t237
-    t238 = c_lag * s_bend_rear_elbow_up_alike
-    s_relative_rear_elbow_up_alike = t236 + t238
-    t239 = c_lag * c_bend_rear_elbow_up_alike
-    del c_bend_rear_elbow_up_alike, c_lag
-    t240 = s_lag * s_bend_rear_elbow_up_alike
-    del s_lag
-    c_relative_rear_elbow_up_alike = t239 - t240
-    straight_mid_rear_elbow_up_alike = L2 * s_relative_rear_elbow_up_alike + a3 * c_relative_rear_elbow_up_alike
-    t241 = 0.0 <= straight_mid_rear_elbow_up_alike
-    t242 = L2 * c_relative_rear_elbow_up_alike - a3 * s_relative_rear_elbow_up_alike
-    large_mid_rear_elbow_up_alike = fore_arm + np.abs(straight_mid_rear_elbow_up_alike)
-    del straight_mid_rear_elbow_up_alike
-    small_mid_rear_elbow_up_alike = t242 * t242 / large_mid_rear_elbow_up_alike
-    t243 = _runtime.select(t241, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
-    folded_rear_elbow_up_alike = t60 + np.abs(outward_rear_elbow_up_alike) <= t51
-    del t51, t60
-    t244 = t61 * s_bend_rear_elbow_up_alike
-    del t61
-    ahead_1_rear_elbow_up_alike = _runtime.select(short, t28, t44 + t235 * (t30 * M_rear_elbow_up_alike))
-    del M_rear_elbow_up_alike, t235, t28, t30, t44
-    t245 = outward_rear_elbow_up_alike * ahead_1_rear_elbow_up_alike
-    out_rear_elbow_up_alike = t244 + t245
-    t246 = out_rear_elbow_up_alike * out_rear_elbow_up_alike
-    t247 = fore * outward_rear_elbow_up_alike * s_bend_rear_elbow_up_alike
-    del fore, outward_rear_elbow_up_alike, s_bend_rear_elbow_up_alike
-    t248 = t33 * ahead_1_rear_elbow_up_alike
-    del ahead_1_rear_elbow_up_alike, t33
-    t249 = t247 - t248
-    t250 = 1.0 / np.sqrt(t246 + t249 * t249)
+    t236 = d * t235
+    del t235
+    gap_rear_elbow_up_alike = t233 * t233 + t236 * t236
+    t237 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    del N_mid_front_elbow_down_alike
+    t238 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t238 + a3 * ctheta23A_rear_elbow_up_alike
+    del t238
+    point_21_rear_elbow_up_alike = t62 - L2 * ctheta23A_rear_elbow_up_alike + a3 * stheta23A_rear_elbow_up_alike
+    del ctheta23A_rear_elbow_up_alike, stheta23A_rear_elbow_up_alike, t62
+    t239 = 2.0 * t233 * point_11_rear_elbow_up_alike + 2.0 * t236 * point_21_rear_elbow_up_alike
+    room_right_rear_elbow_up_alike = t237 + t239
+    t240 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t241 = np.maximum(-t240, room_right_rear_elbow_up_alike)
+    del t240
+    spent_right_rear_elbow_up_alike = t241 <= t65
+    del t241
+    t242 = t236 - point_21_rear_elbow_up_alike
+    t243 = t233 - point_11_rear_elbow_up_alike
+    t244 = ctheta2A_rear_elbow_up_alike * t242 - stheta2A * t243
+    t245 = t156 * t244
+    del t244
+    t246 = _runtime.select(spent_right_rear_elbow_up_alike, t154 * (size * np.abs(-t245)), 0.0)
+    t247 = -(_runtime.FEASIBILITY * (t38 + t246)) <= room_right_rear_elbow_up_alike
     del t246
-    ctheta2A_rear_elbow_up_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, out_rear_elbow_up_alike * t250)
-    del out_rear_elbow_up_alike
-    t251 = c_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t252 = _runtime.select(folded_rear_elbow_up_alike, 0.0, t249 * t250)
-    del t249, t250
-    ctheta23A_rear_elbow_up_alike = t251 + s_relative_rear_elbow_up_alike * t252
-    del t251
-    t253 = t59 * (s_phi * ctheta23A_rear_elbow_up_alike)
-    t254 = s_relative_rear_elbow_up_alike * ctheta2A_rear_elbow_up_alike
-    t255 = c_relative_rear_elbow_up_alike * t252 - t254
-    del t254
-    t256 = d * (t253 + t5 * (s_psi * t255))
+    room_left_rear_elbow_up_alike = t237 - t239
+    del t237
+    t248 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t249 = np.maximum(-t248, room_left_rear_elbow_up_alike)
+    del t248
+    spent_left_rear_elbow_up_alike = t249 <= t65
+    del t249
+    h_left_0_rear_elbow_up_alike = t236 + point_21_rear_elbow_up_alike
+    del point_21_rear_elbow_up_alike, t236
+    t250 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t233 + point_11_rear_elbow_up_alike
+    del point_11_rear_elbow_up_alike, t233
+    t251 = t250 - stheta2A * r_left_0_rear_elbow_up_alike
+    del t250
+    slope_left_rear_elbow_up_alike = t156 * t251
+    del t156, t251
+    t252 = size * np.abs(slope_left_rear_elbow_up_alike)
+    t253 = _runtime.select(spent_left_rear_elbow_up_alike, t154 * t252, 0.0)
+    del t154, t252
+    t254 = -(_runtime.FEASIBILITY * (t38 + t253)) <= room_left_rear_elbow_up_alike
     del t253
-    t257 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) - t59 * (s_phi * t255)
-    t258 = d * t257
-    del t257
-    gap_rear_elbow_up_alike = t256 * t256 + t258 * t258
-    t259 = t29 * t243 - gap_rear_elbow_up_alike
-    del t243
-    t260 = L1 * ctheta2A_rear_elbow_up_alike - L2 * t255
-    point_11_rear_elbow_up_alike = t260 + a3 * ctheta23A_rear_elbow_up_alike
-    del t260
-    t261 = L1 * t252 + L2 * ctheta23A_rear_elbow_up_alike
-    del ctheta23A_rear_elbow_up_alike
-    t262 = t261 + a3 * t255
-    del t255, t261
-    t263 = 2.0 * t256 * point_11_rear_elbow_up_alike - 2.0 * t258 * t262
-    room_right_rear_elbow_up_alike = t259 + t263
-    t264 = room_right_rear_elbow_up_alike / 1099511627776.0
-    t265 = np.maximum(-t264, room_right_rear_elbow_up_alike)
-    del t264
-    spent_right_rear_elbow_up_alike = t265 <= t75
-    del t265
-    tilt_rear_elbow_up_alike = L_2W * c_relative_rear_elbow_up_alike - a_3W * s_relative_rear_elbow_up_alike
-    t266 = 1.0 / (t76 + np.abs(tilt_rear_elbow_up_alike))
-    del tilt_rear_elbow_up_alike
-    drawn_rear_elbow_up_alike = L1 + L_2W * s_relative_rear_elbow_up_alike + a_3W * c_relative_rear_elbow_up_alike
-    del c_relative_rear_elbow_up_alike, s_relative_rear_elbow_up_alike
-    t267 = 2.0 * drawn_rear_elbow_up_alike
-    t268 = t258 + t262
-    t269 = t256 - point_11_rear_elbow_up_alike
-    t270 = ctheta2A_rear_elbow_up_alike * t268 + t252 * t269
-    t271 = t267 * t270
-    del t270
-    t272 = _runtime.select(spent_right_rear_elbow_up_alike, t266 * (size * np.abs(-t271)), 0.0)
-    t273 = -(_runtime.FEASIBILITY * (t49 + t272)) <= room_right_rear_elbow_up_alike
-    del t272
-    room_left_rear_elbow_up_alike = t259 - t263
-    del t259
-    t274 = room_left_rear_elbow_up_alike / 1099511627776.0
-    t275 = np.maximum(-t274, room_left_rear_elbow_up_alike)
-    del t274
-    spent_left_rear_elbow_up_alike = t275 <= t75
-    del t275
-    h_left_0_rear_elbow_up_alike = t258 - t262
-    del t258, t262
-    t276 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t256 + point_11_rear_elbow_up_alike
-    del point_11_rear_elbow_up_alike, t256
-    slope_left_rear_elbow_up_alike = t267 * (t276 + t252 * r_left_0_rear_elbow_up_alike)
-    del t267, t276
-    t277 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t278 = _runtime.select(spent_left_rear_elbow_up_alike, t266 * t277, 0.0)
-    del t266, t277
-    t279 = -(_runtime.FEASIBILITY * (t49 + t278)) <= room_left_rear_elbow_up_alike
-    del t278
-    t280 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
-    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t271 * t280 / (2.0 * (t90 + t271 * t271)), 0.0)
-    del spent_right_rear_elbow_up_alike, t280
-    t281 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
-    t282 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t283 = slope_left_rear_elbow_up_alike * t281 / (2.0 * (t90 + t282))
-    del t281, t282
-    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t283, 0.0)
-    del spent_left_rear_elbow_up_alike, t283
+    t255 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
+    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t245 * t255 / (2.0 * (t80 + t245 * t245)), 0.0)
+    del spent_right_rear_elbow_up_alike, t255
+    t256 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
+    t257 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t258 = slope_left_rear_elbow_up_alike * t256 / (2.0 * (t80 + t257))
+    del t256, t257
+    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t258, 0.0)
+    del spent_left_rear_elbow_up_alike, t258
     turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
     del turn_left_rear_elbow_up_alike, turn_right_rear_elbow_up_alike
-    t284 = t271 * turn_rear_elbow_up_alike
-    del t271
-    t285 = room_right_rear_elbow_up_alike - t284
+    t259 = t245 * turn_rear_elbow_up_alike
+    del t245
+    t260 = room_right_rear_elbow_up_alike - t259
     del room_right_rear_elbow_up_alike
-    t286 = drawn_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    del drawn_rear_elbow_up_alike
-    t287 = ctheta2A_rear_elbow_up_alike * t286
-    t288 = t268 + t287 + t269 * turn_rear_elbow_up_alike
-    t289 = t252 * t286
-    del t286
-    t290 = t269 - t268 * turn_rear_elbow_up_alike + t289
-    del t268, t269
-    t291 = t288 * t288 + t290 * t290
-    t292 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t293 = _runtime.select(t241, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
-    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t241
-    M_mid_rear_elbow_up_alike = t29 * t293
-    del t293
-    t294 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
-    t295 = _runtime.select(t89 * t291 < t292, t103 - t291, t263 - t284 - t294)
-    del t284, t291
-    t296 = t233 & t273 & t279 & (t88 <= t285) & (t88 <= -t295)
-    del t273, t279
-    t297 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t261 = drawn_front_elbow_down_alike * turn_rear_elbow_up_alike
+    del drawn_front_elbow_down_alike
+    t262 = ctheta2A_rear_elbow_up_alike * t261
+    t263 = t242 + t262 + t243 * turn_rear_elbow_up_alike
+    t264 = stheta2A * t261
+    del t261
+    t265 = t243 - t242 * turn_rear_elbow_up_alike - t264
+    del t242, t243
+    t266 = t263 * t263 + t265 * t265
+    t267 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t268 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t269 = _runtime.select(t79 * t266 < t267, t93 - t266, t239 - t259 - t268)
+    del t259, t266
+    t270 = t37 & t247 & t254 & (t78 <= t260) & (t78 <= -t269)
+    del t247, t254
+    t271 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
     del slope_left_rear_elbow_up_alike
-    t298 = room_left_rear_elbow_up_alike + t297
+    t272 = room_left_rear_elbow_up_alike + t271
     del room_left_rear_elbow_up_alike
-    t299 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t287 + t299
-    del t287, t299
-    t300 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    t301 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    t273 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t262 + t273
+    del t262, t273
+    t274 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
+    t275 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
     del h_left_0_rear_elbow_up_alike, turn_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike - t289 - t301
-    del r_left_0_rear_elbow_up_alike, t289, t301
-    t302 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t303 = t300 + t302
-    del t300, t302
-    t304 = _runtime.select(t89 * t303 < t292, t303 - t103, t263 + t294 - t297)
-    del t263, t292, t294, t297, t303
-    unreachable_3 = np.logical_not(t296 & (t88 <= t298) & (t88 <= t304))
-    del t296
-    t305 = _runtime.poison(invalid | unreachable_3)
-    t306 = t229 + t305
-    folded_right_rear_elbow_up_alike = np.abs(-t288) + np.abs(-t290) <= t113
-    t307 = np.arctan2(-t252, ctheta2A_rear_elbow_up_alike)
-    del ctheta2A_rear_elbow_up_alike, t252
-    M_right_rear_elbow_up_alike = np.maximum(-t295, t115)
-    del t295
-    N_right_rear_elbow_up_alike = np.maximum(t285, t115)
-    del t285
+    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t264 - t275
+    del r_left_0_rear_elbow_up_alike, t264, t275
+    t276 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
+    t277 = t274 + t276
+    del t274, t276
+    t278 = _runtime.select(t79 * t277 < t267, t277 - t93, t239 + t268 - t271)
+    del t239, t267, t268, t271, t277
+    unreachable_3 = np.logical_not(t270 & (t78 <= t272) & (t78 <= t278))
+    del t270
+    t279 = _runtime.poison(invalid | unreachable_3)
+    t280 = t228 + t279
+    folded_right_rear_elbow_up_alike = np.abs(-t263) + np.abs(-t265) <= t103
+    t281 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, stheta2A
+    M_right_rear_elbow_up_alike = np.maximum(-t269, t105)
+    del t269
+    N_right_rear_elbow_up_alike = np.maximum(t260, t105)
+    del t260
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t308 = 1.0 / whole_right_rear_elbow_up_alike
+    t282 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    t309 = 2.0 * _runtime.sign(-t242)
-    del t242
-    rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    del N_right_rear_elbow_up_alike
-    rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    t310 = t309 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t308 * t310)
-    del t310
-    t311 = fore_arm * s_bend_right_rear_elbow_up_alike
+    t283 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t284 = np.sqrt(t283)
+    del t283
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t282 * (t199 * t284))
+    t285 = fore_arm * s_bend_right_rear_elbow_up_alike
     del s_bend_right_rear_elbow_up_alike
-    t312 = t102 + t119 * M_right_rear_elbow_up_alike * t308
-    del M_right_rear_elbow_up_alike, t308
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t312)
-    del t312
-    up_right_rear_elbow_up_alike = t290 * t311 - t288 * ahead_1_right_rear_elbow_up_alike
-    t313 = t290 * ahead_1_right_rear_elbow_up_alike + t288 * t311
-    del ahead_1_right_rear_elbow_up_alike, t288, t290, t311
-    t314 = np.arctan2(up_right_rear_elbow_up_alike, -t313)
-    del t313, up_right_rear_elbow_up_alike
-    t315 = _runtime.select(folded_right_rear_elbow_up_alike, t307, t314)
-    del t314
-    t316 = _runtime.wrap_cut(t315) + t305
-    del t315
-    t317 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    del rM_right_rear_elbow_up_alike, rN_right_rear_elbow_up_alike
-    t318 = _runtime.select(short_right, 0.0, t309 * t317)
-    del t317
-    t319 = _runtime.wrap(t124 + t318) + t305
-    del t318
-    t320 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t320 <= t113
-    del t320
-    M_left_rear_elbow_up_alike = np.maximum(t304, 0.0)
-    del t304
-    N_left_rear_elbow_up_alike = np.maximum(t298, 0.0)
-    del t298
+    t286 = t92 + t110 * M_right_rear_elbow_up_alike * t282
+    del t282
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t286)
+    del t286
+    up_right_rear_elbow_up_alike = t265 * t285 - t263 * ahead_1_right_rear_elbow_up_alike
+    t287 = t265 * ahead_1_right_rear_elbow_up_alike + t263 * t285
+    del ahead_1_right_rear_elbow_up_alike, t263, t265, t285
+    t288 = np.arctan2(up_right_rear_elbow_up_alike, -t287)
+    del t287, up_right_rear_elbow_up_alike
+    t289 = _runtime.select(folded_right_rear_elbow_up_alike, t281, t288)
+    del t288
+    t290 = _runtime.wrap_cut(t289) + t279
+    del t289
+    t291 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    del M_right_rear_elbow_up_alike, N_right_rear_elbow_up_alike
+    t292 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t284, t291)
+    del t284, t291
+    t293 = t115 + _runtime.select(short_right, 0.0, t292)
+    del t292
+    t294 = _runtime.wrap(t293) + t279
+    del t293
+    t295 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t295 <= t103
+    del t295
+    M_left_rear_elbow_up_alike = np.maximum(t278, 0.0)
+    del t278
+    N_left_rear_elbow_up_alike = np.maximum(t272, 0.0)
+    del t272
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t321 = 1.0 / whole_left_rear_elbow_up_alike
+    t296 = 1.0 / whole_left_rear_elbow_up_alike
     del whole_left_rear_elbow_up_alike
-    t322 = t102 + t119 * M_left_rear_elbow_up_alike * t321
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t322)
-    del t322
-    t323 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
-    del N_left_rear_elbow_up_alike
-    rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    del M_left_rear_elbow_up_alike
-    t324 = t309 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t321 * t324)
-    del t321, t324
-    t325 = fore_arm * s_bend_left_rear_elbow_up_alike
+    t297 = t92 + t110 * M_left_rear_elbow_up_alike * t296
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t297)
+    del t297
+    t298 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t299 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t300 = np.sqrt(t299)
+    del t299
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t296 * (t199 * t300))
+    del t199, t296
+    t301 = fore_arm * s_bend_left_rear_elbow_up_alike
     del s_bend_left_rear_elbow_up_alike
-    t326 = r_left_rear_elbow_up_alike * t325
-    t327 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t302 = r_left_rear_elbow_up_alike * t301
+    t303 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
-    t328 = h_left_rear_elbow_up_alike * t325
-    del h_left_rear_elbow_up_alike, t325
-    t329 = _runtime.select(folded_left_rear_elbow_up_alike, t307, np.arctan2(t323 - t326, t327 + t328))
-    t330 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    del rM_left_rear_elbow_up_alike, rN_left_rear_elbow_up_alike
-    t331 = _runtime.select(short_right, 0.0, t309 * t330)
-    del t309, t330
-    t332 = t135 + t305
-    t333 = _runtime.select(folded_left_rear_elbow_up_alike, t307, np.arctan2(t323 + t326, t327 - t328))
-    del t307, t323, t326, t327, t328
-    s_relative_rear_elbow_down_alike = t236 - t238
-    del t236, t238
-    c_relative_rear_elbow_down_alike = t239 + t240
-    del t239, t240
-    straight_mid_rear_elbow_down_alike = L2 * s_relative_rear_elbow_down_alike + a3 * c_relative_rear_elbow_down_alike
-    t334 = 0.0 <= straight_mid_rear_elbow_down_alike
-    t335 = L2 * c_relative_rear_elbow_down_alike - a3 * s_relative_rear_elbow_down_alike
-    large_mid_rear_elbow_down_alike = fore_arm + np.abs(straight_mid_rear_elbow_down_alike)
-    del straight_mid_rear_elbow_down_alike
-    small_mid_rear_elbow_down_alike = t335 * t335 / large_mid_rear_elbow_down_alike
-    t336 = _runtime.select(t334, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
-    t337 = t244 - t245
-    del t244, t245
-    up_rear_elbow_down_alike = t247 + t248
-    del t247, t248
-    t338 = up_rear_elbow_down_alike * up_rear_elbow_down_alike
-    t339 = 1.0 / np.sqrt(t337 * t337 + t338)
-    del t338
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 1.0, -(t337 * t339))
-    del t337
-    t340 = c_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta2A_rear_elbow_down_alike = _runtime.select(folded_rear_elbow_up_alike, 0.0, up_rear_elbow_down_alike * t339)
-    del t339, up_rear_elbow_down_alike
-    t341 = s_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    ctheta23A_rear_elbow_down_alike = t340 - t341
-    del t340, t341
-    t342 = t59 * (s_phi * ctheta23A_rear_elbow_down_alike)
-    t343 = c_relative_rear_elbow_down_alike * stheta2A_rear_elbow_down_alike
-    t344 = s_relative_rear_elbow_down_alike * ctheta2A_rear_elbow_down_alike
-    stheta23A_rear_elbow_down_alike = t343 + t344
-    del t343, t344
-    t345 = t5 * (s_psi * stheta23A_rear_elbow_down_alike)
-    t346 = d * (t342 - t345)
-    del t342, t345
-    t347 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
+    t304 = h_left_rear_elbow_up_alike * t301
+    del h_left_rear_elbow_up_alike, t301
+    t305 = _runtime.select(folded_left_rear_elbow_up_alike, t281, np.arctan2(t298 - t302, t303 + t304))
+    t306 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    del M_left_rear_elbow_up_alike, N_left_rear_elbow_up_alike
+    t307 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t300, t306)
+    del sigma_right_front_elbow_down_alike, t300, t306
+    t308 = _runtime.select(short_right, 0.0, t307)
+    del t307
+    t309 = t129 + t279
+    t310 = _runtime.select(folded_left_rear_elbow_up_alike, t281, np.arctan2(t298 + t302, t303 - t304))
+    del t281, t298, t302, t303, t304
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t138)
+    del t138
+    ctheta23A_rear_elbow_down_alike = c_relative * ctheta2A_rear_elbow_down_alike + s_relative * t140
+    t311 = t48 * (s_phi * ctheta23A_rear_elbow_down_alike)
+    t312 = c_relative * t140 - s_relative * ctheta2A_rear_elbow_down_alike
+    del c_relative, s_relative
+    t313 = d * (t311 + t5 * (s_psi * t312))
+    del t311
+    t314 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
     del s_psi, t5
-    t348 = t59 * (s_phi * stheta23A_rear_elbow_down_alike)
-    del s_phi, t59
-    t349 = d * (t347 + t348)
-    del t347, t348
-    gap_rear_elbow_down_alike = t346 * t346 + t349 * t349
-    t350 = t29 * t336 - gap_rear_elbow_down_alike
-    del t336
-    t351 = L1 * ctheta2A_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t351 + a3 * ctheta23A_rear_elbow_down_alike
-    del t351
-    t352 = L1 * stheta2A_rear_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
-    del ctheta23A_rear_elbow_down_alike
-    point_21_rear_elbow_down_alike = t352 + a3 * stheta23A_rear_elbow_down_alike
-    del stheta23A_rear_elbow_down_alike, t352
-    t353 = 2.0 * t346 * point_11_rear_elbow_down_alike + 2.0 * t349 * point_21_rear_elbow_down_alike
-    room_right_rear_elbow_down_alike = t350 + t353
-    t354 = room_right_rear_elbow_down_alike / 1099511627776.0
-    t355 = np.maximum(-t354, room_right_rear_elbow_down_alike)
-    del t354
-    spent_right_rear_elbow_down_alike = t355 <= t75
-    del t355
-    tilt_rear_elbow_down_alike = L_2W * c_relative_rear_elbow_down_alike - a_3W * s_relative_rear_elbow_down_alike
-    t356 = 1.0 / (t76 + np.abs(tilt_rear_elbow_down_alike))
-    del t76, tilt_rear_elbow_down_alike
-    drawn_rear_elbow_down_alike = L1 + L_2W * s_relative_rear_elbow_down_alike + a_3W * c_relative_rear_elbow_down_alike
-    del L_2W, a_3W, c_relative_rear_elbow_down_alike, s_relative_rear_elbow_down_alike
-    t357 = 2.0 * drawn_rear_elbow_down_alike
-    t358 = t349 - point_21_rear_elbow_down_alike
-    t359 = t346 - point_11_rear_elbow_down_alike
-    t360 = ctheta2A_rear_elbow_down_alike * t358 - stheta2A_rear_elbow_down_alike * t359
-    t361 = t357 * t360
-    del t360
-    t362 = _runtime.select(spent_right_rear_elbow_down_alike, t356 * (size * np.abs(-t361)), 0.0)
-    t363 = -(_runtime.FEASIBILITY * (t49 + t362)) <= room_right_rear_elbow_down_alike
-    del t362
-    room_left_rear_elbow_down_alike = t350 - t353
-    del t350
-    t364 = room_left_rear_elbow_down_alike / 1099511627776.0
-    t365 = np.maximum(-t364, room_left_rear_elbow_down_alike)
-    del t364
-    spent_left_rear_elbow_down_alike = t365 <= t75
-    del t365, t75
-    h_left_0_rear_elbow_down_alike = t349 + point_21_rear_elbow_down_alike
-    del point_21_rear_elbow_down_alike, t349
-    t366 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t346 + point_11_rear_elbow_down_alike
-    del point_11_rear_elbow_down_alike, t346
-    t367 = stheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    slope_left_rear_elbow_down_alike = t357 * (t366 - t367)
-    del t357, t366, t367
-    t368 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t369 = _runtime.select(spent_left_rear_elbow_down_alike, t356 * t368, 0.0)
-    del t356, t368
-    t370 = -(_runtime.FEASIBILITY * (t49 + t369)) <= room_left_rear_elbow_down_alike
-    del t369, t49
-    t371 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
-    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t361 * t371 / (2.0 * (t90 + t361 * t361)), 0.0)
-    del spent_right_rear_elbow_down_alike, t371
-    t372 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
-    t373 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t374 = slope_left_rear_elbow_down_alike * t372 / (2.0 * (t90 + t373))
-    del t372, t373, t90
-    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t374, 0.0)
-    del spent_left_rear_elbow_down_alike, t374
+    t315 = d * (t314 - t48 * (s_phi * t312))
+    del s_phi, t314, t48
+    gap_rear_elbow_down_alike = t313 * t313 + t315 * t315
+    t316 = N_mid - gap_rear_elbow_down_alike
+    del N_mid
+    t317 = L1 * ctheta2A_rear_elbow_down_alike - L2 * t312
+    point_11_rear_elbow_down_alike = t317 + a3 * ctheta23A_rear_elbow_down_alike
+    del t317
+    t318 = t149 + L2 * ctheta23A_rear_elbow_down_alike + a3 * t312
+    del ctheta23A_rear_elbow_down_alike, t149, t312
+    t319 = 2.0 * t313 * point_11_rear_elbow_down_alike - 2.0 * t315 * t318
+    room_right_rear_elbow_down_alike = t316 + t319
+    t320 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t321 = np.maximum(-t320, room_right_rear_elbow_down_alike)
+    del t320
+    spent_right_rear_elbow_down_alike = t321 <= t65
+    del t321
+    t322 = t315 + t318
+    t323 = t313 - point_11_rear_elbow_down_alike
+    t324 = ctheta2A_rear_elbow_down_alike * t322 + t140 * t323
+    t325 = t69 * t324
+    del t324
+    t326 = _runtime.select(spent_right_rear_elbow_down_alike, t68 * (size * np.abs(-t325)), 0.0)
+    t327 = -(_runtime.FEASIBILITY * (t38 + t326)) <= room_right_rear_elbow_down_alike
+    del t326
+    room_left_rear_elbow_down_alike = t316 - t319
+    del t316
+    t328 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t329 = np.maximum(-t328, room_left_rear_elbow_down_alike)
+    del t328
+    spent_left_rear_elbow_down_alike = t329 <= t65
+    del t329, t65
+    h_left_0_rear_elbow_down_alike = t315 - t318
+    del t315, t318
+    t330 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t313 + point_11_rear_elbow_down_alike
+    del point_11_rear_elbow_down_alike, t313
+    slope_left_rear_elbow_down_alike = t69 * (t330 + t140 * r_left_0_rear_elbow_down_alike)
+    del t330, t69
+    t331 = size * np.abs(slope_left_rear_elbow_down_alike)
+    t332 = _runtime.select(spent_left_rear_elbow_down_alike, t68 * t331, 0.0)
+    del t331, t68
+    t333 = -(_runtime.FEASIBILITY * (t38 + t332)) <= room_left_rear_elbow_down_alike
+    del t332, t38
+    t334 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
+    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t325 * t334 / (2.0 * (t80 + t325 * t325)), 0.0)
+    del spent_right_rear_elbow_down_alike, t334
+    t335 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
+    t336 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t337 = slope_left_rear_elbow_down_alike * t335 / (2.0 * (t80 + t336))
+    del t335, t336, t80
+    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t337, 0.0)
+    del spent_left_rear_elbow_down_alike, t337
     turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
     del turn_left_rear_elbow_down_alike, turn_right_rear_elbow_down_alike
-    t375 = t361 * turn_rear_elbow_down_alike
-    del t361
-    t376 = room_right_rear_elbow_down_alike - t375
+    t338 = t325 * turn_rear_elbow_down_alike
+    del t325
+    t339 = room_right_rear_elbow_down_alike - t338
     del room_right_rear_elbow_down_alike
-    t377 = drawn_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    del drawn_rear_elbow_down_alike
-    t378 = ctheta2A_rear_elbow_down_alike * t377
-    t379 = t358 + t378 + t359 * turn_rear_elbow_down_alike
-    t380 = stheta2A_rear_elbow_down_alike * t377
-    del t377
-    t381 = t359 - t358 * turn_rear_elbow_down_alike - t380
-    del t358, t359
-    t382 = t379 * t379 + t381 * t381
-    t383 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t384 = _runtime.select(t334, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
-    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t334
-    M_mid_rear_elbow_down_alike = t29 * t384
-    del t29, t384
-    t385 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
-    t386 = _runtime.select(t89 * t382 < t383, t103 - t382, t353 - t375 - t385)
-    del t375, t382
-    t387 = t233 & t363 & t370 & (t88 <= t376) & (t88 <= -t386)
-    del t233, t363, t370
-    t388 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t340 = drawn * turn_rear_elbow_down_alike
+    del drawn
+    t341 = ctheta2A_rear_elbow_down_alike * t340
+    t342 = t322 + t341 + t323 * turn_rear_elbow_down_alike
+    t343 = t140 * t340
+    del t340
+    t344 = t323 - t322 * turn_rear_elbow_down_alike + t343
+    del t322, t323
+    t345 = t342 * t342 + t344 * t344
+    t346 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t347 = M_mid + gap_rear_elbow_down_alike
+    t348 = _runtime.select(t79 * t345 < t346, t93 - t345, t319 - t338 - t347)
+    del t338, t345
+    t349 = t37 & t327 & t333 & (t78 <= t339) & (t78 <= -t348)
+    del t327, t333, t37
+    t350 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del slope_left_rear_elbow_down_alike
-    t389 = room_left_rear_elbow_down_alike + t388
+    t351 = room_left_rear_elbow_down_alike + t350
     del room_left_rear_elbow_down_alike
-    t390 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t378 + t390
-    del t378, t390
-    t391 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    t392 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    t352 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t341 + t352
+    del t341, t352
+    t353 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
+    t354 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
     del h_left_0_rear_elbow_down_alike, turn_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike + t380 - t392
-    del r_left_0_rear_elbow_down_alike, t380, t392
-    t393 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t394 = t391 + t393
-    del t391, t393
-    t395 = _runtime.select(t89 * t394 < t383, t394 - t103, t353 + t385 - t388)
-    del t353, t383, t385, t388, t394
-    unreachable_4 = np.logical_not(t387 & (t88 <= t389) & (t88 <= t395))
-    del t387, t88
-    t396 = _runtime.poison(invalid | unreachable_4)
-    t397 = t229 + t396
-    del t229
-    folded_right_rear_elbow_down_alike = np.abs(-t379) + np.abs(-t381) <= t113
-    t398 = np.arctan2(stheta2A_rear_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
-    del ctheta2A_rear_elbow_down_alike, stheta2A_rear_elbow_down_alike
-    M_right_rear_elbow_down_alike = np.maximum(-t386, t115)
-    del t386
-    N_right_rear_elbow_down_alike = np.maximum(t376, t115)
-    del t115, t376
+    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t343 - t354
+    del r_left_0_rear_elbow_down_alike, t343, t354
+    t355 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
+    t356 = t353 + t355
+    del t353, t355
+    t357 = _runtime.select(t79 * t356 < t346, t356 - t93, t319 + t347 - t350)
+    del t319, t346, t347, t350, t356
+    unreachable_4 = np.logical_not(t349 & (t78 <= t351) & (t78 <= t357))
+    del t349, t78
+    t358 = _runtime.poison(invalid | unreachable_4)
+    t359 = t228 + t358
+    del t228
+    folded_right_rear_elbow_down_alike = np.abs(-t342) + np.abs(-t344) <= t103
+    t360 = np.arctan2(-t140, ctheta2A_rear_elbow_down_alike)
+    del ctheta2A_rear_elbow_down_alike, t140
+    M_right_rear_elbow_down_alike = np.maximum(-t348, t105)
+    del t348
+    N_right_rear_elbow_down_alike = np.maximum(t339, t105)
+    del t105, t339
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t399 = 1.0 / whole_right_rear_elbow_down_alike
+    t361 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t400 = 2.0 * _runtime.sign(-t335)
-    del t335
-    rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    del N_right_rear_elbow_down_alike
-    rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t401 = t400 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t399 * t401)
-    del t401
-    t402 = fore_arm * s_bend_right_rear_elbow_down_alike
+    t362 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t363 = np.sqrt(t362)
+    del t362
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t361 * (t107 * t363))
+    t364 = fore_arm * s_bend_right_rear_elbow_down_alike
     del s_bend_right_rear_elbow_down_alike
-    t403 = t102 + t119 * M_right_rear_elbow_down_alike * t399
-    del M_right_rear_elbow_down_alike, t399
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t403)
-    del t403
-    up_right_rear_elbow_down_alike = t381 * t402 - t379 * ahead_1_right_rear_elbow_down_alike
-    t404 = t381 * ahead_1_right_rear_elbow_down_alike + t379 * t402
-    del ahead_1_right_rear_elbow_down_alike, t379, t381, t402
-    t405 = np.arctan2(up_right_rear_elbow_down_alike, -t404)
-    del t404, up_right_rear_elbow_down_alike
-    t406 = _runtime.select(folded_right_rear_elbow_down_alike, t398, t405)
-    del t405
-    t407 = _runtime.wrap_cut(t406) + t396
-    del t406
-    t408 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    del rM_right_rear_elbow_down_alike, rN_right_rear_elbow_down_alike
-    t409 = _runtime.select(short_right, 0.0, t400 * t408)
-    del t408
-    t410 = _runtime.wrap(t124 + t409) + t396
-    del t409
-    t411 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t411 <= t113
-    del t113, t411
-    M_left_rear_elbow_down_alike = np.maximum(t395, 0.0)
-    del t395
-    N_left_rear_elbow_down_alike = np.maximum(t389, 0.0)
-    del t389
+    t365 = t92 + t110 * M_right_rear_elbow_down_alike * t361
+    del t361
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t365)
+    del t365
+    up_right_rear_elbow_down_alike = t344 * t364 - t342 * ahead_1_right_rear_elbow_down_alike
+    t366 = t344 * ahead_1_right_rear_elbow_down_alike + t342 * t364
+    del ahead_1_right_rear_elbow_down_alike, t342, t344, t364
+    t367 = np.arctan2(up_right_rear_elbow_down_alike, -t366)
+    del t366, up_right_rear_elbow_down_alike
+    t368 = _runtime.select(folded_right_rear_elbow_down_alike, t360, t367)
+    del t367
+    t369 = _runtime.wrap_cut(t368) + t358
+    del t368
+    t370 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    del M_right_rear_elbow_down_alike, N_right_rear_elbow_down_alike
+    t371 = _runtime.select(short_right, 0.0, sigma_right * np.arctan2(2.0 * t363, t370))
+    del t363, t370
+    t372 = _runtime.wrap(t115 + t371) + t358
+    del t371
+    t373 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t373 <= t103
+    del t103, t373
+    M_left_rear_elbow_down_alike = np.maximum(t357, 0.0)
+    del t357
+    N_left_rear_elbow_down_alike = np.maximum(t351, 0.0)
+    del t351
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t412 = 1.0 / whole_left_rear_elbow_down_alike
+    t374 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t413 = t102 + t119 * M_left_rear_elbow_down_alike * t412
-    del t102, t119
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t413)
-    del size, t413
-    t414 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
-    del N_left_rear_elbow_down_alike
-    rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    del M_left_rear_elbow_down_alike
-    t415 = t400 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t412 * t415)
-    del t412, t415
-    t416 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t375 = t92 + t110 * M_left_rear_elbow_down_alike * t374
+    del t110, t92
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t375)
+    del size, t375
+    t376 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t377 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t378 = np.sqrt(t377)
+    del t377
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t374 * (t107 * t378))
+    del t107, t374
+    t379 = fore_arm * s_bend_left_rear_elbow_down_alike
     del fore_arm, s_bend_left_rear_elbow_down_alike
-    t417 = r_left_rear_elbow_down_alike * t416
-    t418 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t380 = r_left_rear_elbow_down_alike * t379
+    t381 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
-    t419 = h_left_rear_elbow_down_alike * t416
-    del h_left_rear_elbow_down_alike, t416
-    t420 = _runtime.select(folded_left_rear_elbow_down_alike, t398, np.arctan2(t414 - t417, t418 + t419))
-    t421 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    del rM_left_rear_elbow_down_alike, rN_left_rear_elbow_down_alike
-    t422 = _runtime.select(short_right, 0.0, t400 * t421)
-    del t400, t421
-    t423 = t135 + t396
-    del t135
-    t424 = _runtime.select(folded_left_rear_elbow_down_alike, t398, np.arctan2(t414 + t417, t418 - t419))
-    del t398, t414, t417, t418, t419
-    t425 = nowhere | folded | short
-    del folded
-    square_mid = t103 + M_mid
-    t426 = 10000.0 * t89
-    del t89
-    pole = M_mid * square_mid <= _runtime.VANISHING * (t426 * gap)
-    del M_mid, gap
-    t427 = _runtime.VANISHING * t426
-    t428 = t425 | pole | (square_mid <= t427) | folded_right
-    del folded_right, pole, square_mid
-    t429 = _runtime.status(invalid, unreachable, t428 | short_right | folded_left)
-    del folded_left, t428, unreachable
-    square_mid_front_elbow_down_alike = t103 + M_mid_front_elbow_down_alike
-    t430 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t382 = h_left_rear_elbow_down_alike * t379
+    del h_left_rear_elbow_down_alike, t379
+    t383 = _runtime.select(folded_left_rear_elbow_down_alike, t360, np.arctan2(t376 - t380, t381 + t382))
+    t384 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    del M_left_rear_elbow_down_alike, N_left_rear_elbow_down_alike
+    t385 = _runtime.select(short_right, 0.0, sigma_right * np.arctan2(2.0 * t378, t384))
+    del sigma_right, t378, t384
+    t386 = t129 + t358
+    del t129
+    t387 = _runtime.select(folded_left_rear_elbow_down_alike, t360, np.arctan2(t376 + t380, t381 - t382))
+    del t360, t376, t380, t381, t382
+    t388 = nowhere | folded | short
+    del folded, nowhere, short
+    square_mid = t93 + M_mid
+    t389 = M_mid * square_mid
+    del M_mid
+    t390 = 10000.0 * t79
+    del t79
+    t391 = t388 | (t389 <= _runtime.VANISHING * (t390 * gap))
+    del gap
+    t392 = _runtime.VANISHING * t390
+    at_shoulder = square_mid <= t392
+    del square_mid
+    t393 = t391 | at_shoulder | folded_right | short_right
+    del folded_right, t391
+    t394 = _runtime.status(invalid, unreachable, t393 | folded_left)
+    del folded_left, t393, unreachable
+    square_mid_front_elbow_down_alike = t93 + M_mid_front_elbow_down_alike
+    del t93
+    t395 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t431 = _runtime.VANISHING * (t426 * gap_front_elbow_down_alike)
+    t396 = _runtime.VANISHING * (t390 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t432 = t425 | (t430 <= t431) | (square_mid_front_elbow_down_alike <= t427)
-    del square_mid_front_elbow_down_alike, t425, t430, t431
-    t433 = t432 | folded_right_front_elbow_down_alike | short_right
-    del folded_right_front_elbow_down_alike, t432
-    t434 = _runtime.status(invalid, unreachable_2, t433 | folded_left_front_elbow_down_alike)
-    del folded_left_front_elbow_down_alike, t433, unreachable_2
-    t435 = nowhere | folded_rear_elbow_up_alike | short
-    del folded_rear_elbow_up_alike, nowhere, short
-    square_mid_rear_elbow_up_alike = t103 + M_mid_rear_elbow_up_alike
-    t436 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
-    del M_mid_rear_elbow_up_alike
-    t437 = _runtime.VANISHING * (t426 * gap_rear_elbow_up_alike)
+    at_shoulder_front_elbow_down_alike = square_mid_front_elbow_down_alike <= t392
+    del square_mid_front_elbow_down_alike, t392
+    t397 = t388 | (t395 <= t396) | at_shoulder_front_elbow_down_alike
+    del t396
+    t398 = t397 | folded_right_front_elbow_down_alike | short_right
+    del folded_right_front_elbow_down_alike, t397
+    t399 = _runtime.status(invalid, unreachable_2, t398 | folded_left_front_elbow_down_alike)
+    del folded_left_front_elbow_down_alike, t398, unreachable_2
+    t400 = _runtime.VANISHING * (t390 * gap_rear_elbow_up_alike)
     del gap_rear_elbow_up_alike
-    t438 = t435 | (t436 <= t437) | (square_mid_rear_elbow_up_alike <= t427)
-    del square_mid_rear_elbow_up_alike, t436, t437
-    t439 = t438 | folded_right_rear_elbow_up_alike | short_right
-    del folded_right_rear_elbow_up_alike, t438
-    t440 = _runtime.status(invalid, unreachable_3, t439 | folded_left_rear_elbow_up_alike)
-    del folded_left_rear_elbow_up_alike, t439, unreachable_3
-    square_mid_rear_elbow_down_alike = t103 + M_mid_rear_elbow_down_alike
-    del t103
-    t441 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
-    del M_mid_rear_elbow_down_alike
-    t442 = _runtime.VANISHING * (t426 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t426
-    t443 = t435 | (t441 <= t442) | (square_mid_rear_elbow_down_alike <= t427)
-    del square_mid_rear_elbow_down_alike, t427, t435, t441, t442
-    t444 = t443 | folded_right_rear_elbow_down_alike | short_right
-    del folded_right_rear_elbow_down_alike, short_right, t443
-    t445 = _runtime.status(invalid, unreachable_4, t444 | folded_left_rear_elbow_down_alike)
-    del folded_left_rear_elbow_down_alike, invalid, t444, unreachable_4
+    t401 = t388 | (t395 <= t400) | at_shoulder_front_elbow_down_alike
+    del at_shoulder_front_elbow_down_alike, t395, t400
+    t402 = t401 | folded_right_rear_elbow_up_alike | short_right
+    del folded_right_rear_elbow_up_alike, t401
+    t403 = _runtime.status(invalid, unreachable_3, t402 | folded_left_rear_elbow_up_alike)
+    del folded_left_rear_elbow_up_alike, t402, unreachable_3
+    t404 = _runtime.VANISHING * (t390 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t390
+    t405 = t388 | (t389 <= t404) | at_shoulder | folded_right_rear_elbow_down_alike
+    del at_shoulder, folded_right_rear_elbow_down_alike, t388, t389, t404
+    t406 = t405 | short_right | folded_left_rear_elbow_down_alike
+    del folded_left_rear_elbow_down_alike, short_right, t405
+    t407 = _runtime.status(invalid, unreachable_4, t406)
+    del invalid, t406, unreachable_4
     return (
-        t112,
-        t122,
-        t126,
-        _runtime.wrap_cut(t133) + t111,
-        _runtime.wrap(t124 + t134) + t111,
-        t136,
-        t112,
-        t122,
-        t126,
-        _runtime.wrap_cut(t137) + t111,
-        _runtime.wrap(t124 - t134) + t111,
-        t136,
-        t201,
+        t102,
+        t113,
+        t118,
+        _runtime.wrap_cut(t126) + t101,
+        _runtime.wrap(t115 + t128) + t101,
+        t130,
+        t102,
+        t113,
+        t118,
+        _runtime.wrap_cut(t131) + t101,
+        _runtime.wrap(t115 - t128) + t101,
+        t130,
+        t196,
+        t207,
         t211,
-        t214,
-        _runtime.wrap_cut(t224) + t200,
-        _runtime.wrap(t124 + t226) + t200,
-        t227,
-        t201,
+        _runtime.wrap_cut(t222) + t195,
+        _runtime.wrap(t115 + t225) + t195,
+        t226,
+        t196,
+        t207,
         t211,
-        t214,
-        _runtime.wrap_cut(t228) + t200,
-        _runtime.wrap(t124 - t226) + t200,
-        t227,
-        t306,
-        t316,
-        t319,
-        _runtime.wrap_cut(t329) + t305,
-        _runtime.wrap(t124 + t331) + t305,
-        t332,
-        t306,
-        t316,
-        t319,
-        _runtime.wrap_cut(t333) + t305,
-        _runtime.wrap(t124 - t331) + t305,
-        t332,
-        t397,
+        _runtime.wrap_cut(t227) + t195,
+        _runtime.wrap(t115 - t225) + t195,
+        t226,
+        t280,
+        t290,
+        t294,
+        _runtime.wrap_cut(t305) + t279,
+        _runtime.wrap(t115 + t308) + t279,
+        t309,
+        t280,
+        t290,
+        t294,
+        _runtime.wrap_cut(t310) + t279,
+        _runtime.wrap(t115 - t308) + t279,
+        t309,
+        t359,
+        t369,
+        t372,
+        _runtime.wrap_cut(t383) + t358,
+        _runtime.wrap(t115 + t385) + t358,
+        t386,
+        t359,
+        t369,
+        t372,
+        _runtime.wrap_cut(t387) + t358,
+        _runtime.wrap(t115 - t385) + t358,
+        t386,
+        t394,
+        t394,
+        t399,
+        t399,
+        t403,
+        t403,
         t407,
-        t410,
-        _runtime.wrap_cut(t420) + t396,
-        _runtime.wrap(t124 + t422) + t396,
-        t423,
-        t397,
         t407,
-        t410,
-        _runtime.wrap_cut(t424) + t396,
-        _runtime.wrap(t124 - t422) + t396,
-        t423,
-        t429,
-        t429,
-        t434,
-        t434,
-        t440,
-        t440,
-        t445,
-        t445,
     )
 
 
@@ -2599,804 +2466,669 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del s_pitch
     t2 = c_phi * c_psi
     t3 = 1.0 / t2
-    t4 = d - (gs - al) * t2
-    t5 = (gs + al) * t2 - d
+    t4 = (gs + al) * t2 - d
+    t5 = d - (gs - al) * t2
     del t2
-    t6 = np.sqrt(np.maximum(t4, 0.0)) * np.sqrt(np.maximum(t5, 0.0))
+    t6 = np.sqrt(np.maximum(t4, 0.0) * np.maximum(t5, 0.0))
     t7 = loff + lp * c_pitch + t3 * t6
     del c_pitch, t6
     t8 = s_psi * t7
     t9 = s_phi * t1 - c_phi * t8
     t10 = h + t9
     below = np.maximum(t10, 0.0)
-    t11 = np.sqrt(below)
-    t12 = h - t9
+    t11 = h - t9
     del t9
-    above = np.maximum(t12, 0.0)
-    t13 = np.sqrt(above)
-    t14 = 2.0 * np.arctan2(t11, t13)
-    t15 = np.arctan2(x, y)
-    t16 = _runtime.wrap(t14 - t15)
-    t17 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t17
-    t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t18
-    t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t21 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t22 = t19 & (0.0 <= loff) & (0.0 <= lp) & t20 & (np.abs(t21) <= _runtime.ROTATION)
-    del t19, t20, t21
-    invalid = np.logical_not(t22)
-    del t22
-    t23 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t5)
-    del t5
-    t25 = L1 + L2
-    t26 = -(_runtime.FEASIBILITY * t25)
-    t27 = t24 & (t23 <= t4) & (t26 <= t10) & (t26 <= t12)
-    del t10, t12, t23, t24, t26, t4
+    above = np.maximum(t11, 0.0)
+    onward = np.sqrt(below * above)
+    t12 = np.arctan2(2.0 * onward, above - below)
+    del above, below
+    t13 = np.arctan2(x, y)
+    t14 = _runtime.wrap(t12 - t13)
+    t15 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t16 = t15 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t15
+    t17 = t16 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t16
+    t18 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t19 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
+    t20 = t17 & (0.0 <= loff) & (0.0 <= lp) & t18 & (np.abs(t19) <= _runtime.ROTATION)
+    del t17, t18, t19
+    invalid = np.logical_not(t20)
+    del t20
+    t21 = -(_runtime.FEASIBILITY * (d * 0.5))
+    t22 = (-_runtime.FEASIBILITY <= c_phi) & (t21 <= t4)
+    del t4
+    t23 = L1 + L2
+    t24 = -(_runtime.FEASIBILITY * t23)
+    t25 = t22 & (t21 <= t5) & (t24 <= t10) & (t24 <= t11)
+    del t10, t11, t21, t22, t24, t5
     L_2W = L2 + c_psi * t7
     del c_psi, t7
     a_3W = a3 + c_phi * t1 + s_phi * t8
     del t1, t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t28 = L1 + fore
-    t29 = L1 * 2.0
-    t30 = 2.0 * fore
-    t31 = -(_runtime.FEASIBILITY * (t28 * (t29 + t30)))
-    t32 = t28 * t28
-    t33 = z - d1
-    t34 = t33 * t33
-    t35 = 1.0 / h
-    t36 = 1.0 / (below + above)
-    t37 = (below - above) * t36
-    del above, below
-    t38 = y * t37
-    s_turn = t36 * (2.0 * t11 * t13)
-    del t11, t13, t36
-    t39 = x * s_turn
-    t40 = x * t37
-    del t37
-    t41 = y * s_turn
-    del s_turn
-    t42 = x * (t35 * (t38 - t39)) - y * (t35 * (t40 + t41))
-    square = t34 + t42 * t42
-    t43 = t32 - square
-    t44 = L1 / 8796093022208.0 + fore / 8796093022208.0
-    t45 = L1 - fore
-    t46 = _runtime.FEASIBILITY * (t28 * (t44 + 2.0 * np.abs(t45)))
-    del t44
-    t47 = t45 * t45
-    t48 = square - t47
+    t26 = L1 + fore
+    t27 = L1 * 2.0
+    t28 = 2.0 * fore
+    t29 = -(_runtime.FEASIBILITY * (t26 * (t27 + t28)))
+    t30 = t26 * t26
+    t31 = z - d1
+    square = t31 * t31 + onward * onward
+    t32 = t30 - square
+    t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t34 = L1 - fore
+    t35 = _runtime.FEASIBILITY * (t26 * (t33 + 2.0 * np.abs(t34)))
+    del t33
+    t36 = square - t34 * t34
     del square
-    t49 = t27 & (t31 <= t43) & (-t46 <= t48)
+    t37 = t25 & (t29 <= t32) & (-t35 <= t36)
+    del t25, t29, t35
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
     play_right = d * size
-    t50 = -(_runtime.FEASIBILITY * play_right)
-    t51 = 1.0 / fore
-    s_lag = L_2W * t51
+    t38 = -(_runtime.FEASIBILITY * play_right)
+    N = np.maximum(t32, 0.0)
+    del t32
+    M = np.maximum(t36, 0.0)
+    del t36
+    t39 = 1.0 / (N + M)
+    t40 = (N - M) * t39
+    t41 = 1.0 / fore
+    s_lag = L_2W * t41
     del L_2W
-    N = np.maximum(t43, 0.0)
-    del t43
-    M = np.maximum(t48, 0.0)
-    del t48
-    t52 = 1.0 / (N + M)
-    t53 = (N - M) * t52
-    t54 = s_lag * t53
-    c_lag = a_3W * t51
-    del a_3W, t51
-    s_bend_front_elbow_down_alike = t52 * (2.0 * np.sqrt(N) * np.sqrt(M))
+    t42 = t40 * s_lag
+    s_bend_front_elbow_down_alike = t39 * (2.0 * np.sqrt(N * M))
     del N
-    t55 = c_lag * s_bend_front_elbow_down_alike
-    t56 = t54 + t55
-    t57 = c_lag * t53
-    del t53
-    t58 = s_lag * s_bend_front_elbow_down_alike
-    t59 = t57 - t58
-    straight_mid = -(L2 * t56 + a3 * t59)
-    t60 = 0.0 <= straight_mid
-    bent_mid = L2 * t59 - a3 * t56
+    c_lag = a_3W * t41
+    del a_3W, t41
+    t43 = s_bend_front_elbow_down_alike * c_lag
+    t44 = t42 + t43
+    t45 = t40 * c_lag
+    del c_lag, t40
+    t46 = s_lag * s_bend_front_elbow_down_alike
+    del s_lag
+    t47 = t45 - t46
+    straight_mid = -(L2 * t44 + a3 * t47)
+    t48 = 0.0 <= straight_mid
+    bent_mid = L2 * t47 - a3 * t44
     large_mid = fore_arm + np.abs(straight_mid)
     del straight_mid
     small_mid = bent_mid * bent_mid / large_mid
-    N_mid = t29 * _runtime.select(t60, small_mid, large_mid)
-    t61 = 1.0 / c_phi
+    N_mid = t27 * _runtime.select(t48, small_mid, large_mid)
+    t49 = 1.0 / c_phi
     del c_phi
-    t62 = t33 * fore
-    t63 = t62 * s_bend_front_elbow_down_alike
-    ahead_1 = t45 + t52 * (t30 * M)
-    del M, t52
-    t64 = t42 * ahead_1
-    t65 = t63 + t64
-    t66 = fore * t42 * s_bend_front_elbow_down_alike
+    t50 = fore * s_bend_front_elbow_down_alike
     del s_bend_front_elbow_down_alike
-    t67 = t33 * ahead_1
+    t51 = t31 * t50
+    ahead_1 = t34 + t39 * (t28 * M)
+    del M, t28, t34, t39
+    t52 = onward * ahead_1
+    t53 = t51 - t52
+    t54 = onward * t50
+    del t50
+    t55 = t31 * ahead_1
     del ahead_1
-    t68 = t66 - t67
-    t69 = 1.0 / np.sqrt(t65 * t65 + t68 * t68)
-    t70 = t65 * t69
-    del t65
-    t71 = t68 * t69
-    del t68, t69
-    ctheta23A = t59 * t70 - t56 * t71
-    t72 = t59 * t71 + t56 * t70
-    del t56, t59
-    t73 = t61 * (s_phi * ctheta23A) - t3 * (s_psi * t72)
-    t74 = d * t73
-    del t73
-    t75 = t3 * (s_psi * ctheta23A) + t61 * (s_phi * t72)
-    t76 = d * t75
-    del t75
-    gap = t74 * t74 + t76 * t76
-    t77 = N_mid - gap
-    del N_mid
-    t78 = L1 * t70 - L2 * t72 - a3 * ctheta23A
-    del t70
-    t79 = L1 * t71 + L2 * ctheta23A - a3 * t72
-    del ctheta23A, t71, t72
-    twice = 2.0 * t74 * t78 + 2.0 * t76 * t79
-    room_right = t77 - twice
-    t80 = t50 <= room_right
-    room_left = t77 + twice
-    del t77
-    t81 = t50 <= room_left
-    t82 = size * size
-    t83 = t76 + t79
-    t84 = t74 + t78
-    t85 = t83 * t83 + t84 * t84
-    t86 = gap * gap
-    t87 = L1 - fore_arm
-    t88 = t87 * t87
-    M_mid = t29 * _runtime.select(t60, large_mid, small_mid)
-    del large_mid, small_mid, t60
-    t89 = M_mid + gap
-    t90 = _runtime.select(t82 * t85 < t86, t85 - t88, twice + t89)
-    del t85
-    h_left_0 = t76 - t79
-    del t76, t79
-    r_left_0 = t74 - t78
-    del t74, t78
-    t91 = h_left_0 * h_left_0 + r_left_0 * r_left_0
-    t92 = _runtime.select(t82 * t91 < t86, t88 - t91, twice - t89)
-    del t86, t89, t91, twice
-    t93 = t49 & t80 & t81 & t80 & (t50 <= t90) & t81 & (t50 <= -t92)
-    del t80, t81
-    unreachable = np.logical_not(t93)
-    del t93
-    t94 = _runtime.poison(invalid | unreachable)
-    t95 = t16 + t94
-    t96 = _runtime.VANISHING * (_runtime.VANISHING * (play_right * 16.0))
-    M_right = np.maximum(t90, t96)
-    del t90
-    N_right = np.maximum(room_right, t96)
-    t97 = 1.0 / (M_right + N_right)
-    t98 = 2.0 * _runtime.sign(bent_mid)
+    up = t54 + t55
+    t56 = 1.0 / np.sqrt(t53 * t53 + up * up)
+    t57 = t53 * t56
+    del t53
+    stheta2A = up * t56
+    del t56, up
+    t58 = t47 * t57 + t44 * stheta2A
+    t59 = t47 * stheta2A - t44 * t57
+    t60 = d * (t49 * (s_phi * t58) + t3 * (s_psi * t59))
+    t61 = d * (t3 * (s_psi * t58) - t49 * (s_phi * t59))
+    gap = t60 * t60 + t61 * t61
+    t62 = N_mid - gap
+    t63 = L1 * t57
+    t64 = t63 + L2 * t59 - a3 * t58
+    t65 = L1 * stheta2A
+    point_21 = t65 - L2 * t58 - a3 * t59
+    del t58, t59
+    twice = 2.0 * t60 * t64 - 2.0 * t61 * point_21
+    room_right = t62 - twice
+    t66 = t38 <= room_right
+    room_left = t62 + twice
+    del t62
+    t67 = t38 <= room_left
+    t68 = size * size
+    t69 = t61 - point_21
+    t70 = t60 + t64
+    t71 = t69 * t69 + t70 * t70
+    t72 = gap * gap
+    t73 = L1 - fore_arm
+    t74 = t73 * t73
+    M_mid = t27 * _runtime.select(t48, large_mid, small_mid)
+    del large_mid, small_mid, t48
+    t75 = M_mid + gap
+    t76 = _runtime.select(t68 * t71 < t72, t71 - t74, twice + t75)
+    del t71
+    h_left_0 = t61 + point_21
+    del point_21, t61
+    r_left_0 = t60 - t64
+    del t60, t64
+    t77 = h_left_0 * h_left_0 + r_left_0 * r_left_0
+    t78 = _runtime.select(t68 * t77 < t72, t74 - t77, twice - t75)
+    del t72, t75, t77, twice
+    t79 = t37 & t66 & t67 & t66 & (t38 <= t76) & t67 & (t38 <= -t78)
+    del t66, t67
+    unreachable = np.logical_not(t79)
+    del t79
+    t80 = _runtime.poison(invalid | unreachable)
+    t81 = t14 + t80
+    t82 = _runtime.VANISHING * (_runtime.VANISHING * (play_right * 16.0))
+    M_right = np.maximum(t76, t82)
+    del t76
+    N_right = np.maximum(room_right, t82)
+    t83 = 1.0 / (M_right + N_right)
+    sigma_right = _runtime.sign(bent_mid)
     del bent_mid
-    rN_right = np.sqrt(N_right)
-    del N_right
-    rM_right = np.sqrt(M_right)
-    t99 = fore_arm * (t97 * (t98 * rN_right * rM_right))
-    t100 = 2.0 * fore_arm
-    ahead_1_right = t87 + t100 * M_right * t97
-    del M_right, t97
-    t101 = np.arctan2(t84 * t99 - t83 * ahead_1_right, -(t84 * ahead_1_right + t83 * t99))
-    del ahead_1_right, t99
-    t102 = _runtime.wrap_cut(t101) + t94
-    del t101
-    t103 = 1.0 / fore_arm
-    t104 = np.arctan2(L2 * t103, a3 * t103)
-    del t103
-    t105 = _runtime.wrap(t104 + t98 * np.arctan2(rN_right, rM_right))
-    del rM_right, rN_right
-    t106 = t105 + t94
-    del t105
-    M_left = np.maximum(-t92, 0.0)
-    del t92
+    t84 = 2.0 * sigma_right
+    t85 = np.sqrt(M_right * N_right)
+    t86 = fore_arm * (t83 * (t84 * t85))
+    t87 = 2.0 * fore_arm
+    ahead_1_right = t73 + t87 * M_right * t83
+    del t83
+    t88 = np.arctan2(t70 * t86 - t69 * ahead_1_right, -(t70 * ahead_1_right + t69 * t86))
+    del ahead_1_right, t86
+    t89 = _runtime.wrap_cut(t88) + t80
+    del t88
+    t90 = np.arctan2(L2, a3)
+    t91 = sigma_right * np.arctan2(2.0 * t85, M_right - N_right)
+    del M_right, N_right, t85
+    t92 = _runtime.wrap(t90 + t91) + t80
+    del t91
+    M_left = np.maximum(-t78, 0.0)
+    del t78
     N_left = np.maximum(room_left, 0.0)
-    t107 = 1.0 / (M_left + N_left)
-    ahead_1_left = t87 + t100 * M_left * t107
-    t108 = h_left_0 * ahead_1_left
-    rN_left = np.sqrt(N_left)
-    del N_left
-    rM_left = np.sqrt(M_left)
-    del M_left
-    t109 = fore_arm * (t107 * (t98 * rN_left * rM_left))
-    del t107
-    t110 = r_left_0 * t109
-    t111 = r_left_0 * ahead_1_left
+    t93 = 1.0 / (M_left + N_left)
+    ahead_1_left = t73 + t87 * M_left * t93
+    t94 = h_left_0 * ahead_1_left
+    t95 = np.sqrt(M_left * N_left)
+    t96 = fore_arm * (t93 * (t84 * t95))
+    del t93
+    t97 = r_left_0 * t96
+    t98 = r_left_0 * ahead_1_left
     del ahead_1_left
-    t112 = h_left_0 * t109
-    del t109
-    t113 = _runtime.wrap_cut(np.arctan2(t108 - t110, t111 + t112))
-    t114 = t98 * np.arctan2(rN_left, rM_left)
-    del rM_left, rN_left, t98
-    t115 = _runtime.wrap(principal_pitch)
+    t99 = h_left_0 * t96
+    del t96
+    t100 = _runtime.wrap_cut(np.arctan2(t94 - t97, t98 + t99))
+    t101 = sigma_right * np.arctan2(2.0 * t95, M_left - N_left)
+    del M_left, N_left, t95
+    t102 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t116 = t115 + t94
-    t117 = _runtime.wrap_cut(np.arctan2(t108 + t110, t111 - t112))
-    del t108, t110, t111, t112
-    t118 = t54 - t55
-    del t54, t55
-    t119 = t57 + t58
-    del t57, t58
-    straight_mid_front_elbow_down_alike = -(L2 * t118 + a3 * t119)
-    t120 = 0.0 <= straight_mid_front_elbow_down_alike
-    bent_mid_front_elbow_down_alike = L2 * t119 - a3 * t118
-    t121 = bent_mid_front_elbow_down_alike * bent_mid_front_elbow_down_alike
+    t103 = t102 + t80
+    t104 = _runtime.wrap_cut(np.arctan2(t94 + t97, t98 - t99))
+    del t94, t97, t98, t99
+    t105 = t42 - t43
+    del t42, t43
+    t106 = t45 + t46
+    del t45, t46
+    straight_mid_front_elbow_down_alike = -(L2 * t105 + a3 * t106)
+    t107 = 0.0 <= straight_mid_front_elbow_down_alike
+    bent_mid_front_elbow_down_alike = L2 * t106 - a3 * t105
+    t108 = bent_mid_front_elbow_down_alike * bent_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
     del straight_mid_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t121 / large_mid_front_elbow_down_alike
-    del t121
-    t122 = _runtime.select(t120, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    t123 = t63 - t64
-    del t63, t64
-    up_front_elbow_down_alike = t66 + t67
-    del t66, t67
-    t124 = up_front_elbow_down_alike * up_front_elbow_down_alike
-    t125 = 1.0 / np.sqrt(t123 * t123 + t124)
-    del t124
-    t126 = t123 * t125
-    del t123
-    stheta2A_front_elbow_down_alike = up_front_elbow_down_alike * t125
-    del t125, up_front_elbow_down_alike
-    t127 = t119 * t126 - t118 * stheta2A_front_elbow_down_alike
-    t128 = t119 * stheta2A_front_elbow_down_alike + t118 * t126
-    del t118, t119
-    t129 = d * (t61 * (s_phi * t127) - t3 * (s_psi * t128))
-    t130 = d * (t3 * (s_psi * t127) + t61 * (s_phi * t128))
-    gap_front_elbow_down_alike = t129 * t129 + t130 * t130
-    t131 = t29 * t122 - gap_front_elbow_down_alike
-    del t122
-    point_11_front_elbow_down_alike = L1 * t126 - L2 * t128 - a3 * t127
-    del t126
-    t132 = L1 * stheta2A_front_elbow_down_alike + L2 * t127
-    del stheta2A_front_elbow_down_alike, t127
-    point_21_front_elbow_down_alike = t132 - a3 * t128
-    del t128, t132
-    twice_front_elbow_down_alike = 2.0 * t129 * point_11_front_elbow_down_alike + 2.0 * t130 * point_21_front_elbow_down_alike
-    room_right_front_elbow_down_alike = t131 - twice_front_elbow_down_alike
-    t133 = t50 <= room_right_front_elbow_down_alike
-    room_left_front_elbow_down_alike = t131 + twice_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t108 / large_mid_front_elbow_down_alike
+    del t108
+    t109 = _runtime.select(t107, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    N_mid_front_elbow_down_alike = t27 * t109
+    del t109
+    out_front_elbow_down_alike = t51 + t52
+    del t51, t52
+    t110 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t111 = t54 - t55
+    del t54, t55
+    t112 = 1.0 / np.sqrt(t110 + t111 * t111)
+    del t110
+    ctheta2A_front_elbow_down_alike = out_front_elbow_down_alike * t112
+    del out_front_elbow_down_alike
+    t113 = t111 * t112
+    del t111, t112
+    t114 = t106 * ctheta2A_front_elbow_down_alike + t105 * t113
+    t115 = t106 * t113 - t105 * ctheta2A_front_elbow_down_alike
+    shift_11_front_elbow_down_alike = d * (t49 * (s_phi * t114) + t3 * (s_psi * t115))
+    t116 = shift_11_front_elbow_down_alike * shift_11_front_elbow_down_alike
+    shift_21_front_elbow_down_alike = d * (t3 * (s_psi * t114) - t49 * (s_phi * t115))
+    t117 = shift_21_front_elbow_down_alike * shift_21_front_elbow_down_alike
+    gap_front_elbow_down_alike = t116 + t117
+    del t116, t117
+    t118 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
+    t119 = L1 * ctheta2A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t119 + L2 * t115 - a3 * t114
+    t120 = 2.0 * shift_11_front_elbow_down_alike * point_11_front_elbow_down_alike
+    t121 = L1 * t113
+    t122 = t121 - L2 * t114 - a3 * t115
+    del t114, t115
+    twice_front_elbow_down_alike = t120 - 2.0 * shift_21_front_elbow_down_alike * t122
+    del t120
+    room_right_front_elbow_down_alike = t118 - twice_front_elbow_down_alike
+    t123 = t38 <= room_right_front_elbow_down_alike
+    room_left_front_elbow_down_alike = t118 + twice_front_elbow_down_alike
+    del t118
+    t124 = t38 <= room_left_front_elbow_down_alike
+    h_right_0_front_elbow_down_alike = shift_21_front_elbow_down_alike - t122
+    t125 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    r_right_0_front_elbow_down_alike = shift_11_front_elbow_down_alike + point_11_front_elbow_down_alike
+    t126 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t127 = t125 + t126
+    del t125, t126
+    t128 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t129 = _runtime.select(t107, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t107
+    M_mid_front_elbow_down_alike = t27 * t129
+    del t129, t27
+    t130 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t131 = _runtime.select(t68 * t127 < t128, t127 - t74, twice_front_elbow_down_alike + t130)
+    del t127
+    t132 = t37 & t123 & t124 & t123 & (t38 <= t131) & t124
+    del t123, t124
+    t133 = shift_21_front_elbow_down_alike + t122
+    del shift_21_front_elbow_down_alike, t122
+    t134 = shift_11_front_elbow_down_alike - point_11_front_elbow_down_alike
+    del point_11_front_elbow_down_alike, shift_11_front_elbow_down_alike
+    t135 = t133 * t133 + t134 * t134
+    t136 = _runtime.select(t68 * t135 < t128, t74 - t135, twice_front_elbow_down_alike - t130)
+    del t128, t130, t135, twice_front_elbow_down_alike
+    unreachable_2 = np.logical_not(t132 & (t38 <= -t136))
+    del t132
+    t137 = _runtime.poison(invalid | unreachable_2)
+    t138 = t14 + t137
+    del t14
+    M_right_front_elbow_down_alike = np.maximum(t131, t82)
     del t131
-    t134 = t50 <= room_left_front_elbow_down_alike
-    h_right_0_front_elbow_down_alike = t130 + point_21_front_elbow_down_alike
-    t135 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    r_right_0_front_elbow_down_alike = t129 + point_11_front_elbow_down_alike
-    t136 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t137 = t135 + t136
-    del t135, t136
-    t138 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t139 = _runtime.select(t120, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t120
-    M_mid_front_elbow_down_alike = t29 * t139
-    del t139
-    t140 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t141 = _runtime.select(t82 * t137 < t138, t137 - t88, twice_front_elbow_down_alike + t140)
-    del t137
-    t142 = t49 & t133 & t134 & t133 & (t50 <= t141) & t134
-    del t133, t134, t49
-    t143 = t130 - point_21_front_elbow_down_alike
-    del point_21_front_elbow_down_alike, t130
-    t144 = t129 - point_11_front_elbow_down_alike
-    del point_11_front_elbow_down_alike, t129
-    t145 = t143 * t143 + t144 * t144
-    t146 = _runtime.select(t82 * t145 < t138, t88 - t145, twice_front_elbow_down_alike - t140)
-    del t138, t140, t145, twice_front_elbow_down_alike
-    unreachable_2 = np.logical_not(t142 & (t50 <= -t146))
-    del t142
-    t147 = _runtime.poison(invalid | unreachable_2)
-    t148 = t16 + t147
-    del t16
-    M_right_front_elbow_down_alike = np.maximum(t141, t96)
-    del t141
-    N_right_front_elbow_down_alike = np.maximum(room_right_front_elbow_down_alike, t96)
+    N_right_front_elbow_down_alike = np.maximum(room_right_front_elbow_down_alike, t82)
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t149 = 1.0 / whole_right_front_elbow_down_alike
+    t139 = 1.0 / whole_right_front_elbow_down_alike
     del whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = t87 + t100 * M_right_front_elbow_down_alike * t149
-    t150 = h_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = t73 + t87 * M_right_front_elbow_down_alike * t139
+    t140 = h_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
     sigma_right_front_elbow_down_alike = _runtime.sign(bent_mid_front_elbow_down_alike)
     del bent_mid_front_elbow_down_alike
-    t151 = 2.0 * sigma_right_front_elbow_down_alike
-    del sigma_right_front_elbow_down_alike
-    rN_right_front_elbow_down_alike = np.sqrt(N_right_front_elbow_down_alike)
-    del N_right_front_elbow_down_alike
-    rM_right_front_elbow_down_alike = np.sqrt(M_right_front_elbow_down_alike)
-    del M_right_front_elbow_down_alike
-    t152 = t151 * rN_right_front_elbow_down_alike * rM_right_front_elbow_down_alike
-    t153 = fore_arm * (t149 * t152)
-    del t149, t152
-    up_right_front_elbow_down_alike = t150 - r_right_0_front_elbow_down_alike * t153
-    del t150
-    t154 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t141 = 2.0 * sigma_right_front_elbow_down_alike
+    t142 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t143 = np.sqrt(t142)
+    del t142
+    t144 = fore_arm * (t139 * (t141 * t143))
+    del t139
+    up_right_front_elbow_down_alike = t140 - r_right_0_front_elbow_down_alike * t144
+    del t140
+    t145 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
     del ahead_1_right_front_elbow_down_alike
-    out_right_front_elbow_down_alike = t154 + h_right_0_front_elbow_down_alike * t153
-    del t153, t154
-    t155 = np.arctan2(up_right_front_elbow_down_alike, out_right_front_elbow_down_alike)
+    out_right_front_elbow_down_alike = t145 + h_right_0_front_elbow_down_alike * t144
+    del t144, t145
+    t146 = np.arctan2(up_right_front_elbow_down_alike, out_right_front_elbow_down_alike)
     del out_right_front_elbow_down_alike, up_right_front_elbow_down_alike
-    t156 = _runtime.wrap_cut(t155) + t147
-    del t155
-    t157 = np.arctan2(rN_right_front_elbow_down_alike, rM_right_front_elbow_down_alike)
-    del rM_right_front_elbow_down_alike, rN_right_front_elbow_down_alike
-    t158 = _runtime.wrap(t104 + t151 * t157) + t147
-    del t157
-    M_left_front_elbow_down_alike = np.maximum(-t146, 0.0)
+    t147 = _runtime.wrap_cut(t146) + t137
     del t146
+    t148 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    del M_right_front_elbow_down_alike, N_right_front_elbow_down_alike
+    t149 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t143, t148)
+    del t143, t148
+    t150 = _runtime.wrap(t90 + t149) + t137
+    del t149
+    M_left_front_elbow_down_alike = np.maximum(-t136, 0.0)
+    del t136
     N_left_front_elbow_down_alike = np.maximum(room_left_front_elbow_down_alike, 0.0)
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t159 = 1.0 / whole_left_front_elbow_down_alike
+    t151 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    rN_left_front_elbow_down_alike = np.sqrt(N_left_front_elbow_down_alike)
-    del N_left_front_elbow_down_alike
-    rM_left_front_elbow_down_alike = np.sqrt(M_left_front_elbow_down_alike)
-    t160 = t151 * rN_left_front_elbow_down_alike * rM_left_front_elbow_down_alike
-    t161 = fore_arm * (t159 * t160)
-    del t160
-    t162 = t144 * t161
-    ahead_1_left_front_elbow_down_alike = t87 + t100 * M_left_front_elbow_down_alike * t159
-    del M_left_front_elbow_down_alike, t159
-    t163 = t143 * ahead_1_left_front_elbow_down_alike
-    t164 = t144 * ahead_1_left_front_elbow_down_alike
+    t152 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t153 = np.sqrt(t152)
+    del t152
+    t154 = fore_arm * (t151 * (t141 * t153))
+    t155 = t134 * t154
+    ahead_1_left_front_elbow_down_alike = t73 + t87 * M_left_front_elbow_down_alike * t151
+    del t151
+    t156 = t133 * ahead_1_left_front_elbow_down_alike
+    t157 = t134 * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike
-    t165 = t143 * t161
-    del t161
-    t166 = _runtime.wrap_cut(np.arctan2(t162 - t163, -(t164 + t165)))
-    t167 = np.arctan2(rN_left_front_elbow_down_alike, rM_left_front_elbow_down_alike)
-    del rM_left_front_elbow_down_alike, rN_left_front_elbow_down_alike
-    t168 = t151 * t167
-    del t151, t167
-    t169 = t115 + t147
-    t170 = _runtime.wrap_cut(np.arctan2(-(t163 + t162), t165 - t164))
-    del t162, t163, t164, t165
-    t171 = _runtime.wrap(-(t15 + t14))
-    del t14, t15
-    t172 = x * (t35 * (t38 + t39)) - y * (t35 * (t40 - t41))
-    del t35, t38, t39, t40, t41
-    square_rear_elbow_up_alike = t34 + t172 * t172
-    del t34
-    t173 = t32 - square_rear_elbow_up_alike
-    t174 = square_rear_elbow_up_alike - t47
-    del square_rear_elbow_up_alike, t47
-    t175 = t27 & (t31 <= t173) & (-t46 <= t174)
-    del t27, t31, t46
-    N_rear_elbow_up_alike = np.maximum(t173, 0.0)
-    del t173
-    M_rear_elbow_up_alike = np.maximum(t174, 0.0)
+    t158 = t133 * t154
+    del t154
+    t159 = _runtime.wrap_cut(np.arctan2(t155 - t156, -(t157 + t158)))
+    t160 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    del M_left_front_elbow_down_alike, N_left_front_elbow_down_alike
+    t161 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t153, t160)
+    del t153, t160
+    t162 = t102 + t137
+    t163 = _runtime.wrap_cut(np.arctan2(-(t156 + t155), t158 - t157))
+    del t155, t156, t157, t158
+    t164 = _runtime.wrap(-(t13 + t12))
+    del t12, t13
+    t165 = t106 * t57 - t105 * stheta2A
+    t166 = t106 * stheta2A + t105 * t57
+    del stheta2A, t105, t106, t57
+    t167 = d * (t49 * (s_phi * t165) - t3 * (s_psi * t166))
+    t168 = d * (t3 * (s_psi * t165) + t49 * (s_phi * t166))
+    gap_rear_elbow_up_alike = t167 * t167 + t168 * t168
+    t169 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    del N_mid_front_elbow_down_alike
+    point_11_rear_elbow_up_alike = t63 - L2 * t166 - a3 * t165
+    del t63
+    point_21_rear_elbow_up_alike = t65 + L2 * t165 - a3 * t166
+    del t165, t166, t65
+    twice_rear_elbow_up_alike = 2.0 * t167 * point_11_rear_elbow_up_alike + 2.0 * t168 * point_21_rear_elbow_up_alike
+    room_right_rear_elbow_up_alike = t169 - twice_rear_elbow_up_alike
+    t170 = t38 <= room_right_rear_elbow_up_alike
+    room_left_rear_elbow_up_alike = t169 + twice_rear_elbow_up_alike
+    del t169
+    t171 = t38 <= room_left_rear_elbow_up_alike
+    h_right_0_rear_elbow_up_alike = t168 + point_21_rear_elbow_up_alike
+    t172 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    r_right_0_rear_elbow_up_alike = t167 + point_11_rear_elbow_up_alike
+    t173 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t174 = t172 + t173
+    del t172, t173
+    t175 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t176 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t177 = _runtime.select(t68 * t174 < t175, t174 - t74, twice_rear_elbow_up_alike + t176)
     del t174
-    t176 = N_rear_elbow_up_alike - M_rear_elbow_up_alike
-    whole_rear_elbow_up_alike = N_rear_elbow_up_alike + M_rear_elbow_up_alike
-    t177 = 1.0 / whole_rear_elbow_up_alike
-    del whole_rear_elbow_up_alike
-    t178 = t176 * t177
-    del t176
-    t179 = s_lag * t178
-    t180 = 2.0 * np.sqrt(N_rear_elbow_up_alike) * np.sqrt(M_rear_elbow_up_alike)
-    del N_rear_elbow_up_alike
-    s_bend_rear_elbow_up_alike = t177 * t180
-    del t180
-    t181 = c_lag * s_bend_rear_elbow_up_alike
-    t182 = t179 - t181
-    t183 = c_lag * t178
-    del c_lag, t178
-    t184 = s_lag * s_bend_rear_elbow_up_alike
-    del s_lag
-    t185 = t183 + t184
-    straight_mid_rear_elbow_up_alike = -(L2 * t182 + a3 * t185)
-    t186 = 0.0 <= straight_mid_rear_elbow_up_alike
-    bent_mid_rear_elbow_up_alike = L2 * t185 - a3 * t182
-    t187 = bent_mid_rear_elbow_up_alike * bent_mid_rear_elbow_up_alike
-    large_mid_rear_elbow_up_alike = fore_arm + np.abs(straight_mid_rear_elbow_up_alike)
-    del straight_mid_rear_elbow_up_alike
-    small_mid_rear_elbow_up_alike = t187 / large_mid_rear_elbow_up_alike
-    del t187
-    t188 = _runtime.select(t186, small_mid_rear_elbow_up_alike, large_mid_rear_elbow_up_alike)
-    t189 = t62 * s_bend_rear_elbow_up_alike
-    del t62
-    ahead_1_rear_elbow_up_alike = t45 + t177 * (t30 * M_rear_elbow_up_alike)
-    del M_rear_elbow_up_alike, t177, t30, t45
-    t190 = t172 * ahead_1_rear_elbow_up_alike
-    t191 = t189 - t190
-    t192 = fore * t172 * s_bend_rear_elbow_up_alike
-    del s_bend_rear_elbow_up_alike
-    t193 = t33 * ahead_1_rear_elbow_up_alike
-    del ahead_1_rear_elbow_up_alike
-    up_rear_elbow_up_alike = t192 + t193
-    t194 = up_rear_elbow_up_alike * up_rear_elbow_up_alike
-    t195 = 1.0 / np.sqrt(t191 * t191 + t194)
-    del t194
-    t196 = t191 * t195
-    del t191
-    stheta2A_rear_elbow_up_alike = up_rear_elbow_up_alike * t195
-    del t195, up_rear_elbow_up_alike
-    t197 = t185 * t196 - t182 * stheta2A_rear_elbow_up_alike
-    t198 = t185 * stheta2A_rear_elbow_up_alike + t182 * t196
-    del t182, t185
-    t199 = d * (t61 * (s_phi * t197) - t3 * (s_psi * t198))
-    t200 = d * (t3 * (s_psi * t197) + t61 * (s_phi * t198))
-    gap_rear_elbow_up_alike = t199 * t199 + t200 * t200
-    t201 = t29 * t188 - gap_rear_elbow_up_alike
-    del t188
-    point_11_rear_elbow_up_alike = L1 * t196 - L2 * t198 - a3 * t197
-    del t196
-    t202 = L1 * stheta2A_rear_elbow_up_alike + L2 * t197
-    del stheta2A_rear_elbow_up_alike, t197
-    point_21_rear_elbow_up_alike = t202 - a3 * t198
-    del t198, t202
-    twice_rear_elbow_up_alike = 2.0 * t199 * point_11_rear_elbow_up_alike + 2.0 * t200 * point_21_rear_elbow_up_alike
-    room_right_rear_elbow_up_alike = t201 - twice_rear_elbow_up_alike
-    t203 = t50 <= room_right_rear_elbow_up_alike
-    room_left_rear_elbow_up_alike = t201 + twice_rear_elbow_up_alike
-    del t201
-    t204 = t50 <= room_left_rear_elbow_up_alike
-    h_right_0_rear_elbow_up_alike = t200 + point_21_rear_elbow_up_alike
-    t205 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    r_right_0_rear_elbow_up_alike = t199 + point_11_rear_elbow_up_alike
-    t206 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t207 = t205 + t206
-    del t205, t206
-    t208 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t209 = _runtime.select(t186, large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike)
-    del large_mid_rear_elbow_up_alike, small_mid_rear_elbow_up_alike, t186
-    M_mid_rear_elbow_up_alike = t29 * t209
-    del t209
-    t210 = M_mid_rear_elbow_up_alike + gap_rear_elbow_up_alike
-    t211 = _runtime.select(t82 * t207 < t208, t207 - t88, twice_rear_elbow_up_alike + t210)
-    del t207
-    t212 = t175 & t203 & t204 & t203 & (t50 <= t211) & t204
-    del t203, t204
-    t213 = t200 - point_21_rear_elbow_up_alike
-    del point_21_rear_elbow_up_alike, t200
-    t214 = t199 - point_11_rear_elbow_up_alike
-    del point_11_rear_elbow_up_alike, t199
-    t215 = t213 * t213 + t214 * t214
-    t216 = _runtime.select(t82 * t215 < t208, t88 - t215, twice_rear_elbow_up_alike - t210)
-    del t208, t210, t215, twice_rear_elbow_up_alike
-    unreachable_3 = np.logical_not(t212 & (t50 <= -t216))
-    del t212
-    t217 = _runtime.poison(invalid | unreachable_3)
-    t218 = t171 + t217
-    M_right_rear_elbow_up_alike = np.maximum(t211, t96)
-    del t211
-    N_right_rear_elbow_up_alike = np.maximum(room_right_rear_elbow_up_alike, t96)
+    t178 = t37 & t170 & t171 & t170 & (t38 <= t177) & t171
+    del t170, t171
+    t179 = t168 - point_21_rear_elbow_up_alike
+    del point_21_rear_elbow_up_alike, t168
+    t180 = t167 - point_11_rear_elbow_up_alike
+    del point_11_rear_elbow_up_alike, t167
+    t181 = t179 * t179 + t180 * t180
+    t182 = _runtime.select(t68 * t181 < t175, t74 - t181, twice_rear_elbow_up_alike - t176)
+    del t175, t176, t181, twice_rear_elbow_up_alike
+    unreachable_3 = np.logical_not(t178 & (t38 <= -t182))
+    del t178
+    t183 = _runtime.poison(invalid | unreachable_3)
+    t184 = t164 + t183
+    M_right_rear_elbow_up_alike = np.maximum(t177, t82)
+    del t177
+    N_right_rear_elbow_up_alike = np.maximum(room_right_rear_elbow_up_alike, t82)
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t219 = 1.0 / whole_right_rear_elbow_up_alike
+    t185 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = t87 + t100 * M_right_rear_elbow_up_alike * t219
-    t220 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t221 = 2.0 * _runtime.sign(bent_mid_rear_elbow_up_alike)
-    del bent_mid_rear_elbow_up_alike
-    rN_right_rear_elbow_up_alike = np.sqrt(N_right_rear_elbow_up_alike)
-    del N_right_rear_elbow_up_alike
-    rM_right_rear_elbow_up_alike = np.sqrt(M_right_rear_elbow_up_alike)
-    del M_right_rear_elbow_up_alike
-    t222 = t221 * rN_right_rear_elbow_up_alike * rM_right_rear_elbow_up_alike
-    t223 = fore_arm * (t219 * t222)
-    del t219, t222
-    t224 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = t73 + t87 * M_right_rear_elbow_up_alike * t185
+    t186 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t187 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t188 = np.sqrt(t187)
+    del t187
+    t189 = fore_arm * (t185 * (t141 * t188))
+    del t185
+    t190 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
     del ahead_1_right_rear_elbow_up_alike
-    t225 = np.arctan2(t220 - r_right_0_rear_elbow_up_alike * t223, t224 + h_right_0_rear_elbow_up_alike * t223)
-    del t220, t223, t224
-    t226 = _runtime.wrap_cut(t225) + t217
-    del t225
-    t227 = np.arctan2(rN_right_rear_elbow_up_alike, rM_right_rear_elbow_up_alike)
-    del rM_right_rear_elbow_up_alike, rN_right_rear_elbow_up_alike
-    t228 = _runtime.wrap(t104 + t221 * t227) + t217
-    del t227
-    M_left_rear_elbow_up_alike = np.maximum(-t216, 0.0)
-    del t216
+    t191 = np.arctan2(t186 - r_right_0_rear_elbow_up_alike * t189, t190 + h_right_0_rear_elbow_up_alike * t189)
+    del t186, t189, t190
+    t192 = _runtime.wrap_cut(t191) + t183
+    del t191
+    t193 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    del M_right_rear_elbow_up_alike, N_right_rear_elbow_up_alike
+    t194 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t188, t193)
+    del t188, t193
+    t195 = _runtime.wrap(t90 + t194) + t183
+    del t194
+    M_left_rear_elbow_up_alike = np.maximum(-t182, 0.0)
+    del t182
     N_left_rear_elbow_up_alike = np.maximum(room_left_rear_elbow_up_alike, 0.0)
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t229 = 1.0 / whole_left_rear_elbow_up_alike
+    t196 = 1.0 / whole_left_rear_elbow_up_alike
     del whole_left_rear_elbow_up_alike
-    rN_left_rear_elbow_up_alike = np.sqrt(N_left_rear_elbow_up_alike)
-    del N_left_rear_elbow_up_alike
-    rM_left_rear_elbow_up_alike = np.sqrt(M_left_rear_elbow_up_alike)
-    t230 = t221 * rN_left_rear_elbow_up_alike * rM_left_rear_elbow_up_alike
-    t231 = fore_arm * (t229 * t230)
-    del t230
-    t232 = t214 * t231
-    ahead_1_left_rear_elbow_up_alike = t87 + t100 * M_left_rear_elbow_up_alike * t229
-    del M_left_rear_elbow_up_alike, t229
-    t233 = t213 * ahead_1_left_rear_elbow_up_alike
-    t234 = t214 * ahead_1_left_rear_elbow_up_alike
+    t197 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t198 = np.sqrt(t197)
+    del t197
+    t199 = fore_arm * (t196 * (t141 * t198))
+    del t141
+    t200 = t180 * t199
+    ahead_1_left_rear_elbow_up_alike = t73 + t87 * M_left_rear_elbow_up_alike * t196
+    del t196
+    t201 = t179 * ahead_1_left_rear_elbow_up_alike
+    t202 = t180 * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike
-    t235 = t213 * t231
-    del t231
-    t236 = _runtime.wrap_cut(np.arctan2(t232 - t233, -(t234 + t235)))
-    t237 = np.arctan2(rN_left_rear_elbow_up_alike, rM_left_rear_elbow_up_alike)
-    del rM_left_rear_elbow_up_alike, rN_left_rear_elbow_up_alike
-    t238 = t221 * t237
-    del t221, t237
-    t239 = t115 + t217
-    t240 = _runtime.wrap_cut(np.arctan2(-(t233 + t232), t235 - t234))
-    del t232, t233, t234, t235
-    t241 = t179 + t181
-    del t179, t181
-    t242 = t183 - t184
-    del t183, t184
-    straight_mid_rear_elbow_down_alike = -(L2 * t241 + a3 * t242)
-    t243 = 0.0 <= straight_mid_rear_elbow_down_alike
-    bent_mid_rear_elbow_down_alike = L2 * t242 - a3 * t241
-    t244 = bent_mid_rear_elbow_down_alike * bent_mid_rear_elbow_down_alike
-    large_mid_rear_elbow_down_alike = fore_arm + np.abs(straight_mid_rear_elbow_down_alike)
-    del straight_mid_rear_elbow_down_alike
-    small_mid_rear_elbow_down_alike = t244 / large_mid_rear_elbow_down_alike
-    del t244
-    t245 = _runtime.select(t243, small_mid_rear_elbow_down_alike, large_mid_rear_elbow_down_alike)
-    t246 = t189 + t190
-    del t189, t190
-    t247 = t192 - t193
-    del t192, t193
-    t248 = 1.0 / np.sqrt(t246 * t246 + t247 * t247)
-    t249 = t246 * t248
-    del t246
-    t250 = t247 * t248
-    del t247, t248
-    ctheta23A_rear_elbow_down_alike = t242 * t249 - t241 * t250
-    t251 = t61 * (s_phi * ctheta23A_rear_elbow_down_alike)
-    t252 = t242 * t250 + t241 * t249
-    del t241, t242
-    t253 = d * (t251 - t3 * (s_psi * t252))
-    del t251
-    t254 = t3 * (s_psi * ctheta23A_rear_elbow_down_alike)
+    t203 = t179 * t199
+    del t199
+    t204 = _runtime.wrap_cut(np.arctan2(t200 - t201, -(t202 + t203)))
+    t205 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    del M_left_rear_elbow_up_alike, N_left_rear_elbow_up_alike
+    t206 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t198, t205)
+    del sigma_right_front_elbow_down_alike, t198, t205
+    t207 = t102 + t183
+    t208 = _runtime.wrap_cut(np.arctan2(-(t201 + t200), t203 - t202))
+    del t200, t201, t202, t203
+    ctheta23A_rear_elbow_down_alike = t47 * ctheta2A_front_elbow_down_alike - t44 * t113
+    t209 = t49 * (s_phi * ctheta23A_rear_elbow_down_alike)
+    t210 = t47 * t113 + t44 * ctheta2A_front_elbow_down_alike
+    del ctheta2A_front_elbow_down_alike, t113, t44, t47
+    t211 = d * (t209 - t3 * (s_psi * t210))
+    del t209
+    t212 = t3 * (s_psi * ctheta23A_rear_elbow_down_alike)
     del s_psi, t3
-    t255 = d * (t254 + t61 * (s_phi * t252))
-    del s_phi, t254, t61
-    gap_rear_elbow_down_alike = t253 * t253 + t255 * t255
-    t256 = t29 * t245 - gap_rear_elbow_down_alike
-    del t245
-    t257 = L1 * t249 - L2 * t252 - a3 * ctheta23A_rear_elbow_down_alike
-    del t249
-    t258 = L1 * t250 + L2 * ctheta23A_rear_elbow_down_alike
-    del ctheta23A_rear_elbow_down_alike, t250
-    t259 = t258 - a3 * t252
-    del t252, t258
-    twice_rear_elbow_down_alike = 2.0 * t253 * t257 + 2.0 * t255 * t259
-    room_right_rear_elbow_down_alike = t256 - twice_rear_elbow_down_alike
-    t260 = t50 <= room_right_rear_elbow_down_alike
-    room_left_rear_elbow_down_alike = t256 + twice_rear_elbow_down_alike
-    del t256
-    t261 = t50 <= room_left_rear_elbow_down_alike
-    t262 = t255 + t259
-    t263 = t253 + t257
-    t264 = t262 * t262 + t263 * t263
-    t265 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t266 = _runtime.select(t243, large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike)
-    del large_mid_rear_elbow_down_alike, small_mid_rear_elbow_down_alike, t243
-    M_mid_rear_elbow_down_alike = t29 * t266
-    del t266, t29
-    t267 = M_mid_rear_elbow_down_alike + gap_rear_elbow_down_alike
-    t268 = _runtime.select(t82 * t264 < t265, t264 - t88, twice_rear_elbow_down_alike + t267)
-    del t264
-    t269 = t175 & t260 & t261 & t260 & (t50 <= t268) & t261
-    del t175, t260, t261
-    h_left_0_rear_elbow_down_alike = t255 - t259
-    del t255, t259
-    t270 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t253 - t257
-    del t253, t257
-    t271 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t272 = t270 + t271
-    del t270, t271
-    t273 = _runtime.select(t82 * t272 < t265, t88 - t272, twice_rear_elbow_down_alike - t267)
-    del t265, t267, t272, twice_rear_elbow_down_alike
-    unreachable_4 = np.logical_not(t269 & (t50 <= -t273))
-    del t269, t50
-    t274 = _runtime.poison(invalid | unreachable_4)
-    t275 = t171 + t274
-    del t171
-    M_right_rear_elbow_down_alike = np.maximum(t268, t96)
-    del t268
-    N_right_rear_elbow_down_alike = np.maximum(room_right_rear_elbow_down_alike, t96)
-    del t96
+    t213 = d * (t212 + t49 * (s_phi * t210))
+    del s_phi, t212, t49
+    gap_rear_elbow_down_alike = t211 * t211 + t213 * t213
+    t214 = N_mid - gap_rear_elbow_down_alike
+    del N_mid
+    t215 = t119 - L2 * t210 - a3 * ctheta23A_rear_elbow_down_alike
+    del t119
+    t216 = t121 + L2 * ctheta23A_rear_elbow_down_alike - a3 * t210
+    del ctheta23A_rear_elbow_down_alike, t121, t210
+    twice_rear_elbow_down_alike = 2.0 * t211 * t215 + 2.0 * t213 * t216
+    room_right_rear_elbow_down_alike = t214 - twice_rear_elbow_down_alike
+    t217 = t38 <= room_right_rear_elbow_down_alike
+    room_left_rear_elbow_down_alike = t214 + twice_rear_elbow_down_alike
+    del t214
+    t218 = t38 <= room_left_rear_elbow_down_alike
+    t219 = t213 + t216
+    t220 = t211 + t215
+    t221 = t219 * t219 + t220 * t220
+    t222 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t223 = M_mid + gap_rear_elbow_down_alike
+    t224 = _runtime.select(t68 * t221 < t222, t221 - t74, twice_rear_elbow_down_alike + t223)
+    del t221
+    t225 = t37 & t217 & t218 & t217 & (t38 <= t224) & t218
+    del t217, t218, t37
+    h_left_0_rear_elbow_down_alike = t213 - t216
+    del t213, t216
+    t226 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = t211 - t215
+    del t211, t215
+    t227 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t228 = t226 + t227
+    del t226, t227
+    t229 = _runtime.select(t68 * t228 < t222, t74 - t228, twice_rear_elbow_down_alike - t223)
+    del t222, t223, t228, twice_rear_elbow_down_alike
+    unreachable_4 = np.logical_not(t225 & (t38 <= -t229))
+    del t225, t38
+    t230 = _runtime.poison(invalid | unreachable_4)
+    t231 = t164 + t230
+    del t164
+    M_right_rear_elbow_down_alike = np.maximum(t224, t82)
+    del t224
+    N_right_rear_elbow_down_alike = np.maximum(room_right_rear_elbow_down_alike, t82)
+    del t82
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t276 = 1.0 / whole_right_rear_elbow_down_alike
+    t232 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    sigma_right_rear_elbow_down_alike = _runtime.sign(bent_mid_rear_elbow_down_alike)
-    del bent_mid_rear_elbow_down_alike
-    t277 = 2.0 * sigma_right_rear_elbow_down_alike
-    del sigma_right_rear_elbow_down_alike
-    rN_right_rear_elbow_down_alike = np.sqrt(N_right_rear_elbow_down_alike)
-    del N_right_rear_elbow_down_alike
-    rM_right_rear_elbow_down_alike = np.sqrt(M_right_rear_elbow_down_alike)
-    t278 = t277 * rN_right_rear_elbow_down_alike * rM_right_rear_elbow_down_alike
-    t279 = fore_arm * (t276 * t278)
-    del t278
-    ahead_1_right_rear_elbow_down_alike = t87 + t100 * M_right_rear_elbow_down_alike * t276
-    del M_right_rear_elbow_down_alike, t276
-    up_right_rear_elbow_down_alike = t263 * t279 - t262 * ahead_1_right_rear_elbow_down_alike
-    t280 = t263 * ahead_1_right_rear_elbow_down_alike + t262 * t279
-    del ahead_1_right_rear_elbow_down_alike, t279
-    t281 = np.arctan2(up_right_rear_elbow_down_alike, -t280)
-    del t280, up_right_rear_elbow_down_alike
-    t282 = _runtime.wrap_cut(t281) + t274
-    del t281
-    t283 = np.arctan2(rN_right_rear_elbow_down_alike, rM_right_rear_elbow_down_alike)
-    del rM_right_rear_elbow_down_alike, rN_right_rear_elbow_down_alike
-    t284 = _runtime.wrap(t104 + t277 * t283) + t274
-    del t283
-    M_left_rear_elbow_down_alike = np.maximum(-t273, 0.0)
-    del t273
+    t233 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t234 = np.sqrt(t233)
+    del t233
+    t235 = fore_arm * (t232 * (t84 * t234))
+    ahead_1_right_rear_elbow_down_alike = t73 + t87 * M_right_rear_elbow_down_alike * t232
+    del t232
+    up_right_rear_elbow_down_alike = t220 * t235 - t219 * ahead_1_right_rear_elbow_down_alike
+    t236 = t220 * ahead_1_right_rear_elbow_down_alike + t219 * t235
+    del ahead_1_right_rear_elbow_down_alike, t235
+    t237 = np.arctan2(up_right_rear_elbow_down_alike, -t236)
+    del t236, up_right_rear_elbow_down_alike
+    t238 = _runtime.wrap_cut(t237) + t230
+    del t237
+    t239 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    del M_right_rear_elbow_down_alike, N_right_rear_elbow_down_alike
+    t240 = t90 + sigma_right * np.arctan2(2.0 * t234, t239)
+    del t234, t239
+    t241 = _runtime.wrap(t240) + t230
+    del t240
+    M_left_rear_elbow_down_alike = np.maximum(-t229, 0.0)
+    del t229
     N_left_rear_elbow_down_alike = np.maximum(room_left_rear_elbow_down_alike, 0.0)
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t285 = 1.0 / whole_left_rear_elbow_down_alike
+    t242 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = t87 + t100 * M_left_rear_elbow_down_alike * t285
-    del t100, t87
-    t286 = h_left_0_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    rN_left_rear_elbow_down_alike = np.sqrt(N_left_rear_elbow_down_alike)
-    del N_left_rear_elbow_down_alike
-    rM_left_rear_elbow_down_alike = np.sqrt(M_left_rear_elbow_down_alike)
-    del M_left_rear_elbow_down_alike
-    t287 = t277 * rN_left_rear_elbow_down_alike * rM_left_rear_elbow_down_alike
-    t288 = fore_arm * (t285 * t287)
-    del t285, t287
-    t289 = r_left_0_rear_elbow_down_alike * t288
-    t290 = r_left_0_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    ahead_1_left_rear_elbow_down_alike = t73 + t87 * M_left_rear_elbow_down_alike * t242
+    del t73, t87
+    t243 = h_left_0_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t244 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t245 = np.sqrt(t244)
+    del t244
+    t246 = fore_arm * (t242 * (t84 * t245))
+    del t242, t84
+    t247 = r_left_0_rear_elbow_down_alike * t246
+    t248 = r_left_0_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike
-    t291 = h_left_0_rear_elbow_down_alike * t288
-    del t288
-    t292 = _runtime.wrap_cut(np.arctan2(t286 - t289, t290 + t291))
-    t293 = np.arctan2(rN_left_rear_elbow_down_alike, rM_left_rear_elbow_down_alike)
-    del rM_left_rear_elbow_down_alike, rN_left_rear_elbow_down_alike
-    t294 = t277 * t293
-    del t277, t293
-    t295 = t115 + t274
-    del t115
-    t296 = _runtime.wrap_cut(np.arctan2(t286 + t289, t290 - t291))
-    del t286, t289, t290, t291
-    t297 = _runtime.status(invalid, unreachable, np.False_)
+    t249 = h_left_0_rear_elbow_down_alike * t246
+    del t246
+    t250 = _runtime.wrap_cut(np.arctan2(t243 - t247, t248 + t249))
+    t251 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    del M_left_rear_elbow_down_alike, N_left_rear_elbow_down_alike
+    t252 = sigma_right * np.arctan2(2.0 * t245, t251)
+    del sigma_right, t245, t251
+    t253 = t102 + t230
+    del t102
+    t254 = _runtime.wrap_cut(np.arctan2(t243 + t247, t248 - t249))
+    del t243, t247, t248, t249
+    t255 = _runtime.status(invalid, unreachable, np.False_)
     del unreachable
-    t298 = _runtime.status(invalid, unreachable_2, np.False_)
+    t256 = _runtime.status(invalid, unreachable_2, np.False_)
     del unreachable_2
-    t299 = _runtime.status(invalid, unreachable_3, np.False_)
+    t257 = _runtime.status(invalid, unreachable_3, np.False_)
     del unreachable_3
-    t300 = _runtime.status(invalid, unreachable_4, np.False_)
+    t258 = _runtime.status(invalid, unreachable_4, np.False_)
     del invalid, unreachable_4
-    t301 = (h <= t25 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t32)
-    del h, t25, t32
-    t302 = _runtime.VANISHING * t28
-    del t28
-    t303 = np.abs(t33)
-    del t33
-    t304 = t301 | (fore <= t302) | (t303 + np.abs(-t42) <= t302)
-    del fore, t301, t42
-    t305 = np.maximum(-(room_right / 1099511627776.0), room_right)
+    t259 = (h <= t23 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t30)
+    del h, t23, t30
+    t260 = _runtime.VANISHING * t26
+    del t26
+    t261 = t259 | (fore <= t260) | (np.abs(t31) + np.abs(onward) <= t260)
+    del fore, onward, t259, t260, t31
+    t262 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
     del room_right
-    t306 = _runtime.VANISHING * play_right
+    t263 = _runtime.VANISHING * play_right
     del play_right
-    t307 = np.maximum(-(room_left / 1099511627776.0), room_left)
+    t264 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
     del room_left
-    t308 = t304 | (t305 <= t306) | (t307 <= t306) | (L1 * fore_arm <= _runtime.VANISHING * t82)
-    del t304, t305, t307
-    t309 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    t310 = t308 | (np.abs(-t83) + np.abs(-t84) <= t309) | (fore_arm <= _runtime.VANISHING * size)
-    del fore_arm, size, t308, t83, t84
-    t311 = t310 | (np.abs(h_left_0) + np.abs(r_left_0) <= t309)
-    del h_left_0, r_left_0, t310
-    t312 = room_right_front_elbow_down_alike / 1099511627776.0
-    t313 = np.maximum(-t312, room_right_front_elbow_down_alike)
-    del room_right_front_elbow_down_alike, t312
-    t314 = room_left_front_elbow_down_alike / 1099511627776.0
-    t315 = np.maximum(-t314, room_left_front_elbow_down_alike)
-    del room_left_front_elbow_down_alike, t314
-    t316 = np.abs(h_right_0_front_elbow_down_alike) + np.abs(r_right_0_front_elbow_down_alike)
+    t265 = t261 | (t262 <= t263) | (t264 <= t263) | (L1 * fore_arm <= _runtime.VANISHING * t68)
+    del t261, t262, t264
+    t266 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    t267 = t265 | (np.abs(-t69) + np.abs(-t70) <= t266) | (fore_arm <= _runtime.VANISHING * size)
+    del fore_arm, size, t265, t69, t70
+    t268 = t267 | (np.abs(h_left_0) + np.abs(r_left_0) <= t266)
+    del h_left_0, r_left_0, t267
+    t269 = room_right_front_elbow_down_alike * 9.094947017729282e-13
+    t270 = np.maximum(-t269, room_right_front_elbow_down_alike)
+    del room_right_front_elbow_down_alike, t269
+    t271 = room_left_front_elbow_down_alike * 9.094947017729282e-13
+    t272 = np.maximum(-t271, room_left_front_elbow_down_alike)
+    del room_left_front_elbow_down_alike, t271
+    t273 = np.abs(h_right_0_front_elbow_down_alike) + np.abs(r_right_0_front_elbow_down_alike)
     del h_right_0_front_elbow_down_alike, r_right_0_front_elbow_down_alike
-    t317 = t311 | (t313 <= t306) | (t315 <= t306) | (t316 <= t309)
-    del t311, t313, t315, t316
-    t318 = t317 | (np.abs(-t143) + np.abs(-t144) <= t309)
-    del t143, t144, t317
-    t319 = room_right_rear_elbow_up_alike / 1099511627776.0
-    t320 = np.maximum(-t319, room_right_rear_elbow_up_alike)
-    del room_right_rear_elbow_up_alike, t319
-    t321 = t318 | (t303 + np.abs(-t172) <= t302) | (t320 <= t306)
-    del t172, t302, t303, t318, t320
-    t322 = room_left_rear_elbow_up_alike / 1099511627776.0
-    t323 = np.maximum(-t322, room_left_rear_elbow_up_alike)
-    del room_left_rear_elbow_up_alike, t322
-    t324 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    t274 = t268 | (t270 <= t263) | (t272 <= t263) | (t273 <= t266)
+    del t268, t270, t272, t273
+    t275 = t274 | (np.abs(-t133) + np.abs(-t134) <= t266)
+    del t133, t134, t274
+    t276 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t277 = np.maximum(-t276, room_right_rear_elbow_up_alike)
+    del room_right_rear_elbow_up_alike, t276
+    t278 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t279 = np.maximum(-t278, room_left_rear_elbow_up_alike)
+    del room_left_rear_elbow_up_alike, t278
+    t280 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
     del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
-    t325 = t321 | (t323 <= t306) | (t324 <= t309) | (np.abs(-t213) + np.abs(-t214) <= t309)
-    del t213, t214, t321, t323, t324
-    t326 = room_right_rear_elbow_down_alike / 1099511627776.0
-    t327 = np.maximum(-t326, room_right_rear_elbow_down_alike)
-    del room_right_rear_elbow_down_alike, t326
-    t328 = room_left_rear_elbow_down_alike / 1099511627776.0
-    t329 = np.maximum(-t328, room_left_rear_elbow_down_alike)
-    del room_left_rear_elbow_down_alike, t328
-    t330 = t325 | (t327 <= t306) | (t329 <= t306) | (np.abs(-t262) + np.abs(-t263) <= t309)
-    del t262, t263, t306, t325, t327, t329
-    t331 = np.abs(h_left_0_rear_elbow_down_alike) + np.abs(r_left_0_rear_elbow_down_alike)
+    t281 = t275 | (t277 <= t263) | (t279 <= t263) | (t280 <= t266)
+    del t275, t277, t279, t280
+    t282 = t281 | (np.abs(-t179) + np.abs(-t180) <= t266)
+    del t179, t180, t281
+    t283 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t284 = np.maximum(-t283, room_right_rear_elbow_down_alike)
+    del room_right_rear_elbow_down_alike, t283
+    t285 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t286 = np.maximum(-t285, room_left_rear_elbow_down_alike)
+    del room_left_rear_elbow_down_alike, t285
+    t287 = t282 | (t284 <= t263) | (t286 <= t263) | (np.abs(-t219) + np.abs(-t220) <= t266)
+    del t219, t220, t263, t282, t284, t286
+    t288 = np.abs(h_left_0_rear_elbow_down_alike) + np.abs(r_left_0_rear_elbow_down_alike)
     del h_left_0_rear_elbow_down_alike, r_left_0_rear_elbow_down_alike
-    square_mid = t88 + M_mid
-    t332 = 10000.0 * t82
-    del t82
-    pole = M_mid * square_mid <= _runtime.VANISHING * (t332 * gap)
-    del M_mid, gap
-    t333 = _runtime.VANISHING * t332
-    t334 = t330 | (t331 <= t309) | pole | (square_mid <= t333)
-    del pole, square_mid, t309, t330, t331
-    square_mid_front_elbow_down_alike = t88 + M_mid_front_elbow_down_alike
-    t335 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    square_mid = t74 + M_mid
+    t289 = M_mid * square_mid
+    del M_mid
+    t290 = 10000.0 * t68
+    del t68
+    t291 = t287 | (t288 <= t266) | (t289 <= _runtime.VANISHING * (t290 * gap))
+    del gap, t266, t287, t288
+    t292 = _runtime.VANISHING * t290
+    square_mid_front_elbow_down_alike = t74 + M_mid_front_elbow_down_alike
+    del t74
+    t293 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t336 = _runtime.VANISHING * (t332 * gap_front_elbow_down_alike)
+    t294 = _runtime.VANISHING * (t290 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t337 = t334 | (t335 <= t336) | (square_mid_front_elbow_down_alike <= t333)
-    del square_mid_front_elbow_down_alike, t334, t335, t336
-    square_mid_rear_elbow_up_alike = t88 + M_mid_rear_elbow_up_alike
-    t338 = M_mid_rear_elbow_up_alike * square_mid_rear_elbow_up_alike
-    del M_mid_rear_elbow_up_alike
-    t339 = _runtime.VANISHING * (t332 * gap_rear_elbow_up_alike)
+    t295 = t291 | (square_mid <= t292) | (t293 <= t294) | (square_mid_front_elbow_down_alike <= t292)
+    del square_mid, square_mid_front_elbow_down_alike, t291, t292, t294
+    t296 = _runtime.VANISHING * (t290 * gap_rear_elbow_up_alike)
     del gap_rear_elbow_up_alike
-    t340 = t337 | (t338 <= t339) | (square_mid_rear_elbow_up_alike <= t333)
-    del square_mid_rear_elbow_up_alike, t337, t338, t339
-    square_mid_rear_elbow_down_alike = t88 + M_mid_rear_elbow_down_alike
-    del t88
-    t341 = M_mid_rear_elbow_down_alike * square_mid_rear_elbow_down_alike
-    del M_mid_rear_elbow_down_alike
-    t342 = _runtime.VANISHING * (t332 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t332
-    t343 = t340 | (t341 <= t342) | (square_mid_rear_elbow_down_alike <= t333)
-    del square_mid_rear_elbow_down_alike, t333, t340, t341, t342
+    t297 = _runtime.VANISHING * (t290 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t290
     return (
-        t95,
-        t102,
-        t106,
-        t113 + t94,
-        _runtime.wrap(t104 + t114) + t94,
-        t116,
-        t95,
-        t102,
-        t106,
-        t117 + t94,
-        _runtime.wrap(t104 - t114) + t94,
-        t116,
-        t148,
-        t156,
-        t158,
-        t166 + t147,
-        _runtime.wrap(t104 + t168) + t147,
-        t169,
-        t148,
-        t156,
-        t158,
-        t170 + t147,
-        _runtime.wrap(t104 - t168) + t147,
-        t169,
-        t218,
-        t226,
-        t228,
-        t236 + t217,
-        _runtime.wrap(t104 + t238) + t217,
-        t239,
-        t218,
-        t226,
-        t228,
-        t240 + t217,
-        _runtime.wrap(t104 - t238) + t217,
-        t239,
-        t275,
-        t282,
-        t284,
-        t292 + t274,
-        _runtime.wrap(t104 + t294) + t274,
-        t295,
-        t275,
-        t282,
-        t284,
-        t296 + t274,
-        _runtime.wrap(t104 - t294) + t274,
-        t295,
-        t297,
-        t297,
-        t298,
-        t298,
-        t299,
-        t299,
-        t300,
-        t300,
-        t343,
+        t81,
+        t89,
+        t92,
+        t100 + t80,
+        _runtime.wrap(t90 + t101) + t80,
+        t103,
+        t81,
+        t89,
+        t92,
+        t104 + t80,
+        _runtime.wrap(t90 - t101) + t80,
+        t103,
+        t138,
+        t147,
+        t150,
+        t159 + t137,
+        _runtime.wrap(t90 + t161) + t137,
+        t162,
+        t138,
+        t147,
+        t150,
+        t163 + t137,
+        _runtime.wrap(t90 - t161) + t137,
+        t162,
+        t184,
+        t192,
+        t195,
+        t204 + t183,
+        _runtime.wrap(t90 + t206) + t183,
+        t207,
+        t184,
+        t192,
+        t195,
+        t208 + t183,
+        _runtime.wrap(t90 - t206) + t183,
+        t207,
+        t231,
+        t238,
+        t241,
+        t250 + t230,
+        _runtime.wrap(t90 + t252) + t230,
+        t253,
+        t231,
+        t238,
+        t241,
+        t254 + t230,
+        _runtime.wrap(t90 - t252) + t230,
+        t253,
+        t255,
+        t255,
+        t256,
+        t256,
+        t257,
+        t257,
+        t258,
+        t258,
+        t295 | (t293 <= t296) | (t289 <= t297),
     )
 
 
@@ -3439,17 +3171,17 @@ def _wrist_length(psi, phi, d, gs, al):
     c_psi = np.cos(psi)
     t1 = c_phi * c_psi
     del c_psi
-    t2 = d - (gs - al) * t1
-    t3 = (gs + al) * t1 - d
-    t4 = np.sqrt(np.maximum(t2, 0.0)) * np.sqrt(np.maximum(t3, 0.0))
+    t2 = (gs + al) * t1 - d
+    t3 = d - (gs - al) * t1
+    t4 = np.sqrt(np.maximum(t2, 0.0) * np.maximum(t3, 0.0))
     t5 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t6 = t5 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
     del t5
-    t7 = -(_runtime.FEASIBILITY * (d / 2.0))
-    t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t3)
-    del c_phi, t3
-    failed = np.logical_not(t6) | np.logical_not(t8 & (t7 <= t2))
-    del t2, t6, t7, t8
+    t7 = -(_runtime.FEASIBILITY * (d * 0.5))
+    t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t2)
+    del c_phi, t2
+    failed = np.logical_not(t6) | np.logical_not(t8 & (t7 <= t3))
+    del t3, t6, t7, t8
     return (
         t4 / t1 + _runtime.poison(failed),
     )

@@ -3,16 +3,16 @@
 # Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
 #     Manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 3 sqrt
-#   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 3
+#   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 2 sqrt
+#   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 2
 #     sqrt
-#   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
-#   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
-#   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 3 sqrt
-#   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 3 sqrt
-#   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 3 sqrt
-#   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 3 sqrt
-#   ik: 56 compare and select, 36 add, 6 atan2, 2 divide, 33 multiply, 5 sqrt
+#   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
+#   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
+#   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 2 sqrt
+#   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 2 sqrt
+#   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 2 sqrt
+#   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 2 sqrt
+#   ik: 56 compare and select, 36 add, 6 atan2, 2 divide, 33 multiply, 3 sqrt
 #   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 #   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
 """Five-bar linkage on a revolute.
@@ -101,11 +101,11 @@ def _fk(theta1, theta2, theta3, L0, L1, L2):
     t5 = 1.0 / apart
     t6 = _runtime.select(coincide, 0.0, t1 * t5)
     del t1
-    t7 = distance * t6 / 2.0
+    t7 = distance * t6 * 0.5
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
-    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack * (apart + t8)) * 0.5)
     del apart, slack, t4, t8
     n_1 = _runtime.select(coincide, 1.0, -(t2 * t5))
     del t2, t5
@@ -120,7 +120,7 @@ def _fk(theta1, theta2, theta3, L0, L1, L2):
     unreachable = np.logical_not(-(_runtime.FEASIBILITY * t3) <= t9)
     del t3, t9
     t14 = _runtime.poison(invalid | unreachable)
-    t15 = distance * n_1 / 2.0
+    t15 = distance * n_1 * 0.5
     del distance, n_1
     t16 = height * t6
     del height, t6
@@ -180,17 +180,17 @@ def _passive_angles(theta1, theta2, theta3, L0, L1, L2):
     distance = _runtime.select(coincide, 0.0, apart)
     t5 = _runtime.select(coincide, 0.0, t1 / apart)
     del t1
-    t6 = distance * t5 / 2.0
+    t6 = distance * t5 * 0.5
     n_1 = _runtime.select(coincide, 1.0, -(t2 / apart))
     del coincide, t2
     t7 = L2 * 2.0
     t8 = t7 - apart
     slack = np.maximum(t8, 0.0)
-    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t7) / 2.0)
+    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack * (apart + t7)) * 0.5)
     del apart, slack, t4, t7
     t9 = n_1 * height
     DP_r_right_of_CD = t6 - t9
-    t10 = distance * n_1 / 2.0
+    t10 = distance * n_1 * 0.5
     del distance, n_1
     t11 = t5 * height
     del height, t5
@@ -272,30 +272,30 @@ def _jacobian_parallel(theta1, theta2, theta3, L0, L1, L2):
     distance = _runtime.select(coincide, 0.0, apart)
     t14 = _runtime.select(coincide, 0.0, t6 / apart)
     del t6
-    t15 = distance * t14 / 2.0
+    t15 = distance * t14 * 0.5
     n_1 = _runtime.select(coincide, 1.0, -(t7 / apart))
     del coincide, t7
     slack = np.maximum(t8, 0.0)
     del t8
-    height = _runtime.select(slack <= t13, 0.0, np.sqrt(slack) * np.sqrt(apart + t5) / 2.0)
+    height = _runtime.select(slack <= t13, 0.0, np.sqrt(slack * (apart + t5)) * 0.5)
     del apart, slack, t13, t5
     t16 = n_1 * height
     DP_r_right_of_CD = t15 - t16
-    t17 = DP_r_right_of_CD * c1
-    t18 = distance * n_1 / 2.0
+    t17 = c1 * DP_r_right_of_CD
+    t18 = distance * n_1 * 0.5
     del distance, n_1
     t19 = t14 * height
     del height, t14
     CP_y = t18 + t19
-    t20 = DP_r_right_of_CD * s1
+    t20 = s1 * DP_r_right_of_CD
     del DP_r_right_of_CD
     DP_r = t15 + t16
     del t15, t16
-    t21 = DP_r * c1
+    t21 = c1 * DP_r
     del c1
     CP_y_right_of_CD = t18 - t19
     del t18, t19
-    t22 = DP_r * s1
+    t22 = s1 * DP_r
     del DP_r, s1
     return (
         t10,
@@ -361,13 +361,13 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     distance = _runtime.select(coincide, 0.0, apart)
     t6 = _runtime.select(coincide, 0.0, t1 / apart)
     del t1
-    t7 = distance * t6 / 2.0
+    t7 = distance * t6 * 0.5
     n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
     del coincide, t3
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
-    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (apart + t8)) * 0.5)
     del apart, slack, t5, t8
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
@@ -379,7 +379,7 @@ def _jacobian_serial(theta1, theta2, theta3, L0, L1, L2):
     del t4, t9
     t14 = _runtime.poison(np.logical_not(t12 & t13) | unreachable)
     del t12, t13, unreachable
-    t15 = distance * n_1 / 2.0
+    t15 = distance * n_1 * 0.5
     del distance, n_1
     t16 = t6 * height
     del height, t6
@@ -422,9 +422,9 @@ def jacobian_serial(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = N
 
 
 def _jacobian(theta1, theta2, theta3, L0, L1, L2):
+    s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
-    s1, c1 = _runtime.sincos(theta1)
     C_r = L1 * s2
     del s2
     D_r = L1 * s3
@@ -442,13 +442,13 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     distance = _runtime.select(coincide, 0.0, apart)
     t6 = _runtime.select(coincide, 0.0, t1 / apart)
     del t1
-    t7 = distance * t6 / 2.0
+    t7 = distance * t6 * 0.5
     n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
     del coincide, t3
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
-    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (apart + t8)) * 0.5)
     del apart, slack, t5, t8
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
@@ -461,49 +461,48 @@ def _jacobian(theta1, theta2, theta3, L0, L1, L2):
     del t4, t9
     t14 = _runtime.poison(np.logical_not(t12 & t13) | unreachable)
     del t12, t13, unreachable
-    t15 = distance * n_1 / 2.0
+    t15 = distance * n_1 * 0.5
     del n_1
     t16 = t6 * height
     del t6
     CP_y_right_of_CD = t15 - t16
+    t17 = c1 * CP_y_right_of_CD
     CP_y = t15 + t16
     del t15, t16
-    t17 = C_y * DP_r_right_of_CD + C_r * CP_y
-    t18 = CP_y_right_of_CD * t17
+    t18 = C_y * DP_r_right_of_CD + C_r * CP_y
     side = distance * height
     del distance, height
+    t19 = c1 * CP_y
     DP_r = t7 + t10
     del t10, t7
     along_d = t2 * DP_r + D_r * CP_y_right_of_CD
-    t19 = CP_y * along_d
     t20 = 0.0 + t14
+    t21 = s1 * CP_y_right_of_CD
+    t22 = s1 * CP_y
     P_r_right_of_CD = C_r - DP_r
-    t21 = C_y * DP_r + C_r * CP_y_right_of_CD
-    del C_r, C_y
-    t22 = CP_y * t21
+    t23 = C_y * DP_r + C_r * CP_y_right_of_CD
+    del CP_y_right_of_CD, C_r, C_y
     along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y
     del CP_y, D_r, t2
-    t23 = CP_y_right_of_CD * along_d_right_of_CD
-    del CP_y_right_of_CD
     return (
-        P_r * s1 + t14,
-        c1 * t18 / side + t14,
-        -(c1 * t19 / side) + t14,
+        s1 * P_r + t14,
+        t17 * t18 / side + t14,
+        -(t19 * along_d / side) + t14,
         t20,
-        -(DP_r * t17 / side) + t14,
+        -(DP_r * t18 / side) + t14,
         DP_r_right_of_CD * along_d / side + t14,
-        P_r * c1 + t14,
-        -(s1 * t18 / side) + t14,
-        s1 * t19 / side + t14,
+        c1 * P_r + t14,
+        -(t21 * t18 / side) + t14,
+        t22 * along_d / side + t14,
         s1 * P_r_right_of_CD + t14,
-        -(c1 * t22 / side) + t14,
-        c1 * t23 / side + t14,
+        -(t19 * t23 / side) + t14,
+        t17 * along_d_right_of_CD / side + t14,
         t20,
-        DP_r_right_of_CD * t21 / side + t14,
+        DP_r_right_of_CD * t23 / side + t14,
         -(DP_r * along_d_right_of_CD / side) + t14,
         c1 * P_r_right_of_CD + t14,
-        s1 * t22 / side + t14,
-        -(s1 * t23 / side) + t14,
+        t22 * t23 / side + t14,
+        -(t21 * along_d_right_of_CD / side) + t14,
     )
 
 
@@ -550,17 +549,17 @@ def _determinant(theta1, theta2, theta3, L0, L1, L2):
     distance = _runtime.select(coincide, 0.0, apart)
     t6 = _runtime.select(coincide, 0.0, t1 / apart)
     del t1
-    t7 = distance * t6 / 2.0
+    t7 = distance * t6 * 0.5
     n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
     del coincide, t3
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
-    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (apart + t8)) * 0.5)
     del apart, slack, t5, t8
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
-    t11 = distance * n_1 / 2.0
+    t11 = distance * n_1 * 0.5
     del n_1
     t12 = t6 * height
     del t6
@@ -635,13 +634,13 @@ def _singularities(theta1, theta2, theta3, L0, L1, L2):
     distance = _runtime.select(coincide, 0.0, apart)
     t6 = _runtime.select(coincide, 0.0, t1 / apart)
     del t1
-    t7 = distance * t6 / 2.0
+    t7 = distance * t6 * 0.5
     n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
     del coincide, t3
     t8 = L2 * 2.0
     t9 = t8 - apart
     slack = np.maximum(t9, 0.0)
-    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack) * np.sqrt(apart + t8) / 2.0)
+    height = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (apart + t8)) * 0.5)
     del apart, slack, t5, t8
     t10 = n_1 * height
     DP_r_right_of_CD = t7 - t10
@@ -653,7 +652,7 @@ def _singularities(theta1, theta2, theta3, L0, L1, L2):
     del t4, t9
     t14 = _runtime.poison(np.logical_not(t12 & t13) | unreachable)
     del t12, t13, unreachable
-    t15 = distance * n_1 / 2.0
+    t15 = distance * n_1 * 0.5
     del n_1
     t16 = t6 * height
     del t6
@@ -710,11 +709,11 @@ def _condition_number(theta1, theta2, theta3, L0, L1, L2):
     t3 = L0 + L1 + L2
     t4 = t3 * _runtime.VANISHING
     coincide = apart <= t4
-    t5 = _runtime.select(coincide, 0.0, apart) / 2.0
+    t5 = _runtime.select(coincide, 0.0, apart) * 0.5
     t6 = L2 * 2.0
     t7 = t6 - apart
     slack = np.maximum(t7, 0.0)
-    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack) * np.sqrt(apart + t6) / 2.0)
+    height = _runtime.select(slack <= t4, 0.0, np.sqrt(slack * (apart + t6)) * 0.5)
     del apart, slack, t4, t6
     t8 = _runtime.select(coincide, 1.0, np.maximum(t5, height))
     del coincide
@@ -776,11 +775,11 @@ def _ik(x, y, z, L0, L1, L2):
     t9 = t1 * t1
     square_c = r2 + y * y
     t10 = t9 - square_c
-    t11 = L1 - L2
-    t12 = L1 / 8796093022208.0 + L2 / 8796093022208.0 + 2.0 * np.abs(t11)
-    t13 = -(_runtime.FEASIBILITY * (t1 * t12))
-    del t12
-    t14 = t11 * t11
+    t11 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
+    t12 = L1 - L2
+    t13 = _runtime.FEASIBILITY * (t1 * (t11 + 2.0 * np.abs(t12)))
+    del t11
+    t14 = t12 * t12
     t15 = square_c - t14
     del square_c
     t16 = y - L0
@@ -789,7 +788,7 @@ def _ik(x, y, z, L0, L1, L2):
     t17 = t9 - square_d
     t18 = square_d - t14
     del square_d, t14
-    t19 = (-t8 <= t10) & (t13 <= t15) & (-t8 <= t17) & (t13 <= t18)
+    t19 = (-t8 <= t10) & (-t13 <= t15) & (-t8 <= t17) & (-t13 <= t18)
     del t13, t8
     unreachable = np.logical_not(t19)
     del t19
@@ -803,9 +802,9 @@ def _ik(x, y, z, L0, L1, L2):
     del t15
     N_c = np.maximum(t10, 0.0)
     del t10
-    ahead_c = _runtime.select(no_link_c, 1.0, t1 * M_c + N_c * t11)
+    ahead_c = _runtime.select(no_link_c, 1.0, t1 * M_c + N_c * t12)
     t22 = ahead_c * r
-    beyond_c = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(M_c) * np.sqrt(N_c))
+    beyond_c = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(N_c * M_c))
     del M_c, N_c
     t23 = y * beyond_c
     t24 = y * ahead_c
@@ -820,10 +819,10 @@ def _ik(x, y, z, L0, L1, L2):
     del t18
     N_d = np.maximum(t17, 0.0)
     del t17
-    ahead_d = _runtime.select(no_link_c, 1.0, t1 * M_d + t11 * N_d)
-    del t11
+    ahead_d = _runtime.select(no_link_c, 1.0, t1 * M_d + t12 * N_d)
+    del t12
     t28 = ahead_d * r
-    beyond_d = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(M_d) * np.sqrt(N_d))
+    beyond_d = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(N_d * M_d))
     del M_d, N_d, no_link_c, t7
     t29 = t16 * beyond_d
     t30 = t16 * ahead_d
@@ -930,18 +929,18 @@ def _workspace_contains(x, y, z, L0, L1, L2):
     t6 = t4 * t4
     r2 = x * x + z * z
     square_c = r2 + y * y
-    t7 = L1 - L2
-    t8 = L1 / 8796093022208.0 + L2 / 8796093022208.0 + 2.0 * np.abs(t7)
-    t9 = -(_runtime.FEASIBILITY * (t4 * t8))
-    del t4, t8
-    t10 = t7 * t7
-    del t7
-    t11 = (-t5 <= t6 - square_c) & (t9 <= square_c - t10)
+    t7 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
+    t8 = L1 - L2
+    t9 = _runtime.FEASIBILITY * (t4 * (t7 + 2.0 * np.abs(t8)))
+    del t4, t7
+    t10 = t8 * t8
+    del t8
+    t11 = (-t5 <= t6 - square_c) & (-t9 <= square_c - t10)
     del square_c
     t12 = y - L0
     square_d = r2 + t12 * t12
     del r2, t12
-    t13 = t11 & (-t5 <= t6 - square_d) & (t9 <= square_d - t10)
+    t13 = t11 & (-t5 <= t6 - square_d) & (-t9 <= square_d - t10)
     del square_d, t10, t11, t5, t6, t9
     t14 = np.logical_not(np.logical_not(t3) | np.logical_not(t13))
     del t13, t3

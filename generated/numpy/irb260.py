@@ -15,7 +15,7 @@
 #   determinant: 4 add, 7 multiply, 2 sincos
 #   singularities: 4 add, 4 multiply, 2 sincos
 #   point_velocity: 11 add, 20 multiply, 3 sincos
-#   ik: 45 add, 71 compare and select, 10 atan2, 28 multiply, 1 sincos, 11 sqrt
+#   ik: 49 add, 71 compare and select, 10 atan2, 32 multiply, 1 sincos, 7 sqrt
 #   workspace_section: 1 compare and select, 4 add
 #   workspace_margin: 4 compare and select, 14 add, 5 multiply, 3 sqrt
 #   workspace_contains: 24 compare and select, 17 add, 6 multiply, 3 sqrt
@@ -630,102 +630,116 @@ def _ik(px, py, pz, psi, l1, l2, l3, l4, l5, l6):
     t17 = t5 + t16
     del t5
     folded = reach <= t4
-    no_link = l3 * l4 <= _runtime.VANISHING * (t1 * t1)
-    rA = np.sqrt(np.maximum(t12, 0.0))
-    del t12
-    rC = np.sqrt(np.maximum(t15, 0.0))
-    del t15
-    rS = np.sqrt(t1 + reach)
-    del reach
-    rB = np.sqrt(np.maximum(t14, 0.0))
-    del t14
-    t18 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(rA * rC, rS * rB))
-    t19 = np.arctan2(-t11, h)
+    t18 = np.arctan2(-t11, h)
     del t11
-    t20 = _runtime.wrap(-_runtime.select(folded, 0.0, t18 + t19))
-    t21 = 2.0 * np.arctan2(rA * rS, rC * rB)
-    del rA, rB, rC, rS
-    t22 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t21)
-    t23 = c_psi * s_turret_back_elbow_up
-    t24 = s_psi * s_turret_back_elbow_up
-    t25 = np.arctan2(s_psi * c_turret + t23, c_psi * c_turret - t24)
-    del c_turret
-    t26 = _runtime.wrap_cut(t25) + t16
-    del t25
-    t27 = _runtime.wrap(_runtime.select(folded, 0.0, t18 - t19))
-    del t18, t19
-    t28 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t21)
+    no_link = l3 * l4 <= _runtime.VANISHING * (t1 * t1)
+    A = np.maximum(t12, 0.0)
+    del t12
+    C = np.maximum(t15, 0.0)
+    del t15
+    t19 = A * C
+    S = t1 + reach
+    del reach
+    B = np.maximum(t14, 0.0)
+    del t14
+    t20 = S * B
+    t21 = np.arctan2(2.0 * np.sqrt(t19 * t20), t20 - t19)
+    del t19, t20
+    t22 = _runtime.select(no_link, 0.0, t21)
     del t21
+    t23 = _runtime.wrap(-_runtime.select(folded, 0.0, t18 + t22))
+    t24 = A * S
+    del A, S
+    t25 = C * B
+    del B, C
+    t26 = np.arctan2(2.0 * np.sqrt(t24 * t25), t25 - t24)
+    del t24, t25
+    t27 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t26)
+    t28 = c_psi * s_turret_back_elbow_up
+    t29 = s_psi * s_turret_back_elbow_up
+    t30 = np.arctan2(s_psi * c_turret + t28, c_psi * c_turret - t29)
+    del c_turret
+    t31 = _runtime.wrap_cut(t30) + t16
+    del t30
+    t32 = _runtime.wrap(-_runtime.select(folded, 0.0, t18 - t22))
+    del t18, t22
+    t33 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t26)
+    del t26
     c_turret_back_elbow_up = _runtime.select(on_axis, 1.0, -py)
-    t29 = np.arctan2(s_turret_back_elbow_up, c_turret_back_elbow_up)
+    t34 = np.arctan2(s_turret_back_elbow_up, c_turret_back_elbow_up)
     del s_turret_back_elbow_up
-    t30 = r + t2
+    t35 = r + t2
     del r, t2
-    reach_back_elbow_up = np.sqrt(t10 + t30 * t30)
+    reach_back_elbow_up = np.sqrt(t10 + t35 * t35)
     del t10
-    t31 = t1 - reach_back_elbow_up
-    t32 = t13 + reach_back_elbow_up
-    t33 = reach_back_elbow_up - t13
+    t36 = t1 - reach_back_elbow_up
+    t37 = t13 + reach_back_elbow_up
+    t38 = reach_back_elbow_up - t13
     del t13
-    unreachable_2 = np.logical_not((t9 <= t31) & (t9 <= t32) & (t9 <= t33))
+    unreachable_2 = np.logical_not((t9 <= t36) & (t9 <= t37) & (t9 <= t38))
     del t9
-    t34 = _runtime.poison(invalid | unreachable_2)
-    t35 = _runtime.wrap_cut(t29) + t34
-    del t29
+    t39 = _runtime.poison(invalid | unreachable_2)
+    t40 = _runtime.wrap_cut(t34) + t39
+    del t34
     folded_back_elbow_up = reach_back_elbow_up <= t4
     del t4
-    rA_back_elbow_up = np.sqrt(np.maximum(t31, 0.0))
-    del t31
-    rC_back_elbow_up = np.sqrt(np.maximum(t33, 0.0))
-    del t33
-    rS_back_elbow_up = np.sqrt(t1 + reach_back_elbow_up)
-    del reach_back_elbow_up, t1
-    rB_back_elbow_up = np.sqrt(np.maximum(t32, 0.0))
-    del t32
-    t36 = np.arctan2(rA_back_elbow_up * rC_back_elbow_up, rS_back_elbow_up * rB_back_elbow_up)
-    t37 = _runtime.select(no_link, 0.0, 2.0 * t36)
+    t41 = np.arctan2(t35, h)
+    del h, t35
+    A_back_elbow_up = np.maximum(t36, 0.0)
     del t36
-    t38 = np.arctan2(t30, h)
-    del h, t30
-    t39 = _runtime.select(folded_back_elbow_up, 0.0, t37 + t38)
-    t40 = np.arctan2(rA_back_elbow_up * rS_back_elbow_up, rC_back_elbow_up * rB_back_elbow_up)
-    del rA_back_elbow_up, rB_back_elbow_up, rC_back_elbow_up, rS_back_elbow_up
-    t41 = 2.0 * t40
-    del t40
-    t42 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t41)
-    t43 = np.arctan2(t23 - s_psi * c_turret_back_elbow_up, t24 + c_psi * c_turret_back_elbow_up)
-    del c_psi, c_turret_back_elbow_up, s_psi, t23, t24
-    t44 = _runtime.wrap_cut(-t43) + t34
-    del t43
-    t45 = _runtime.select(folded_back_elbow_up, 0.0, t37 - t38)
-    del t37, t38
-    t46 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t41)
-    del t41
-    t47 = _runtime.status(invalid, unreachable, on_axis | folded | no_link)
+    C_back_elbow_up = np.maximum(t38, 0.0)
+    del t38
+    t42 = A_back_elbow_up * C_back_elbow_up
+    S_back_elbow_up = t1 + reach_back_elbow_up
+    del reach_back_elbow_up, t1
+    B_back_elbow_up = np.maximum(t37, 0.0)
+    del t37
+    t43 = S_back_elbow_up * B_back_elbow_up
+    t44 = np.arctan2(2.0 * np.sqrt(t42 * t43), t43 - t42)
+    del t42, t43
+    t45 = _runtime.select(no_link, 0.0, t44)
+    del t44
+    t46 = _runtime.select(folded_back_elbow_up, 0.0, t41 + t45)
+    t47 = A_back_elbow_up * S_back_elbow_up
+    del A_back_elbow_up, S_back_elbow_up
+    t48 = C_back_elbow_up * B_back_elbow_up
+    del B_back_elbow_up, C_back_elbow_up
+    t49 = np.arctan2(2.0 * np.sqrt(t47 * t48), t48 - t47)
+    del t47, t48
+    t50 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 - t49)
+    t51 = np.arctan2(t28 - s_psi * c_turret_back_elbow_up, t29 + c_psi * c_turret_back_elbow_up)
+    del c_psi, c_turret_back_elbow_up, s_psi, t28, t29
+    t52 = _runtime.wrap_cut(-t51) + t39
+    del t51
+    t53 = _runtime.select(folded_back_elbow_up, 0.0, t41 - t45)
+    del t41, t45
+    t54 = _runtime.select(no_link, 1.5707963267948966, 1.5707963267948966 + t49)
+    del t49
+    t55 = _runtime.status(invalid, unreachable, on_axis | folded | no_link)
     del folded, unreachable
-    t48 = _runtime.status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link)
+    t56 = _runtime.status(invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link)
     del folded_back_elbow_up, invalid, no_link, on_axis, unreachable_2
     return (
         t17,
-        t20 + t16,
-        -t22 + t16,
-        t26,
+        t23 + t16,
+        -t27 + t16,
+        t31,
         t17,
-        t27 + t16,
-        _runtime.wrap(-t28) + t16,
-        t26,
-        t35,
-        _runtime.wrap(-t39) + t34,
-        -t42 + t34,
-        t44,
-        t35,
-        _runtime.wrap_cut(t45) + t34,
-        _runtime.wrap(-t46) + t34,
-        t44,
-        t47,
-        t47,
-        t48,
-        t48,
+        t32 + t16,
+        _runtime.wrap(-t33) + t16,
+        t31,
+        t40,
+        _runtime.wrap(-t46) + t39,
+        -t50 + t39,
+        t52,
+        t40,
+        _runtime.wrap_cut(-t53) + t39,
+        _runtime.wrap(-t54) + t39,
+        t52,
+        t55,
+        t55,
+        t56,
+        t56,
     )
 
 

@@ -10,7 +10,7 @@
 #   determinant: 2 multiply, 1 sincos
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
 #   singularities: 1 sincos
-#   ik: 31 compare and select, 18 add, 3 atan2, 2 divide, 23 multiply, 2 sqrt
+#   ik: 31 compare and select, 19 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
 #   ik_pose: 61 compare and select, 25 add, 2 atan2, 1 divide, 27 multiply, 1 sqrt
 #   workspace_radii: 1 compare and select, 2 add
 """Planar 2R arm.
@@ -312,44 +312,40 @@ def _ik(px, py, l1, l2):
     ahead = _runtime.select(no_link, 1.0, t1 * M + N * t3)
     t6 = py * ahead
     t7 = l2 * 2.0
-    t8 = np.sqrt(M)
-    del M
-    t9 = np.sqrt(N)
-    del N
-    beyond = _runtime.select(no_link, 0.0, t7 * t8 * t9)
-    t10 = px * beyond
-    t11 = px * ahead
+    t8 = np.sqrt(N * M)
+    beyond = _runtime.select(no_link, 0.0, t7 * t8)
+    t9 = px * beyond
+    t10 = px * ahead
     del ahead
-    t12 = py * beyond
+    t11 = py * beyond
     del beyond
-    t13 = _runtime.select(at_base, 0.0, np.arctan2(t6 - t10, t11 + t12))
-    t14 = (np.isfinite(l1) & np.isfinite(l2)) & (0.0 <= l1)
-    t15 = t14 & (0.0 <= l2) & (np.isfinite(px) & np.isfinite(py))
+    t12 = _runtime.select(at_base, 0.0, np.arctan2(t6 - t9, t10 + t11))
+    t13 = (np.isfinite(l1) & np.isfinite(l2)) & (0.0 <= l1)
+    t14 = t13 & (0.0 <= l2) & (np.isfinite(px) & np.isfinite(py))
+    del t13
+    invalid = np.logical_not(t14)
     del t14
-    invalid = np.logical_not(t15)
-    del t15
-    t16 = _runtime.FEASIBILITY * (t1 * (l1 * 2.0 + t7))
+    t15 = _runtime.FEASIBILITY * (t1 * (l1 * 2.0 + t7))
     del t7
-    t17 = l1 / 8796093022208.0 + l2 / 8796093022208.0 + 2.0 * np.abs(t3)
-    del t3
-    t18 = (-t16 <= t5) & (-(_runtime.FEASIBILITY * (t1 * t17)) <= t4)
-    del t1, t16, t17, t4, t5
-    unreachable = np.logical_not(t18)
-    del t18
-    t19 = _runtime.poison(invalid | unreachable)
-    t20 = _runtime.select(no_link, 0.0, 2.0 * np.arctan2(t9, t8))
-    del t8, t9
-    t21 = _runtime.select(at_base, 0.0, np.arctan2(t6 + t10, t11 - t12))
-    del t10, t11, t12, t6
-    t22 = _runtime.status(invalid, unreachable, no_link | at_base)
+    t16 = l1 * 1.1368683772161603e-13 + l2 * 1.1368683772161603e-13
+    t17 = _runtime.FEASIBILITY * (t1 * (t16 + 2.0 * np.abs(t3)))
+    del t1, t16, t3
+    unreachable = np.logical_not((-t15 <= t5) & (-t17 <= t4))
+    del t15, t17, t4, t5
+    t18 = _runtime.poison(invalid | unreachable)
+    t19 = _runtime.select(no_link, 0.0, np.arctan2(2.0 * t8, M - N))
+    del M, N, t8
+    t20 = _runtime.select(at_base, 0.0, np.arctan2(t6 + t9, t10 - t11))
+    del t10, t11, t6, t9
+    t21 = _runtime.status(invalid, unreachable, no_link | at_base)
     del at_base, invalid, no_link, unreachable
     return (
-        _runtime.wrap_cut(t13) + t19,
-        t20 + t19,
-        _runtime.wrap_cut(t21) + t19,
-        _runtime.wrap_cut(-t20) + t19,
-        t22,
-        t22,
+        _runtime.wrap_cut(t12) + t18,
+        t19 + t18,
+        _runtime.wrap_cut(t20) + t18,
+        _runtime.wrap_cut(-t19) + t18,
+        t21,
+        t21,
     )
 
 

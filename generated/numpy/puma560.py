@@ -10,7 +10,7 @@
 #   jacobian_body: 26 add, 61 multiply, 5 sincos
 #   determinant: 9 add, 22 multiply, 3 sincos
 #   singularities: 5 add, 9 multiply, 3 sincos
-#   ik: 133 compare and select, 141 add, 20 atan2, 9 divide, 172 multiply, 10 sqrt
+#   ik: 133 compare and select, 141 add, 20 atan2, 9 divide, 172 multiply, 9 sqrt
 """Puma 560.
 
 A vertical base axis (theta1), two parallel horizontal axes (theta2, theta3) and a spherical
@@ -581,9 +581,9 @@ def _ik(
     t6 = 1.0 / (amplitude * (below + above))
     del amplitude
     t7 = T14 * t5 * t6
-    root = np.sqrt(above) * np.sqrt(below)
+    root = np.sqrt(below * above)
     del above, below
-    t8 = root * 2.0
+    t8 = 2.0 * root
     t9 = t6 * (T24 * t8)
     t10 = _runtime.select(free_theta1, 0.0, t7 - t9)
     t11 = T24 * t5 * t6
@@ -630,7 +630,7 @@ def _ik(
     t35 = _runtime.select(folded, 0.0, T34 * t34)
     no_link = a2 * f <= _runtime.VANISHING * (t1 * t1)
     t36 = folded | no_link
-    S = reach + t1
+    S = t1 + reach
     del reach, t1
     B = np.maximum(t29, 0.0)
     del t29
@@ -671,16 +671,16 @@ def _ik(
     t51 = _runtime.select(no_link, 1.0, -((SA - BC) * t50))
     del BC, SA
     t52 = t49 * t51
-    t53 = _runtime.select(no_link, 0.0, area * t50)
-    del area, t50
-    t54 = _runtime.select(no_forearm, 1.0, a3 * t48)
+    t53 = _runtime.select(no_forearm, 1.0, a3 * t48)
     del t48
+    t54 = _runtime.select(no_link, 0.0, area * t50)
+    del area, t50
     t55 = t53 * t54
     t56 = t52 + t55
-    t57 = t49 * t53
-    del t49, t53
-    t58 = t51 * t54
-    del t51, t54
+    t57 = t49 * t54
+    del t49, t54
+    t58 = t51 * t53
+    del t51, t53
     t59 = t57 - t58
     t60 = _runtime.wrap_cut(-np.arctan2(t56, -t59)) + t32
     t61 = T13 * t10 + T23 * c1

@@ -2,11 +2,11 @@
 # derivations/rpr_planar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 4 sqrt
-#   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 4 sqrt
-#   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 4 sqrt
-#   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 4 sqrt
-#   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 4 sqrt
+#   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
+#   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
+#   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
+#   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
+#   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
 #   ik: 5 add, 8 compare and select, 3 multiply, 2 sqrt
 """Planar parallel mechanism (two RPR legs).
 
@@ -71,7 +71,7 @@ def _fk(rho1, rho2, b):
     n_1 = _runtime.select(coincide, 1.0, b / b)
     t4 = rho1 - rho2
     t5 = 1.0 / (b * 2.0)
-    t6 = _runtime.select(coincide, rho1, b / 2.0 + t4 * t1 * t5)
+    t6 = _runtime.select(coincide, rho1, b * 0.5 + t4 * t1 * t5)
     t7 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     invalid = np.logical_not(t7)
     del t7
@@ -88,9 +88,9 @@ def _fk(rho1, rho2, b):
     del t6
     slack = np.maximum(t9, 0.0)
     del t9
-    t14 = np.sqrt(np.maximum(t11, 0.0)) * np.sqrt(np.maximum(t10, 0.0))
+    t14 = slack * np.maximum(t10, 0.0) * np.maximum(t11, 0.0)
     del t10, t11
-    t15 = _runtime.select(coincide, 0.0, t5 * (t14 * np.sqrt(slack) * np.sqrt(t2)))
+    t15 = _runtime.select(coincide, 0.0, t5 * (np.sqrt(t2) * np.sqrt(t14)))
     del t14, t2, t5
     P_y = n_1 * _runtime.select(slack <= t3, 0.0, t15)
     del n_1, slack, t15, t3
@@ -139,15 +139,15 @@ def _passive_angles(rho1, rho2, b):
     t4 = t1 - b
     slack = np.maximum(t4, 0.0)
     t5 = rho1 - rho2
-    t6 = b - t5
-    t7 = b + t5
-    t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    t6 = b + t5
+    t7 = b - t5
+    t8 = slack * np.maximum(t6, 0.0) * np.maximum(t7, 0.0)
     t9 = b * 2.0
-    t10 = _runtime.select(coincide, 0.0, t8 * np.sqrt(slack) * np.sqrt(t2) / t9)
+    t10 = _runtime.select(coincide, 0.0, np.sqrt(t2) * np.sqrt(t8) / t9)
     del t8
     P_y = n_1 * _runtime.select(slack <= t3, 0.0, t10)
     del slack, t10, t3
-    t11 = _runtime.select(coincide, rho1, b / 2.0 + t5 * t1 / t9)
+    t11 = _runtime.select(coincide, rho1, b * 0.5 + t5 * t1 / t9)
     del coincide, t1, t5, t9
     P_x = n_1 * t11
     del n_1, t11
@@ -155,7 +155,7 @@ def _passive_angles(rho1, rho2, b):
     t13 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t14 = -(_runtime.FEASIBILITY * t2)
     del t2
-    unreachable = np.logical_not((t14 <= t4) & (t14 <= t7) & (t14 <= t6))
+    unreachable = np.logical_not((t14 <= t4) & (t14 <= t6) & (t14 <= t7))
     del t14, t4, t6, t7
     t15 = _runtime.poison(np.logical_not(t13) | unreachable)
     del t13, unreachable
@@ -209,15 +209,15 @@ def _jacobian(rho1, rho2, b):
     coincide = b <= t12
     n_1 = _runtime.select(coincide, 1.0, b / b)
     t13 = b * 2.0
-    t14 = _runtime.select(coincide, rho1, b / 2.0 + t6 * t2 / t13)
+    t14 = _runtime.select(coincide, rho1, b * 0.5 + t6 * t2 / t13)
     del t2, t6
     P_x = n_1 * t14
     del t14
     slack = np.maximum(t5, 0.0)
     del t5
-    t15 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    t15 = slack * np.maximum(t7, 0.0) * np.maximum(t8, 0.0)
     del t7, t8
-    t16 = _runtime.select(coincide, 0.0, t15 * np.sqrt(slack) * np.sqrt(t3) / t13)
+    t16 = _runtime.select(coincide, 0.0, np.sqrt(t3) * np.sqrt(t15) / t13)
     del coincide, t13, t15, t3
     P_y = n_1 * _runtime.select(slack <= t12, 0.0, t16)
     del n_1, slack, t12, t16
@@ -268,22 +268,20 @@ def _determinant(rho1, rho2, b):
     del t1
     slack = np.maximum(t4, 0.0)
     t5 = rho1 - rho2
-    t6 = b - t5
-    t7 = b + t5
+    t6 = b + t5
+    t7 = b - t5
     del t5
-    t8 = np.sqrt(np.maximum(t6, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
-    t9 = t8 * np.sqrt(slack) * np.sqrt(t2) / (b * 2.0)
+    t8 = slack * np.maximum(t6, 0.0) * np.maximum(t7, 0.0)
+    t9 = _runtime.select(coincide, 0.0, np.sqrt(t2) * np.sqrt(t8) / (b * 2.0))
     del t8
-    height = _runtime.select(slack <= t3, 0.0, _runtime.select(coincide, 0.0, t9))
-    del slack, t3, t9
-    P_y = _runtime.select(coincide, 1.0, b / b) * height
-    del coincide, height
+    P_y = _runtime.select(coincide, 1.0, b / b) * _runtime.select(slack <= t3, 0.0, t9)
+    del coincide, slack, t3, t9
     t10 = rho1 * rho2 / (b * P_y)
     del P_y
     t11 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t12 = -(_runtime.FEASIBILITY * t2)
     del t2
-    unreachable = np.logical_not((t12 <= t4) & (t12 <= t7) & (t12 <= t6))
+    unreachable = np.logical_not((t12 <= t4) & (t12 <= t6) & (t12 <= t7))
     del t12, t4, t6, t7
     t13 = _runtime.poison(np.logical_not(t11) | unreachable)
     del t11, unreachable
@@ -335,14 +333,12 @@ def _singularities(rho1, rho2, b):
     coincide = b <= t12
     slack = np.maximum(t5, 0.0)
     del t5
-    t13 = np.sqrt(np.maximum(t8, 0.0)) * np.sqrt(np.maximum(t7, 0.0))
+    t13 = slack * np.maximum(t7, 0.0) * np.maximum(t8, 0.0)
     del t7, t8
-    t14 = t13 * np.sqrt(slack) * np.sqrt(t3) / (b * 2.0)
+    t14 = _runtime.select(coincide, 0.0, np.sqrt(t3) * np.sqrt(t13) / (b * 2.0))
     del t13, t3
-    height = _runtime.select(slack <= t12, 0.0, _runtime.select(coincide, 0.0, t14))
-    del slack, t12, t14
-    P_y = _runtime.select(coincide, 1.0, b / b) * height
-    del coincide, height
+    P_y = _runtime.select(coincide, 1.0, b / b) * _runtime.select(slack <= t12, 0.0, t14)
+    del coincide, slack, t12, t14
     return (
         t10,
         t11,

@@ -9,7 +9,7 @@
 #   singularities: 1 sincos
 #   jacobian_space: 4 add, 8 multiply, 2 sincos
 #   jacobian_body: 4 add, 8 multiply, 2 sincos
-#   ik: 32 add, 39 compare and select, 5 atan2, 5 divide, 43 multiply, 1 sincos, 5 sqrt
+#   ik: 32 add, 39 compare and select, 5 atan2, 5 divide, 41 multiply, 1 sincos, 2 sqrt
 """SCARA arm (RRPR).
 
 Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a
@@ -386,66 +386,64 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t6 - t8) * t9))
     del t6, t8
     t10 = t2 * (x_y * c_base_elbow)
-    t11 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
-    area_elbow = t11 * np.sqrt(S_elbow)
-    del t11
+    t11 = A_elbow * S_elbow
+    del A_elbow, S_elbow
+    t12 = C_elbow * B_elbow
+    del B_elbow, C_elbow
+    area_elbow = 2.0 * np.sqrt(t11 * t12)
     s_base_elbow = _runtime.select(no_link_elbow, 0.0, t9 * area_elbow)
     del t9
-    t12 = t2 * (x_x * s_base_elbow)
-    s1 = _runtime.select(folded_elbow, 0.0, t10 - t12)
-    t13 = t2 * (x_x * c_base_elbow)
+    t13 = t2 * (x_x * s_base_elbow)
+    s1 = _runtime.select(folded_elbow, 0.0, t10 - t13)
+    t14 = t2 * (x_x * c_base_elbow)
     del c_base_elbow
-    t14 = t2 * (x_y * s_base_elbow)
+    t15 = t2 * (x_y * s_base_elbow)
     del s_base_elbow, t2
-    c1 = _runtime.select(folded_elbow, 1.0, t13 + t14)
-    t15 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(h)
-    t16 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z) & np.isfinite(x_yaw)
-    t17 = t15 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= h) & t16
-    del t15, t16
-    invalid = np.logical_not(t17)
-    del t17
-    t18 = -(_runtime.FEASIBILITY * (l1 / 2.0 + l2 / 2.0))
-    unreachable = np.logical_not((t18 <= t3) & (t18 <= t7) & (t18 <= t5))
-    del t18, t3, t5, t7
-    t19 = _runtime.poison(invalid | unreachable)
-    t20 = A_elbow * S_elbow
-    del A_elbow, S_elbow
-    t21 = C_elbow * B_elbow
-    del B_elbow, C_elbow
-    t22 = 1.0 / (t20 + t21)
-    s2 = _runtime.select(no_link_elbow, 0.0, area_elbow * t22)
+    c1 = _runtime.select(folded_elbow, 1.0, t14 + t15)
+    t16 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(h)
+    t17 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z) & np.isfinite(x_yaw)
+    t18 = t16 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= h) & t17
+    del t16, t17
+    invalid = np.logical_not(t18)
+    del t18
+    t19 = -(_runtime.FEASIBILITY * (l1 * 0.5 + l2 * 0.5))
+    unreachable = np.logical_not((t19 <= t3) & (t19 <= t7) & (t19 <= t5))
+    del t19, t3, t5, t7
+    t20 = _runtime.poison(invalid | unreachable)
+    t21 = 1.0 / (t11 + t12)
+    s2 = _runtime.select(no_link_elbow, 0.0, area_elbow * t21)
     del area_elbow
-    c2 = _runtime.select(no_link_elbow, 1.0, -(t22 * (t20 - t21)))
-    del t20, t21, t22
-    t23 = np.arctan2(s2, c2)
-    t24 = h - x_z + t19
-    t25 = c1 * c2 - s1 * s2
-    t26 = c1 * s2 + s1 * c2
-    t27 = np.arctan2(s_x_yaw * t25 - c_x_yaw * t26, c_x_yaw * t25 + s_x_yaw * t26)
-    del t25, t26
-    s1_right = _runtime.select(folded_elbow, 0.0, t10 + t12)
-    del t10, t12
-    c1_right = _runtime.select(folded_elbow, 1.0, t13 - t14)
-    del t13, t14
-    t28 = _runtime.wrap_cut(np.arctan2(s1_right, c1_right))
-    t29 = c2 * c1_right + s2 * s1_right
-    t30 = s2 * c1_right - c2 * s1_right
+    c2 = _runtime.select(no_link_elbow, 1.0, -(t21 * (t11 - t12)))
+    del t11, t12, t21
+    t22 = np.arctan2(s2, c2)
+    t23 = h - x_z + t20
+    t24 = c1 * c2 - s1 * s2
+    t25 = c1 * s2 + s1 * c2
+    t26 = np.arctan2(s_x_yaw * t24 - c_x_yaw * t25, c_x_yaw * t24 + s_x_yaw * t25)
+    del t24, t25
+    s1_right = _runtime.select(folded_elbow, 0.0, t10 + t13)
+    del t10, t13
+    c1_right = _runtime.select(folded_elbow, 1.0, t14 - t15)
+    del t14, t15
+    t27 = _runtime.wrap_cut(np.arctan2(s1_right, c1_right))
+    t28 = c2 * c1_right + s2 * s1_right
+    t29 = s2 * c1_right - c2 * s1_right
     del c1_right, c2, s1_right, s2
-    t31 = np.arctan2(s_x_yaw * t29 + c_x_yaw * t30, c_x_yaw * t29 - s_x_yaw * t30)
-    del c_x_yaw, s_x_yaw, t29, t30
-    t32 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
+    t30 = np.arctan2(s_x_yaw * t28 + c_x_yaw * t29, c_x_yaw * t28 - s_x_yaw * t29)
+    del c_x_yaw, s_x_yaw, t28, t29
+    t31 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
     del folded_elbow, invalid, no_link_elbow, unreachable
     return (
-        _runtime.wrap_cut(np.arctan2(s1, c1)) + t19,
-        _runtime.wrap_cut(t23) + t19,
-        t24,
-        _runtime.wrap_cut(-t27) + t19,
-        t28 + t19,
-        _runtime.wrap_cut(-t23) + t19,
-        t24,
-        _runtime.wrap_cut(-t31) + t19,
-        t32,
-        t32,
+        _runtime.wrap_cut(np.arctan2(s1, c1)) + t20,
+        _runtime.wrap_cut(t22) + t20,
+        t23,
+        _runtime.wrap_cut(-t26) + t20,
+        t27 + t20,
+        _runtime.wrap_cut(-t22) + t20,
+        t23,
+        _runtime.wrap_cut(-t30) + t20,
+        t31,
+        t31,
     )
 
 

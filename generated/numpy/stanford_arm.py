@@ -10,8 +10,8 @@
 #   jacobian_body: 14 add, 41 multiply, 4 sincos
 #   determinant: 3 multiply, 2 sincos
 #   singularities: 2 sincos
-#   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 9 sqrt
-#   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 7
+#   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 8 sqrt
+#   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 6
 #     sqrt
 """Stanford arm.
 
@@ -513,9 +513,9 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t7 = 1.0 / (amplitude * (below + above))
     del amplitude
     t8 = T14 * t6 * t7
-    root = np.sqrt(above) * np.sqrt(below)
+    root = np.sqrt(below * above)
     del above, below
-    t9 = root * 2.0
+    t9 = 2.0 * root
     t10 = t7 * (T24 * t9)
     s1 = _runtime.select(free_theta1, 0.0, t8 + t10)
     t11 = t7 * (T14 * t9)
@@ -772,9 +772,9 @@ def _ik_common(
     t4 = below - above
     t5 = 1.0 / (amplitude * (below + above))
     t6 = T14 * t4 * t5
-    root = np.sqrt(above) * np.sqrt(below)
+    root = np.sqrt(below * above)
     del above, below
-    t7 = root * 2.0
+    t7 = 2.0 * root
     t8 = t5 * (T24 * t7)
     s1 = t6 + t8
     t9 = T24 * t4 * t5
@@ -807,46 +807,46 @@ def _ik_common(
     del t2, t24, t3
     t25 = _runtime.poison(invalid | unreachable)
     t26 = _runtime.wrap_cut(np.arctan2(s1, -t11)) + t25
+    t27 = np.arctan2(root, T34)
+    t28 = _runtime.wrap_cut(t27) + t25
     reach = np.sqrt(t23 + root * root)
     del t23
-    t27 = 1.0 / reach
-    s2 = root * t27
-    del root
-    c2 = T34 * t27
-    del t27
-    t28 = np.arctan2(s2, c2)
-    t29 = _runtime.wrap_cut(t28) + t25
-    t30 = reach + t25
-    t31 = T13 * s1 + T23 * t11
+    t29 = reach + t25
+    t30 = T13 * s1 + T23 * t11
+    t31 = 1.0 / reach
+    s2 = root * t31
     t32 = T33 * s2
+    c2 = T34 * t31
+    del t31
     t33 = T13 * t11 - T23 * s1
     t34 = t32 + c2 * t33
-    h = np.sqrt(t31 * t31 + t34 * t34)
-    t35 = 1.0 / h
-    t36 = t31 * t35
-    c4_right_back_noflip = t34 * t35
-    del t35
-    t37 = np.arctan2(t36, -c4_right_back_noflip)
-    t38 = t31 * t36 + t34 * c4_right_back_noflip
-    del t31, t34
+    t35 = np.arctan2(t30, -t34)
+    h = np.sqrt(t30 * t30 + t34 * t34)
+    t36 = 1.0 / h
+    t37 = t30 * t36
+    c4_right_back_noflip = t34 * t36
+    del t36
+    t38 = t30 * t37 + t34 * c4_right_back_noflip
     t39 = T33 * c2
     R2_33 = t39 - s2 * t33
     del t33
     t40 = np.arctan2(t38, R2_33)
     t41 = c4_right_back_noflip * (T11 * s1 + T21 * t11)
     t42 = T31 * s2
-    t43 = t41 - t36 * (t42 + c2 * (T11 * t11 - T21 * s1))
+    t43 = t41 - t37 * (t42 + c2 * (T11 * t11 - T21 * s1))
     del t41
     t44 = c4_right_back_noflip * (T12 * s1 + T22 * t11)
+    del c4_right_back_noflip
     t45 = T32 * s2
-    t46 = t44 - t36 * (t45 + c2 * (T12 * t11 - T22 * s1))
-    del s1, t11, t44
+    t46 = t44 - t37 * (t45 + c2 * (T12 * t11 - T22 * s1))
+    del s1, t11, t37, t44
     t47 = np.arctan2(-t43, t46)
-    t48 = np.arctan2(s2, -c2)
+    t48 = np.arctan2(root, -T34)
+    del root
     t49 = _runtime.wrap_cut(-t48) + t25
     t50 = -reach + t25
-    t51 = np.arctan2(t36, c4_right_back_noflip)
-    del c4_right_back_noflip, t36
+    t51 = np.arctan2(t30, t34)
+    del t30, t34
     t52 = np.arctan2(t38, -R2_33)
     del R2_33, t38
     t53 = np.arctan2(t43, -t46)
@@ -858,40 +858,40 @@ def _ik_common(
     t55 = _runtime.wrap_cut(np.arctan2(s1_left_out_noflip, -t54))
     t56 = t55 + t25
     del t55
-    t57 = _runtime.wrap_cut(-t28) + t25
-    del t28
+    t57 = _runtime.wrap_cut(-t27) + t25
+    del t27
     t58 = T13 * s1_left_out_noflip + T23 * t54
     t59 = T13 * t54 - T23 * s1_left_out_noflip
     R2_13_left_out_noflip = t32 - c2 * t59
     del t32
-    t60 = R2_13_left_out_noflip * R2_13_left_out_noflip
-    h_left_out_noflip = np.sqrt(t58 * t58 + t60)
-    del t60
-    t61 = 1.0 / h_left_out_noflip
-    t62 = t58 * t61
-    c4_left_out_noflip = R2_13_left_out_noflip * t61
+    t60 = np.arctan2(t58, R2_13_left_out_noflip)
+    t61 = R2_13_left_out_noflip * R2_13_left_out_noflip
+    h_left_out_noflip = np.sqrt(t58 * t58 + t61)
     del t61
-    t63 = np.arctan2(t62, c4_left_out_noflip)
-    t64 = t58 * t62 + R2_13_left_out_noflip * c4_left_out_noflip
-    del R2_13_left_out_noflip, t58
+    t62 = 1.0 / h_left_out_noflip
+    t63 = t58 * t62
+    c4_left_out_noflip = R2_13_left_out_noflip * t62
+    del t62
+    t64 = t58 * t63 + R2_13_left_out_noflip * c4_left_out_noflip
     R2_33_left_out_noflip = t39 + s2 * t59
     del s2, t39, t59
     t65 = np.arctan2(t64, R2_33_left_out_noflip)
     t66 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t54)
     R2_11_left_out_noflip = t42 - c2 * (T11 * t54 - T21 * s1_left_out_noflip)
     del t42
-    t67 = t66 - t62 * R2_11_left_out_noflip
+    t67 = t66 - t63 * R2_11_left_out_noflip
     del R2_11_left_out_noflip, t66
     t68 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t54)
+    del c4_left_out_noflip
     R2_12_left_out_noflip = t45 - c2 * (T12 * t54 - T22 * s1_left_out_noflip)
     del c2, s1_left_out_noflip, t45, t54
-    t69 = t68 - t62 * R2_12_left_out_noflip
-    del R2_12_left_out_noflip, t68
+    t69 = t68 - t63 * R2_12_left_out_noflip
+    del R2_12_left_out_noflip, t63, t68
     t70 = np.arctan2(t67, -t69)
     t71 = _runtime.wrap_cut(t48) + t25
     del t48
-    t72 = np.arctan2(t62, -c4_left_out_noflip)
-    del c4_left_out_noflip, t62
+    t72 = np.arctan2(t58, -R2_13_left_out_noflip)
+    del R2_13_left_out_noflip, t58
     t73 = np.arctan2(t64, -R2_33_left_out_noflip)
     del R2_33_left_out_noflip, t64
     t74 = np.arctan2(-t67, t69)
@@ -905,15 +905,15 @@ def _ik_common(
     del amplitude, h, reach, t76
     return (
         t26,
+        t28,
         t29,
-        t30,
-        _runtime.wrap_cut(-t37) + t25,
+        _runtime.wrap_cut(-t35) + t25,
         _runtime.wrap_cut(t40) + t25,
         _runtime.wrap_cut(-t47) + t25,
         t26,
+        t28,
         t29,
-        t30,
-        _runtime.wrap(3.141592653589793 - t37) + t25,
+        _runtime.wrap(3.141592653589793 - t35) + t25,
         _runtime.wrap_cut(-t40) + t25,
         _runtime.wrap(3.141592653589793 - t47) + t25,
         t26,
@@ -930,14 +930,14 @@ def _ik_common(
         _runtime.wrap(3.141592653589793 - t53) + t25,
         t56,
         t57,
-        t30,
-        _runtime.wrap_cut(-t63) + t25,
+        t29,
+        _runtime.wrap_cut(-t60) + t25,
         _runtime.wrap_cut(t65) + t25,
         _runtime.wrap_cut(-t70) + t25,
         t56,
         t57,
-        t30,
-        _runtime.wrap(3.141592653589793 - t63) + t25,
+        t29,
+        _runtime.wrap(3.141592653589793 - t60) + t25,
         _runtime.wrap_cut(-t65) + t25,
         _runtime.wrap(3.141592653589793 - t70) + t25,
         t56,

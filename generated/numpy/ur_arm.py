@@ -9,9 +9,9 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 46 add, 76 multiply, 5 sincos
 #   jacobian_body: 34 add, 64 multiply, 5 sincos
-#   ik: 302 compare and select, 279 add, 30 atan2, 37 divide, 362 multiply, 47 sqrt
-#   ik where nothing vanishes: 217 compare and select, 241 add, 30 atan2, 31 divide, 306 multiply,
-#     39 sqrt
+#   ik: 302 compare and select, 279 add, 30 atan2, 37 divide, 354 multiply, 28 sqrt
+#   ik where nothing vanishes: 217 compare and select, 241 add, 30 atan2, 31 divide, 298 multiply,
+#     22 sqrt
 """UR-type arm (three parallel axes).
 
 theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and
@@ -618,7 +618,7 @@ def _ik(
     t7 = 1.0 / (h1 * (below1 + above1))
     del h1
     t8 = w_x * t6 * t7
-    t9 = 2.0 * (np.sqrt(above1) * np.sqrt(below1))
+    t9 = 2.0 * np.sqrt(below1 * above1)
     del above1, below1
     t10 = t7 * (w_y * t9)
     t11 = _runtime.select(free1, 0.0, t8 + t10)
@@ -650,8 +650,8 @@ def _ik(
     del t27
     invalid = np.logical_not(t28)
     del t28
-    t29 = L2 / 2.0 + L3 / 2.0 + d1 / 2.0 + d4 / 2.0 + d5 / 2.0
-    t30 = -(_runtime.FEASIBILITY * (t29 + d6 / 2.0))
+    t29 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5
+    t30 = -(_runtime.FEASIBILITY * (t29 + d6 * 0.5))
     del t29
     t31 = (t30 <= t4) & (t30 <= t5)
     del t4, t5
@@ -669,7 +669,7 @@ def _ik(
     t37 = L2 - L3
     t38 = np.abs(t37)
     t39 = d5 - r_hub
-    mid_reach = np.minimum(t1, t36) / 2.0 + np.maximum(t38, np.abs(t39)) / 2.0
+    mid_reach = np.minimum(t1, t36) * 0.5 + np.maximum(t38, np.abs(t39)) * 0.5
     k_mid = np.maximum(0.0, (t36 - mid_reach) * (t36 + mid_reach))
     d_mid = np.maximum(0.0, -((t39 - mid_reach) * (t39 + mid_reach)))
     del mid_reach
@@ -680,698 +680,686 @@ def _ik(
     t41 = 1.0 / n_mid
     del n_mid
     uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t41)
-    t42 = t41 * (2.0 * np.sqrt(d_mid) * np.sqrt(k_mid))
-    del d_mid, k_mid, t41
-    us_mid = _runtime.select(any_mid, 0.0, t42)
-    del any_mid, t42
-    t43 = 1.0 / r_hub
+    us_mid = _runtime.select(any_mid, 0.0, t41 * (2.0 * np.sqrt(k_mid * d_mid)))
+    del any_mid, d_mid, k_mid, t41
+    t42 = 1.0 / r_hub
     del r_hub
-    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t34 * us_mid) * t43)
-    t44 = 1.0 / h_wrist
-    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t44)
-    t45 = d5 * s_phi
-    t46 = across - t45
-    t47 = M_13 * t44
-    del t44
-    c_phi = _runtime.select(aligned_wrist, 1.0, t47)
-    t48 = t34 - d5 * c_phi
-    here = np.sqrt(t46 * t46 + t48 * t48)
-    del t46, t48
+    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t34 * us_mid) * t42)
+    t43 = 1.0 / h_wrist
+    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t43)
+    t44 = d5 * s_phi
+    t45 = across - t44
+    t46 = M_13 * t43
+    del t43
+    c_phi = _runtime.select(aligned_wrist, 1.0, t46)
+    t47 = t34 - d5 * c_phi
+    here = np.sqrt(t45 * t45 + t47 * t47)
+    del t45, t47
     in_reach = np.minimum(t1, np.maximum(here, t38))
     k_near = np.maximum(0.0, (t36 - in_reach) * (t36 + in_reach))
     d_near = np.maximum(0.0, -((t39 - in_reach) * (t39 + in_reach)))
     n_near = k_near + d_near
     any_near = n_near <= t40
-    t49 = 1.0 / n_near
+    t48 = 1.0 / n_near
     del n_near
-    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t49)
-    t50 = t34 * s_phi
-    t51 = across * c_phi - t50
-    t52 = np.abs(t51)
-    side = _runtime.select(t52 <= t3, 1.0, -(t51 / t52))
-    del t51, t52
-    t53 = 2.0 * side * np.sqrt(d_near) * np.sqrt(k_near)
-    del d_near, k_near, side
-    us_near = _runtime.select(any_near, 0.0, t49 * t53)
-    del any_near, t49, t53
-    c_near = _runtime.select(hub_mid, 1.0, t43 * (across * uc_near + t34 * us_near))
-    t54 = s_phi - c_near
-    s_near = _runtime.select(hub_mid, 0.0, t43 * (across * us_near - t34 * uc_near))
+    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t48)
+    t49 = t34 * s_phi
+    t50 = across * c_phi - t49
+    t51 = np.abs(t50)
+    side = _runtime.select(t51 <= t3, 1.0, -(t50 / t51))
+    del t50, t51
+    t52 = t48 * (2.0 * side * np.sqrt(k_near * d_near))
+    del d_near, k_near, side, t48
+    us_near = _runtime.select(any_near, 0.0, t52)
+    del any_near, t52
+    c_near = _runtime.select(hub_mid, 1.0, t42 * (across * uc_near + t34 * us_near))
+    t53 = s_phi - c_near
+    s_near = _runtime.select(hub_mid, 0.0, t42 * (across * us_near - t34 * uc_near))
     del uc_near, us_near
-    t55 = c_phi + s_near
-    t56 = _runtime.VANISHING * 4.0
-    within_rounding = h_wrist * np.sqrt(t54 * t54 + t55 * t55) <= t56
-    del t54, t55
-    t57 = np.logical_not(np.abs(here - in_reach) <= t3)
+    t54 = c_phi + s_near
+    t55 = _runtime.VANISHING * 4.0
+    within_rounding = h_wrist * np.sqrt(t53 * t53 + t54 * t54) <= t55
+    del t53, t54
+    t56 = np.logical_not(np.abs(here - in_reach) <= t3)
     del here, in_reach
-    t58 = within_rounding & t57
-    del t57, within_rounding
-    sphi = _runtime.select(aligned_wrist, c_mid, _runtime.select(t58, c_near, s_phi))
+    t57 = within_rounding & t56
+    del t56, within_rounding
+    sphi = _runtime.select(aligned_wrist, c_mid, _runtime.select(t57, c_near, s_phi))
     del c_near
-    t59 = across - d5 * sphi
-    s_mid = _runtime.select(hub_mid, 0.0, t43 * (across * us_mid - t34 * uc_mid))
+    t58 = across - d5 * sphi
+    s_mid = _runtime.select(hub_mid, 0.0, t42 * (across * us_mid - t34 * uc_mid))
     del uc_mid, us_mid
-    cphi = _runtime.select(aligned_wrist, -s_mid, _runtime.select(t58, -s_near, c_phi))
-    del c_phi, s_near, t58
+    cphi = _runtime.select(aligned_wrist, -s_mid, _runtime.select(t57, -s_near, c_phi))
+    del c_phi, s_near, t57
     ey = t34 - d5 * cphi
-    r_elbow = np.sqrt(t59 * t59 + ey * ey)
-    t60 = t1 - r_elbow
-    t61 = t37 + r_elbow
-    t62 = r_elbow - t37
-    t63 = t31 & (t30 <= t60) & (t30 <= t61) & (t30 <= t62)
-    unreachable = np.logical_not(t63)
-    del t63
-    t64 = _runtime.poison(invalid | unreachable)
-    t65 = t14 + t64
+    r_elbow = np.sqrt(t58 * t58 + ey * ey)
+    t59 = t1 - r_elbow
+    t60 = t37 + r_elbow
+    t61 = r_elbow - t37
+    t62 = t31 & (t30 <= t59) & (t30 <= t60) & (t30 <= t61)
+    unreachable = np.logical_not(t62)
+    del t62
+    t63 = _runtime.poison(invalid | unreachable)
+    t64 = t14 + t63
     folded_elbow = r_elbow <= t3
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (t1 * t1)
-    A_elbow = np.maximum(t60, 0.0)
-    del t60
-    C_elbow = np.maximum(t62, 0.0)
-    del t62
-    t66 = A_elbow * C_elbow
-    S_elbow = t1 + r_elbow
-    B_elbow = np.maximum(t61, 0.0)
+    A_elbow = np.maximum(t59, 0.0)
+    del t59
+    C_elbow = np.maximum(t61, 0.0)
     del t61
-    t67 = S_elbow * B_elbow
-    t68 = 1.0 / (t66 + t67)
-    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t66 - t67) * t68))
-    del t66, t67
-    t69 = 1.0 / r_elbow
+    t65 = A_elbow * C_elbow
+    S_elbow = t1 + r_elbow
+    B_elbow = np.maximum(t60, 0.0)
+    del t60
+    t66 = S_elbow * B_elbow
+    t67 = 1.0 / (t65 + t66)
+    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t65 - t66) * t67))
+    t68 = 1.0 / r_elbow
     del r_elbow
-    t70 = ey * c_base_elbow * t69
-    t71 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
-    area_elbow = t71 * np.sqrt(S_elbow)
-    del t71
-    s_base_elbow = _runtime.select(no_link_elbow, 0.0, t68 * area_elbow)
-    del t68
-    t72 = t69 * (t59 * s_base_elbow)
-    s2 = _runtime.select(folded_elbow, 0.0, t70 + t72)
-    t73 = t69 * (ey * s_base_elbow)
+    t69 = ey * c_base_elbow * t68
+    area_elbow = 2.0 * np.sqrt(t65 * t66)
+    del t65, t66
+    s_base_elbow = _runtime.select(no_link_elbow, 0.0, t67 * area_elbow)
+    del t67
+    t70 = t68 * (t58 * s_base_elbow)
+    s2 = _runtime.select(folded_elbow, 0.0, t69 + t70)
+    t71 = t68 * (ey * s_base_elbow)
     del ey, s_base_elbow
-    t74 = t69 * (t59 * c_base_elbow)
-    del c_base_elbow, t59, t69
-    c2 = _runtime.select(folded_elbow, 1.0, t73 - t74)
-    t75 = A_elbow * S_elbow
+    t72 = t68 * (t58 * c_base_elbow)
+    del c_base_elbow, t58, t68
+    c2 = _runtime.select(folded_elbow, 1.0, t71 - t72)
+    t73 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t76 = C_elbow * B_elbow
+    t74 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    t77 = 1.0 / (t75 + t76)
-    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t77)
+    t75 = 1.0 / (t73 + t74)
+    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t75)
     del area_elbow
-    c3 = _runtime.select(no_link_elbow, 1.0, -(t77 * (t75 - t76)))
-    del t75, t76, t77
-    t78 = np.arctan2(s3, c3)
-    t79 = sphi * c2 - cphi * s2
-    t80 = cphi * c2 + sphi * s2
-    t81 = np.arctan2(c3 * t79 - s3 * t80, c3 * t80 + s3 * t79)
-    del t79, t80
+    c3 = _runtime.select(no_link_elbow, 1.0, -(t75 * (t73 - t74)))
+    del t73, t74, t75
+    t76 = np.arctan2(s3, c3)
+    t77 = sphi * c2 - cphi * s2
+    t78 = cphi * c2 + sphi * s2
+    t79 = np.arctan2(c3 * t77 - s3 * t78, c3 * t78 + s3 * t77)
+    del t77, t78
     M_33 = -(T13 * t11 + T23 * c1)
-    t82 = _runtime.wrap_cut(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
-    t83 = t82 + t64
-    del t82
+    t80 = _runtime.wrap_cut(-np.arctan2(M_13 * cphi + T33 * sphi, M_33))
+    t81 = t80 + t63
+    del t80
     M_11 = T11 * c1 - T21 * t11
     M_12 = T12 * c1 - T22 * t11
     del c1, t11
-    t84 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
-    t85 = _runtime.wrap_cut(-t84) + t64
-    del t84
-    s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t70 - t72)
-    del t70, t72
-    c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t74 + t73))
-    del t73, t74
-    t86 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
-    t87 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
-    t88 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    t82 = np.arctan2(sphi * M_11 - T31 * cphi, T32 * cphi - sphi * M_12)
+    t83 = _runtime.wrap_cut(-t82) + t63
+    del t82
+    s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t69 - t70)
+    del t69, t70
+    c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t72 + t71))
+    del t71, t72
+    t84 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t85 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t86 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
     del c2_left_noflip_down, cphi, s2_left_noflip_down, sphi
-    t89 = np.arctan2(c3 * t87 + s3 * t88, c3 * t88 - s3 * t87)
-    del c3, s3, t87, t88
-    t90 = across + t45
-    del t45
-    c_phi_left_flip_up = _runtime.select(aligned_wrist, 1.0, -t47)
-    del t47
-    t91 = t34 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t90 * t90 + t91 * t91)
-    del t90, t91
+    t87 = np.arctan2(c3 * t85 + s3 * t86, c3 * t86 - s3 * t85)
+    del c3, s3, t85, t86
+    t88 = across + t44
+    del t44
+    c_phi_left_flip_up = _runtime.select(aligned_wrist, 1.0, -t46)
+    del t46
+    t89 = t34 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t88 * t88 + t89 * t89)
+    del t88, t89
     in_reach_left_flip_up = np.minimum(t1, np.maximum(here_left_flip_up, t38))
-    t92 = (t36 - in_reach_left_flip_up) * (t36 + in_reach_left_flip_up)
+    t90 = (t36 - in_reach_left_flip_up) * (t36 + in_reach_left_flip_up)
     del t36
-    k_near_left_flip_up = np.maximum(0.0, t92)
-    del t92
-    t93 = (t39 - in_reach_left_flip_up) * (t39 + in_reach_left_flip_up)
+    k_near_left_flip_up = np.maximum(0.0, t90)
+    del t90
+    t91 = (t39 - in_reach_left_flip_up) * (t39 + in_reach_left_flip_up)
     del t39
-    d_near_left_flip_up = np.maximum(0.0, -t93)
-    del t93
+    d_near_left_flip_up = np.maximum(0.0, -t91)
+    del t91
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
     any_near_left_flip_up = n_near_left_flip_up <= t40
-    t94 = 1.0 / n_near_left_flip_up
+    t92 = 1.0 / n_near_left_flip_up
     del n_near_left_flip_up
-    t95 = (k_near_left_flip_up - d_near_left_flip_up) * t94
-    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t95)
-    del t95
-    t96 = t50 + across * c_phi_left_flip_up
-    del t50
-    t97 = np.abs(t96)
-    side_left_flip_up = _runtime.select(t97 <= t3, 1.0, -(t96 / t97))
-    del t96, t97
-    t98 = 2.0 * side_left_flip_up * np.sqrt(d_near_left_flip_up)
-    del d_near_left_flip_up, side_left_flip_up
-    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t94 * (t98 * np.sqrt(k_near_left_flip_up)))
-    del any_near_left_flip_up, k_near_left_flip_up, t94, t98
-    t99 = across * uc_near_left_flip_up + t34 * us_near_left_flip_up
-    c_near_left_flip_up = _runtime.select(hub_mid, 1.0, t43 * t99)
-    del t99
-    t100 = s_phi + c_near_left_flip_up
-    t101 = across * us_near_left_flip_up - t34 * uc_near_left_flip_up
+    t93 = (k_near_left_flip_up - d_near_left_flip_up) * t92
+    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t93)
+    del t93
+    t94 = t49 + across * c_phi_left_flip_up
+    del t49
+    t95 = np.abs(t94)
+    side_left_flip_up = _runtime.select(t95 <= t3, 1.0, -(t94 / t95))
+    del t94, t95
+    t96 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
+    del d_near_left_flip_up, k_near_left_flip_up
+    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t92 * (2.0 * side_left_flip_up * t96))
+    del any_near_left_flip_up, side_left_flip_up, t92, t96
+    t97 = across * uc_near_left_flip_up + t34 * us_near_left_flip_up
+    c_near_left_flip_up = _runtime.select(hub_mid, 1.0, t42 * t97)
+    del t97
+    t98 = s_phi + c_near_left_flip_up
+    t99 = across * us_near_left_flip_up - t34 * uc_near_left_flip_up
     del uc_near_left_flip_up, us_near_left_flip_up
-    s_near_left_flip_up = _runtime.select(hub_mid, 0.0, t43 * t101)
-    del hub_mid, t101, t43
-    t102 = c_phi_left_flip_up + s_near_left_flip_up
-    within_rounding_left_flip_up = h_wrist * np.sqrt(t100 * t100 + t102 * t102) <= t56
-    del h_wrist, t100, t102
-    t103 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    s_near_left_flip_up = _runtime.select(hub_mid, 0.0, t42 * t99)
+    del hub_mid, t42, t99
+    t100 = c_phi_left_flip_up + s_near_left_flip_up
+    within_rounding_left_flip_up = h_wrist * np.sqrt(t98 * t98 + t100 * t100) <= t55
+    del h_wrist, t100, t98
+    t101 = np.abs(here_left_flip_up - in_reach_left_flip_up)
     del here_left_flip_up, in_reach_left_flip_up
-    t104 = within_rounding_left_flip_up & np.logical_not(t103 <= t3)
-    del t103, within_rounding_left_flip_up
-    t105 = _runtime.select(t104, c_near_left_flip_up, -s_phi)
+    t102 = within_rounding_left_flip_up & np.logical_not(t101 <= t3)
+    del t101, within_rounding_left_flip_up
+    t103 = _runtime.select(t102, c_near_left_flip_up, -s_phi)
     del c_near_left_flip_up, s_phi
-    sphi_left_flip_up = _runtime.select(aligned_wrist, c_mid, t105)
-    del c_mid, t105
-    t106 = across - d5 * sphi_left_flip_up
+    sphi_left_flip_up = _runtime.select(aligned_wrist, c_mid, t103)
+    del c_mid, t103
+    t104 = across - d5 * sphi_left_flip_up
     del across
-    t107 = _runtime.select(t104, -s_near_left_flip_up, c_phi_left_flip_up)
-    del c_phi_left_flip_up, s_near_left_flip_up, t104
-    cphi_left_flip_up = _runtime.select(aligned_wrist, -s_mid, t107)
-    del s_mid, t107
+    t105 = _runtime.select(t102, -s_near_left_flip_up, c_phi_left_flip_up)
+    del c_phi_left_flip_up, s_near_left_flip_up, t102
+    cphi_left_flip_up = _runtime.select(aligned_wrist, -s_mid, t105)
+    del s_mid, t105
     ey_left_flip_up = t34 - d5 * cphi_left_flip_up
-    t108 = t106 * t106 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t108)
-    del t108
-    t109 = t1 - r_elbow_left_flip_up
-    t110 = t37 + r_elbow_left_flip_up
-    t111 = r_elbow_left_flip_up - t37
-    t112 = t31 & (t30 <= t109) & (t30 <= t110) & (t30 <= t111)
-    unreachable_2 = np.logical_not(t112)
-    del t112
-    t113 = _runtime.poison(invalid | unreachable_2)
-    t114 = t14 + t113
+    t106 = t104 * t104 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t106)
+    del t106
+    t107 = t1 - r_elbow_left_flip_up
+    t108 = t37 + r_elbow_left_flip_up
+    t109 = r_elbow_left_flip_up - t37
+    t110 = t31 & (t30 <= t107) & (t30 <= t108) & (t30 <= t109)
+    unreachable_2 = np.logical_not(t110)
+    del t110
+    t111 = _runtime.poison(invalid | unreachable_2)
+    t112 = t14 + t111
     del t14
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t3
-    A_elbow_left_flip_up = np.maximum(t109, 0.0)
+    A_elbow_left_flip_up = np.maximum(t107, 0.0)
+    del t107
+    C_elbow_left_flip_up = np.maximum(t109, 0.0)
     del t109
-    C_elbow_left_flip_up = np.maximum(t111, 0.0)
-    del t111
-    t115 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    t113 = A_elbow_left_flip_up * C_elbow_left_flip_up
     S_elbow_left_flip_up = t1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t110, 0.0)
-    del t110
-    t116 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    t117 = 1.0 / (t115 + t116)
-    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t115 - t116) * t117))
-    del t115, t116
-    t118 = 1.0 / r_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t108, 0.0)
+    del t108
+    t114 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t115 = 1.0 / (t113 + t114)
+    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t113 - t114) * t115))
+    t116 = 1.0 / r_elbow_left_flip_up
     del r_elbow_left_flip_up
-    t119 = ey_left_flip_up * c_base_elbow_left_flip_up * t118
-    t120 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
-    area_elbow_left_flip_up = t120 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
-    del t120
-    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t117 * area_elbow_left_flip_up)
-    del t117
-    t121 = t118 * (t106 * s_base_elbow_left_flip_up)
-    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t119 + t121)
-    t122 = t118 * (ey_left_flip_up * s_base_elbow_left_flip_up)
+    t117 = ey_left_flip_up * c_base_elbow_left_flip_up * t116
+    area_elbow_left_flip_up = 2.0 * np.sqrt(t113 * t114)
+    del t113, t114
+    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t115 * area_elbow_left_flip_up)
+    del t115
+    t118 = t116 * (t104 * s_base_elbow_left_flip_up)
+    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t117 + t118)
+    t119 = t116 * (ey_left_flip_up * s_base_elbow_left_flip_up)
     del ey_left_flip_up, s_base_elbow_left_flip_up
-    t123 = t118 * (t106 * c_base_elbow_left_flip_up)
-    del c_base_elbow_left_flip_up, t106, t118
-    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t122 - t123)
-    t124 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t125 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t120 = t116 * (t104 * c_base_elbow_left_flip_up)
+    del c_base_elbow_left_flip_up, t104, t116
+    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t119 - t120)
+    t121 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t122 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t126 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t123 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t127 = 1.0 / (t125 + t126)
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t127)
+    t124 = 1.0 / (t122 + t123)
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t124)
     del area_elbow_left_flip_up
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t127 * (t125 - t126)))
-    del t125, t126, t127
-    t128 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t129 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t130 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t124 * (t122 - t123)))
+    del t122, t123, t124
+    t125 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t126 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t127 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
     del c2_left_flip_up, s2_left_flip_up
-    t131 = c3_left_flip_up * t129 - s3_left_flip_up * t130
-    t132 = c3_left_flip_up * t130 + s3_left_flip_up * t129
-    del t129, t130
-    t133 = _runtime.wrap_cut(np.arctan2(t131, t132)) + t113
-    del t131, t132
-    t134 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t128 = c3_left_flip_up * t126 - s3_left_flip_up * t127
+    t129 = c3_left_flip_up * t127 + s3_left_flip_up * t126
+    del t126, t127
+    t130 = _runtime.wrap_cut(np.arctan2(t128, t129)) + t111
+    del t128, t129
+    t131 = M_13 * cphi_left_flip_up + T33 * sphi_left_flip_up
     del M_13
-    t135 = _runtime.wrap_cut(-np.arctan2(t134, M_33)) + t113
-    del M_33, t134
-    t136 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
+    t132 = _runtime.wrap_cut(-np.arctan2(t131, M_33)) + t111
+    del M_33, t131
+    t133 = M_11 * sphi_left_flip_up - T31 * cphi_left_flip_up
     del M_11
-    t137 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
+    t134 = T32 * cphi_left_flip_up - M_12 * sphi_left_flip_up
     del M_12
-    t138 = _runtime.wrap_cut(-np.arctan2(t136, t137)) + t113
-    del t136, t137
-    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t119 - t121)
-    del t119, t121
-    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t123 + t122))
-    del t122, t123
-    t139 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t140 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t141 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t135 = _runtime.wrap_cut(-np.arctan2(t133, t134)) + t111
+    del t133, t134
+    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t117 - t118)
+    del t117, t118
+    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t120 + t119))
+    del t119, t120
+    t136 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t137 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t138 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
     del c2_left_flip_down, cphi_left_flip_up, s2_left_flip_down, sphi_left_flip_up
-    t142 = c3_left_flip_up * t140 + s3_left_flip_up * t141
-    t143 = c3_left_flip_up * t141 - s3_left_flip_up * t140
-    del c3_left_flip_up, s3_left_flip_up, t140, t141
-    t144 = _runtime.wrap_cut(np.arctan2(t142, t143)) + t113
-    del t142, t143
-    t145 = _runtime.select(free1, 0.0, t8 - t10)
+    t139 = c3_left_flip_up * t137 + s3_left_flip_up * t138
+    t140 = c3_left_flip_up * t138 - s3_left_flip_up * t137
+    del c3_left_flip_up, s3_left_flip_up, t137, t138
+    t141 = _runtime.wrap_cut(np.arctan2(t139, t140)) + t111
+    del t139, t140
+    t142 = _runtime.select(free1, 0.0, t8 - t10)
     del t10, t8
     c1_right_noflip_up = _runtime.select(free1, 1.0, t12 + t13)
     del t12, t13
-    t146 = _runtime.wrap_cut(np.arctan2(-t145, c1_right_noflip_up))
-    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t145
+    t143 = _runtime.wrap_cut(np.arctan2(-t142, c1_right_noflip_up))
+    across_right_noflip_up = w_x * c1_right_noflip_up - w_y * t142
     del w_x, w_y
-    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t145
-    t147 = t32 + M_13_right_noflip_up * M_13_right_noflip_up
+    M_13_right_noflip_up = T13 * c1_right_noflip_up - T23 * t142
+    t144 = t32 + M_13_right_noflip_up * M_13_right_noflip_up
     del t32
-    h_wrist_right_noflip_up = np.sqrt(t147)
-    del t147
+    h_wrist_right_noflip_up = np.sqrt(t144)
+    del t144
     aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t33
     del t33
-    t148 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t35 + t148)
-    del t148, t35
+    t145 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t35 + t145)
+    del t145, t35
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t3
-    t149 = d5 + r_hub_right_noflip_up
-    t150 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(t1, t149) / 2.0 + np.maximum(t38, np.abs(t150)) / 2.0
-    t151 = (t149 - mid_reach_right_noflip_up) * (t149 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t151)
-    del t151
-    t152 = (t150 - mid_reach_right_noflip_up) * (t150 + mid_reach_right_noflip_up)
+    t146 = d5 + r_hub_right_noflip_up
+    t147 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(t1, t146) * 0.5 + np.maximum(t38, np.abs(t147)) * 0.5
+    t148 = (t146 - mid_reach_right_noflip_up) * (t146 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t148)
+    del t148
+    t149 = (t147 - mid_reach_right_noflip_up) * (t147 + mid_reach_right_noflip_up)
     del mid_reach_right_noflip_up
-    d_mid_right_noflip_up = np.maximum(0.0, -t152)
-    del t152
+    d_mid_right_noflip_up = np.maximum(0.0, -t149)
+    del t149
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
     any_mid_right_noflip_up = n_mid_right_noflip_up <= t40
-    t153 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    t154 = 1.0 / n_mid_right_noflip_up
+    t150 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    t151 = 1.0 / n_mid_right_noflip_up
     del n_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t153 * t154)
-    del t153
-    t155 = across_right_noflip_up * uc_mid_right_noflip_up
-    t156 = 2.0 * np.sqrt(d_mid_right_noflip_up) * np.sqrt(k_mid_right_noflip_up)
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t150 * t151)
+    del t150
+    t152 = across_right_noflip_up * uc_mid_right_noflip_up
+    t153 = k_mid_right_noflip_up * d_mid_right_noflip_up
     del d_mid_right_noflip_up, k_mid_right_noflip_up
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t154 * t156)
-    del any_mid_right_noflip_up, t154, t156
-    t157 = 1.0 / r_hub_right_noflip_up
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t151 * (2.0 * np.sqrt(t153)))
+    del any_mid_right_noflip_up, t151, t153
+    t154 = 1.0 / r_hub_right_noflip_up
     del r_hub_right_noflip_up
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t155 + t34 * us_mid_right_noflip_up) * t157)
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t152 + t34 * us_mid_right_noflip_up) * t154)
+    del t152
+    t155 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t155)
+    t156 = d5 * s_phi_right_noflip_up
+    t157 = across_right_noflip_up - t156
+    t158 = M_13_right_noflip_up * t155
     del t155
-    t158 = 1.0 / h_wrist_right_noflip_up
-    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t158)
-    t159 = d5 * s_phi_right_noflip_up
-    t160 = across_right_noflip_up - t159
-    t161 = M_13_right_noflip_up * t158
-    del t158
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, t161)
-    t162 = t34 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t160 * t160 + t162 * t162)
-    del t160, t162
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, t158)
+    t159 = t34 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t157 * t157 + t159 * t159)
+    del t157, t159
     in_reach_right_noflip_up = np.minimum(t1, np.maximum(here_right_noflip_up, t38))
-    t163 = (t149 - in_reach_right_noflip_up) * (t149 + in_reach_right_noflip_up)
-    k_near_right_noflip_up = np.maximum(0.0, t163)
-    del t163
-    t164 = (t150 - in_reach_right_noflip_up) * (t150 + in_reach_right_noflip_up)
-    d_near_right_noflip_up = np.maximum(0.0, -t164)
-    del t164
+    t160 = (t146 - in_reach_right_noflip_up) * (t146 + in_reach_right_noflip_up)
+    k_near_right_noflip_up = np.maximum(0.0, t160)
+    del t160
+    t161 = (t147 - in_reach_right_noflip_up) * (t147 + in_reach_right_noflip_up)
+    d_near_right_noflip_up = np.maximum(0.0, -t161)
+    del t161
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
     any_near_right_noflip_up = n_near_right_noflip_up <= t40
-    t165 = k_near_right_noflip_up - d_near_right_noflip_up
-    t166 = 1.0 / n_near_right_noflip_up
+    t162 = k_near_right_noflip_up - d_near_right_noflip_up
+    t163 = 1.0 / n_near_right_noflip_up
     del n_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t165 * t166)
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t162 * t163)
+    del t162
+    t164 = across_right_noflip_up * uc_near_right_noflip_up
+    t165 = across_right_noflip_up * c_phi_right_noflip_up
+    t166 = t34 * s_phi_right_noflip_up
+    t167 = t165 - t166
     del t165
-    t167 = across_right_noflip_up * uc_near_right_noflip_up
-    t168 = across_right_noflip_up * c_phi_right_noflip_up
-    t169 = t34 * s_phi_right_noflip_up
-    t170 = t168 - t169
-    del t168
-    t171 = np.abs(t170)
-    side_right_noflip_up = _runtime.select(t171 <= t3, 1.0, -(t170 / t171))
-    del t170, t171
-    t172 = 2.0 * side_right_noflip_up * np.sqrt(d_near_right_noflip_up)
-    del d_near_right_noflip_up, side_right_noflip_up
-    t173 = t166 * (t172 * np.sqrt(k_near_right_noflip_up))
-    del k_near_right_noflip_up, t166, t172
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t173)
-    del any_near_right_noflip_up, t173
-    t174 = t157 * (t167 + t34 * us_near_right_noflip_up)
-    del t167
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t174)
-    del t174
-    t175 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t176 = across_right_noflip_up * us_near_right_noflip_up
+    t168 = np.abs(t167)
+    side_right_noflip_up = _runtime.select(t168 <= t3, 1.0, -(t167 / t168))
+    del t167, t168
+    t169 = k_near_right_noflip_up * d_near_right_noflip_up
+    del d_near_right_noflip_up, k_near_right_noflip_up
+    t170 = t163 * (2.0 * side_right_noflip_up * np.sqrt(t169))
+    del side_right_noflip_up, t163, t169
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t170)
+    del any_near_right_noflip_up, t170
+    t171 = t154 * (t164 + t34 * us_near_right_noflip_up)
+    del t164
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t171)
+    del t171
+    t172 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t173 = across_right_noflip_up * us_near_right_noflip_up
     del us_near_right_noflip_up
-    t177 = t157 * (t176 - t34 * uc_near_right_noflip_up)
-    del t176, uc_near_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t177)
-    del t177
-    t178 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t179 = h_wrist_right_noflip_up * np.sqrt(t175 * t175 + t178 * t178)
-    del t175, t178
-    t180 = here_right_noflip_up - in_reach_right_noflip_up
+    t174 = t154 * (t173 - t34 * uc_near_right_noflip_up)
+    del t173, uc_near_right_noflip_up
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t174)
+    del t174
+    t175 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t176 = h_wrist_right_noflip_up * np.sqrt(t172 * t172 + t175 * t175)
+    del t172, t175
+    t177 = here_right_noflip_up - in_reach_right_noflip_up
     del here_right_noflip_up, in_reach_right_noflip_up
-    t181 = (t179 <= t56) & np.logical_not(np.abs(t180) <= t3)
-    del t179, t180
-    t182 = _runtime.select(t181, c_near_right_noflip_up, s_phi_right_noflip_up)
+    t178 = (t176 <= t55) & np.logical_not(np.abs(t177) <= t3)
+    del t176, t177
+    t179 = _runtime.select(t178, c_near_right_noflip_up, s_phi_right_noflip_up)
     del c_near_right_noflip_up
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t182)
-    del t182
-    t183 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t184 = across_right_noflip_up * us_mid_right_noflip_up
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t179)
+    del t179
+    t180 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t181 = across_right_noflip_up * us_mid_right_noflip_up
     del us_mid_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t157 * (t184 - t34 * uc_mid_right_noflip_up))
-    del t184, uc_mid_right_noflip_up
-    t185 = _runtime.select(t181, -s_near_right_noflip_up, c_phi_right_noflip_up)
-    del c_phi_right_noflip_up, s_near_right_noflip_up, t181
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t185)
-    del t185
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t154 * (t181 - t34 * uc_mid_right_noflip_up))
+    del t181, uc_mid_right_noflip_up
+    t182 = _runtime.select(t178, -s_near_right_noflip_up, c_phi_right_noflip_up)
+    del c_phi_right_noflip_up, s_near_right_noflip_up, t178
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t182)
+    del t182
     ey_right_noflip_up = t34 - d5 * cphi_right_noflip_up
-    t186 = t183 * t183 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t186)
-    del t186
-    t187 = t1 - r_elbow_right_noflip_up
-    t188 = t37 + r_elbow_right_noflip_up
-    t189 = r_elbow_right_noflip_up - t37
-    t190 = t31 & (t30 <= t187) & (t30 <= t188) & (t30 <= t189)
-    unreachable_3 = np.logical_not(t190)
-    del t190
-    t191 = _runtime.poison(invalid | unreachable_3)
-    t192 = t146 + t191
-    folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
-    A_elbow_right_noflip_up = np.maximum(t187, 0.0)
+    t183 = t180 * t180 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t183)
+    del t183
+    t184 = t1 - r_elbow_right_noflip_up
+    t185 = t37 + r_elbow_right_noflip_up
+    t186 = r_elbow_right_noflip_up - t37
+    t187 = t31 & (t30 <= t184) & (t30 <= t185) & (t30 <= t186)
+    unreachable_3 = np.logical_not(t187)
     del t187
-    C_elbow_right_noflip_up = np.maximum(t189, 0.0)
-    del t189
-    t193 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    t188 = _runtime.poison(invalid | unreachable_3)
+    t189 = t143 + t188
+    folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t3
+    A_elbow_right_noflip_up = np.maximum(t184, 0.0)
+    del t184
+    C_elbow_right_noflip_up = np.maximum(t186, 0.0)
+    del t186
+    t190 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = t1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t188, 0.0)
-    del t188
-    t194 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t195 = 1.0 / (t193 + t194)
-    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t193 - t194) * t195))
-    del t193, t194
-    t196 = ey_right_noflip_up * c_base_elbow_right_noflip_up
-    t197 = 1.0 / r_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t185, 0.0)
+    del t185
+    t191 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t192 = 1.0 / (t190 + t191)
+    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t190 - t191) * t192))
+    t193 = ey_right_noflip_up * c_base_elbow_right_noflip_up
+    t194 = 1.0 / r_elbow_right_noflip_up
     del r_elbow_right_noflip_up
-    t198 = t196 * t197
-    del t196
-    t199 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
-    area_elbow_right_noflip_up = t199 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
-    del t199
-    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t195 * area_elbow_right_noflip_up)
-    del t195
-    t200 = t197 * (t183 * s_base_elbow_right_noflip_up)
-    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t198 + t200)
-    t201 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    t195 = t193 * t194
+    del t193
+    area_elbow_right_noflip_up = 2.0 * np.sqrt(t190 * t191)
+    del t190, t191
+    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t192 * area_elbow_right_noflip_up)
+    del t192
+    t196 = t194 * (t180 * s_base_elbow_right_noflip_up)
+    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t195 + t196)
+    t197 = ey_right_noflip_up * s_base_elbow_right_noflip_up
     del ey_right_noflip_up, s_base_elbow_right_noflip_up
-    t202 = t197 * t201
-    del t201
-    t203 = t197 * (t183 * c_base_elbow_right_noflip_up)
-    del c_base_elbow_right_noflip_up, t183, t197
-    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t202 - t203)
-    t204 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t205 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t198 = t194 * t197
+    del t197
+    t199 = t194 * (t180 * c_base_elbow_right_noflip_up)
+    del c_base_elbow_right_noflip_up, t180, t194
+    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t198 - t199)
+    t200 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t201 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
     del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t206 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t202 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t207 = 1.0 / (t205 + t206)
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t207)
+    t203 = 1.0 / (t201 + t202)
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t203)
     del area_elbow_right_noflip_up
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t207 * (t205 - t206)))
-    del t205, t206, t207
-    t208 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t209 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t210 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t203 * (t201 - t202)))
+    del t201, t202, t203
+    t204 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t205 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t206 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
     del c2_right_noflip_up, s2_right_noflip_up
-    t211 = c3_right_noflip_up * t209 - s3_right_noflip_up * t210
-    t212 = c3_right_noflip_up * t210 + s3_right_noflip_up * t209
-    del t209, t210
-    t213 = _runtime.wrap_cut(np.arctan2(t211, t212)) + t191
-    del t211, t212
-    t214 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
-    M_33_right_noflip_up = -(T13 * t145 + T23 * c1_right_noflip_up)
-    t215 = _runtime.wrap_cut(-np.arctan2(t214, M_33_right_noflip_up))
-    del t214
-    t216 = t215 + t191
-    del t215
-    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t145
-    t217 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
-    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t145
-    del c1_right_noflip_up, t145
-    t218 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
-    t219 = _runtime.wrap_cut(-np.arctan2(t217, t218)) + t191
-    del t217, t218
-    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t198 - t200)
-    del t198, t200
-    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t203 + t202))
-    del t202, t203
-    t220 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t221 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t222 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t207 = c3_right_noflip_up * t205 - s3_right_noflip_up * t206
+    t208 = c3_right_noflip_up * t206 + s3_right_noflip_up * t205
+    del t205, t206
+    t209 = _runtime.wrap_cut(np.arctan2(t207, t208)) + t188
+    del t207, t208
+    t210 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    M_33_right_noflip_up = -(T13 * t142 + T23 * c1_right_noflip_up)
+    t211 = _runtime.wrap_cut(-np.arctan2(t210, M_33_right_noflip_up))
+    del t210
+    t212 = t211 + t188
+    del t211
+    M_11_right_noflip_up = T11 * c1_right_noflip_up - T21 * t142
+    t213 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    M_12_right_noflip_up = T12 * c1_right_noflip_up - T22 * t142
+    del c1_right_noflip_up, t142
+    t214 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t215 = _runtime.wrap_cut(-np.arctan2(t213, t214)) + t188
+    del t213, t214
+    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t195 - t196)
+    del t195, t196
+    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t199 + t198))
+    del t198, t199
+    t216 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t217 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t218 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
     del c2_right_noflip_down, cphi_right_noflip_up, s2_right_noflip_down, sphi_right_noflip_up
-    t223 = c3_right_noflip_up * t221 + s3_right_noflip_up * t222
-    t224 = c3_right_noflip_up * t222 - s3_right_noflip_up * t221
-    del c3_right_noflip_up, s3_right_noflip_up, t221, t222
-    t225 = _runtime.wrap_cut(np.arctan2(t223, t224)) + t191
-    del t223, t224
-    t226 = across_right_noflip_up + t159
-    del t159
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, -t161)
-    del t161
-    t227 = t34 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t226 * t226 + t227 * t227)
-    del t226, t227
+    t219 = c3_right_noflip_up * t217 + s3_right_noflip_up * t218
+    t220 = c3_right_noflip_up * t218 - s3_right_noflip_up * t217
+    del c3_right_noflip_up, s3_right_noflip_up, t217, t218
+    t221 = _runtime.wrap_cut(np.arctan2(t219, t220)) + t188
+    del t219, t220
+    t222 = across_right_noflip_up + t156
+    del t156
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, -t158)
+    del t158
+    t223 = t34 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t222 * t222 + t223 * t223)
+    del t222, t223
     in_reach_right_flip_up = np.minimum(t1, np.maximum(here_right_flip_up, t38))
     del t38
-    t228 = (t149 - in_reach_right_flip_up) * (t149 + in_reach_right_flip_up)
-    del t149
-    k_near_right_flip_up = np.maximum(0.0, t228)
-    del t228
-    t229 = (t150 - in_reach_right_flip_up) * (t150 + in_reach_right_flip_up)
-    del t150
-    d_near_right_flip_up = np.maximum(0.0, -t229)
-    del t229
+    t224 = (t146 - in_reach_right_flip_up) * (t146 + in_reach_right_flip_up)
+    del t146
+    k_near_right_flip_up = np.maximum(0.0, t224)
+    del t224
+    t225 = (t147 - in_reach_right_flip_up) * (t147 + in_reach_right_flip_up)
+    del t147
+    d_near_right_flip_up = np.maximum(0.0, -t225)
+    del t225
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
     any_near_right_flip_up = n_near_right_flip_up <= t40
     del t40
-    t230 = 1.0 / n_near_right_flip_up
+    t226 = 1.0 / n_near_right_flip_up
     del n_near_right_flip_up
-    t231 = (k_near_right_flip_up - d_near_right_flip_up) * t230
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t231)
-    del t231
-    t232 = across_right_noflip_up * uc_near_right_flip_up
-    t233 = t169 + across_right_noflip_up * c_phi_right_flip_up
-    del t169
-    t234 = np.abs(t233)
-    side_right_flip_up = _runtime.select(t234 <= t3, 1.0, -(t233 / t234))
-    del t233, t234
-    t235 = 2.0 * side_right_flip_up * np.sqrt(d_near_right_flip_up)
-    del d_near_right_flip_up, side_right_flip_up
-    t236 = t230 * (t235 * np.sqrt(k_near_right_flip_up))
-    del k_near_right_flip_up, t230, t235
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t236)
-    del any_near_right_flip_up, t236
-    c_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t157 * (t232 + t34 * us_near_right_flip_up))
-    del t232
-    t237 = s_phi_right_noflip_up + c_near_right_flip_up
-    t238 = across_right_noflip_up * us_near_right_flip_up
+    t227 = (k_near_right_flip_up - d_near_right_flip_up) * t226
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t227)
+    del t227
+    t228 = across_right_noflip_up * uc_near_right_flip_up
+    t229 = t166 + across_right_noflip_up * c_phi_right_flip_up
+    del t166
+    t230 = np.abs(t229)
+    side_right_flip_up = _runtime.select(t230 <= t3, 1.0, -(t229 / t230))
+    del t229, t230
+    t231 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
+    del d_near_right_flip_up, k_near_right_flip_up
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t226 * (2.0 * side_right_flip_up * t231))
+    del any_near_right_flip_up, side_right_flip_up, t226, t231
+    c_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t154 * (t228 + t34 * us_near_right_flip_up))
+    del t228
+    t232 = s_phi_right_noflip_up + c_near_right_flip_up
+    t233 = across_right_noflip_up * us_near_right_flip_up
     del us_near_right_flip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t157 * (t238 - t34 * uc_near_right_flip_up))
-    del hub_mid_right_noflip_up, t157, t238, uc_near_right_flip_up
-    t239 = c_phi_right_flip_up + s_near_right_flip_up
-    t240 = h_wrist_right_noflip_up * np.sqrt(t237 * t237 + t239 * t239)
-    del h_wrist_right_noflip_up, t237, t239
-    t241 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    s_near_right_flip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t154 * (t233 - t34 * uc_near_right_flip_up))
+    del hub_mid_right_noflip_up, t154, t233, uc_near_right_flip_up
+    t234 = c_phi_right_flip_up + s_near_right_flip_up
+    t235 = h_wrist_right_noflip_up * np.sqrt(t232 * t232 + t234 * t234)
+    del h_wrist_right_noflip_up, t232, t234
+    t236 = np.abs(here_right_flip_up - in_reach_right_flip_up)
     del here_right_flip_up, in_reach_right_flip_up
-    t242 = (t240 <= t56) & np.logical_not(t241 <= t3)
-    del t240, t241, t56
-    t243 = _runtime.select(t242, c_near_right_flip_up, -s_phi_right_noflip_up)
+    t237 = (t235 <= t55) & np.logical_not(t236 <= t3)
+    del t235, t236, t55
+    t238 = _runtime.select(t237, c_near_right_flip_up, -s_phi_right_noflip_up)
     del c_near_right_flip_up, s_phi_right_noflip_up
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t243)
-    del c_mid_right_noflip_up, t243
-    t244 = across_right_noflip_up - d5 * sphi_right_flip_up
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t238)
+    del c_mid_right_noflip_up, t238
+    t239 = across_right_noflip_up - d5 * sphi_right_flip_up
     del across_right_noflip_up
-    t245 = _runtime.select(t242, -s_near_right_flip_up, c_phi_right_flip_up)
-    del c_phi_right_flip_up, s_near_right_flip_up, t242
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t245)
-    del s_mid_right_noflip_up, t245
+    t240 = _runtime.select(t237, -s_near_right_flip_up, c_phi_right_flip_up)
+    del c_phi_right_flip_up, s_near_right_flip_up, t237
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t240)
+    del s_mid_right_noflip_up, t240
     ey_right_flip_up = t34 - d5 * cphi_right_flip_up
     del t34
-    t246 = t244 * t244 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t246)
-    del t246
-    t247 = t1 - r_elbow_right_flip_up
-    t248 = t37 + r_elbow_right_flip_up
-    t249 = r_elbow_right_flip_up - t37
+    t241 = t239 * t239 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t241)
+    del t241
+    t242 = t1 - r_elbow_right_flip_up
+    t243 = t37 + r_elbow_right_flip_up
+    t244 = r_elbow_right_flip_up - t37
     del t37
-    t250 = t31 & (t30 <= t247) & (t30 <= t248) & (t30 <= t249)
+    t245 = t31 & (t30 <= t242) & (t30 <= t243) & (t30 <= t244)
     del t30, t31
-    unreachable_4 = np.logical_not(t250)
-    del t250
-    t251 = _runtime.poison(invalid | unreachable_4)
-    t252 = t146 + t251
-    del t146
+    unreachable_4 = np.logical_not(t245)
+    del t245
+    t246 = _runtime.poison(invalid | unreachable_4)
+    t247 = t143 + t246
+    del t143
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t3
     del t3
-    A_elbow_right_flip_up = np.maximum(t247, 0.0)
-    del t247
-    C_elbow_right_flip_up = np.maximum(t249, 0.0)
-    del t249
-    t253 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    A_elbow_right_flip_up = np.maximum(t242, 0.0)
+    del t242
+    C_elbow_right_flip_up = np.maximum(t244, 0.0)
+    del t244
+    t248 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = t1 + r_elbow_right_flip_up
     del t1
-    B_elbow_right_flip_up = np.maximum(t248, 0.0)
-    del t248
-    t254 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    t255 = 1.0 / (t253 + t254)
-    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t253 - t254) * t255))
-    del t253, t254
-    t256 = ey_right_flip_up * c_base_elbow_right_flip_up
-    t257 = 1.0 / r_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t243, 0.0)
+    del t243
+    t249 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    t250 = 1.0 / (t248 + t249)
+    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t248 - t249) * t250))
+    t251 = ey_right_flip_up * c_base_elbow_right_flip_up
+    t252 = 1.0 / r_elbow_right_flip_up
     del r_elbow_right_flip_up
-    t258 = t256 * t257
-    del t256
-    t259 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
-    area_elbow_right_flip_up = t259 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
-    del t259
-    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t255 * area_elbow_right_flip_up)
-    del t255
-    t260 = t257 * (t244 * s_base_elbow_right_flip_up)
-    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t258 + t260)
-    t261 = ey_right_flip_up * s_base_elbow_right_flip_up
+    t253 = t251 * t252
+    del t251
+    area_elbow_right_flip_up = 2.0 * np.sqrt(t248 * t249)
+    del t248, t249
+    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t250 * area_elbow_right_flip_up)
+    del t250
+    t254 = t252 * (t239 * s_base_elbow_right_flip_up)
+    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t253 + t254)
+    t255 = ey_right_flip_up * s_base_elbow_right_flip_up
     del ey_right_flip_up, s_base_elbow_right_flip_up
-    t262 = t257 * t261
-    del t261
-    t263 = t257 * (t244 * c_base_elbow_right_flip_up)
-    del c_base_elbow_right_flip_up, t244, t257
-    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t262 - t263)
-    t264 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t265 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t256 = t252 * t255
+    del t255
+    t257 = t252 * (t239 * c_base_elbow_right_flip_up)
+    del c_base_elbow_right_flip_up, t239, t252
+    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t256 - t257)
+    t258 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t259 = A_elbow_right_flip_up * S_elbow_right_flip_up
     del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t266 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t260 = C_elbow_right_flip_up * B_elbow_right_flip_up
     del B_elbow_right_flip_up, C_elbow_right_flip_up
-    t267 = 1.0 / (t265 + t266)
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t267)
+    t261 = 1.0 / (t259 + t260)
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t261)
     del area_elbow_right_flip_up
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t267 * (t265 - t266)))
-    del t265, t266, t267
-    t268 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t269 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t270 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t261 * (t259 - t260)))
+    del t259, t260, t261
+    t262 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t263 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t264 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
     del c2_right_flip_up, s2_right_flip_up
-    t271 = c3_right_flip_up * t269 - s3_right_flip_up * t270
-    t272 = c3_right_flip_up * t270 + s3_right_flip_up * t269
-    del t269, t270
-    t273 = _runtime.wrap_cut(np.arctan2(t271, t272)) + t251
-    del t271, t272
-    t274 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t265 = c3_right_flip_up * t263 - s3_right_flip_up * t264
+    t266 = c3_right_flip_up * t264 + s3_right_flip_up * t263
+    del t263, t264
+    t267 = _runtime.wrap_cut(np.arctan2(t265, t266)) + t246
+    del t265, t266
+    t268 = M_13_right_noflip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
     del M_13_right_noflip_up
-    t275 = _runtime.wrap_cut(-np.arctan2(t274, M_33_right_noflip_up))
-    del M_33_right_noflip_up, t274
-    t276 = t275 + t251
-    del t275
-    t277 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
+    t269 = _runtime.wrap_cut(-np.arctan2(t268, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t268
+    t270 = t269 + t246
+    del t269
+    t271 = M_11_right_noflip_up * sphi_right_flip_up - T31 * cphi_right_flip_up
     del M_11_right_noflip_up
-    t278 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
+    t272 = T32 * cphi_right_flip_up - M_12_right_noflip_up * sphi_right_flip_up
     del M_12_right_noflip_up
-    t279 = _runtime.wrap_cut(-np.arctan2(t277, t278)) + t251
-    del t277, t278
-    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t258 - t260)
-    del t258, t260
-    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t263 + t262))
-    del t262, t263
-    t280 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t281 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t282 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t273 = _runtime.wrap_cut(-np.arctan2(t271, t272)) + t246
+    del t271, t272
+    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t253 - t254)
+    del t253, t254
+    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t257 + t256))
+    del t256, t257
+    t274 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t275 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t276 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
     del c2_right_flip_down, cphi_right_flip_up, s2_right_flip_down, sphi_right_flip_up
-    t283 = c3_right_flip_up * t281 + s3_right_flip_up * t282
-    t284 = c3_right_flip_up * t282 - s3_right_flip_up * t281
-    del c3_right_flip_up, s3_right_flip_up, t281, t282
-    t285 = _runtime.wrap_cut(np.arctan2(t283, t284)) + t251
-    del t283, t284
-    t286 = free1 | aligned_wrist | no_link_elbow
+    t277 = c3_right_flip_up * t275 + s3_right_flip_up * t276
+    t278 = c3_right_flip_up * t276 - s3_right_flip_up * t275
+    del c3_right_flip_up, s3_right_flip_up, t275, t276
+    t279 = _runtime.wrap_cut(np.arctan2(t277, t278)) + t246
+    del t277, t278
+    t280 = free1 | aligned_wrist | no_link_elbow
     del aligned_wrist
-    t287 = _runtime.status(invalid, unreachable, t286 | folded_elbow)
+    t281 = _runtime.status(invalid, unreachable, t280 | folded_elbow)
     del folded_elbow, unreachable
-    t288 = _runtime.status(invalid, unreachable_2, t286 | folded_elbow_left_flip_up)
-    del folded_elbow_left_flip_up, t286, unreachable_2
-    t289 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t282 = _runtime.status(invalid, unreachable_2, t280 | folded_elbow_left_flip_up)
+    del folded_elbow_left_flip_up, t280, unreachable_2
+    t283 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
     del aligned_wrist_right_noflip_up, free1, no_link_elbow
-    t290 = _runtime.status(invalid, unreachable_3, t289 | folded_elbow_right_noflip_up)
+    t284 = _runtime.status(invalid, unreachable_3, t283 | folded_elbow_right_noflip_up)
     del folded_elbow_right_noflip_up, unreachable_3
-    t291 = _runtime.status(invalid, unreachable_4, t289 | folded_elbow_right_flip_up)
-    del folded_elbow_right_flip_up, invalid, t289, unreachable_4
+    t285 = _runtime.status(invalid, unreachable_4, t283 | folded_elbow_right_flip_up)
+    del folded_elbow_right_flip_up, invalid, t283, unreachable_4
     return (
-        t65,
-        _runtime.wrap_cut(np.arctan2(s2, c2)) + t64,
-        _runtime.wrap_cut(t78) + t64,
-        _runtime.wrap_cut(t81) + t64,
+        t64,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t63,
+        _runtime.wrap_cut(t76) + t63,
+        _runtime.wrap_cut(t79) + t63,
+        t81,
         t83,
-        t85,
-        t65,
-        _runtime.wrap_cut(t86) + t64,
-        _runtime.wrap_cut(-t78) + t64,
-        _runtime.wrap_cut(t89) + t64,
+        t64,
+        _runtime.wrap_cut(t84) + t63,
+        _runtime.wrap_cut(-t76) + t63,
+        _runtime.wrap_cut(t87) + t63,
+        t81,
         t83,
-        t85,
-        t114,
-        t124 + t113,
-        _runtime.wrap_cut(t128) + t113,
-        t133,
+        t112,
+        t121 + t111,
+        _runtime.wrap_cut(t125) + t111,
+        t130,
+        t132,
         t135,
-        t138,
-        t114,
-        _runtime.wrap_cut(t139) + t113,
-        _runtime.wrap_cut(-t128) + t113,
-        t144,
+        t112,
+        _runtime.wrap_cut(t136) + t111,
+        _runtime.wrap_cut(-t125) + t111,
+        t141,
+        t132,
         t135,
-        t138,
-        t192,
-        _runtime.wrap_cut(t204) + t191,
-        _runtime.wrap_cut(t208) + t191,
-        t213,
-        t216,
-        t219,
-        t192,
-        _runtime.wrap_cut(t220) + t191,
-        _runtime.wrap_cut(-t208) + t191,
-        t225,
-        t216,
-        t219,
-        t252,
-        _runtime.wrap_cut(t264) + t251,
-        _runtime.wrap_cut(t268) + t251,
+        t189,
+        _runtime.wrap_cut(t200) + t188,
+        _runtime.wrap_cut(t204) + t188,
+        t209,
+        t212,
+        t215,
+        t189,
+        _runtime.wrap_cut(t216) + t188,
+        _runtime.wrap_cut(-t204) + t188,
+        t221,
+        t212,
+        t215,
+        t247,
+        _runtime.wrap_cut(t258) + t246,
+        _runtime.wrap_cut(t262) + t246,
+        t267,
+        t270,
         t273,
-        t276,
+        t247,
+        _runtime.wrap_cut(t274) + t246,
+        _runtime.wrap_cut(-t262) + t246,
         t279,
-        t252,
-        _runtime.wrap_cut(t280) + t251,
-        _runtime.wrap_cut(-t268) + t251,
+        t270,
+        t273,
+        t281,
+        t281,
+        t282,
+        t282,
+        t284,
+        t284,
         t285,
-        t276,
-        t279,
-        t287,
-        t287,
-        t288,
-        t288,
-        t290,
-        t290,
-        t291,
-        t291,
+        t285,
     )
 
 
@@ -1390,7 +1378,7 @@ def _ik_common(
     t3 = below1 - above1
     t4 = 1.0 / (h1 * (below1 + above1))
     t5 = w_x * t3 * t4
-    t6 = 2.0 * (np.sqrt(above1) * np.sqrt(below1))
+    t6 = 2.0 * np.sqrt(below1 * above1)
     del above1, below1
     t7 = t4 * (w_y * t6)
     t8 = t5 + t7
@@ -1422,8 +1410,8 @@ def _ik_common(
     del t24
     invalid = np.logical_not(t25)
     del t25
-    t26 = L2 / 2.0 + L3 / 2.0 + d1 / 2.0 + d4 / 2.0 + d5 / 2.0
-    t27 = -(_runtime.FEASIBILITY * (t26 + d6 / 2.0))
+    t26 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5
+    t27 = -(_runtime.FEASIBILITY * (t26 + d6 * 0.5))
     del t26
     t28 = (t27 <= t1) & (t27 <= t2)
     del t1, t2
@@ -1463,35 +1451,35 @@ def _ik_common(
     t48 = S_elbow * B_elbow
     t49 = 1.0 / (t47 + t48)
     t50 = (t47 - t48) * t49
-    del t47, t48
     t51 = t46 * (ey * t50)
-    t52 = 2.0 * np.sqrt(A_elbow) * np.sqrt(B_elbow) * np.sqrt(C_elbow)
-    area_elbow = t52 * np.sqrt(S_elbow)
-    del t52
+    area_elbow = 2.0 * np.sqrt(t47 * t48)
+    del t47, t48
     s_base_elbow = t49 * area_elbow
     del t49
-    t53 = t46 * (t35 * s_base_elbow)
-    t54 = t51 - t53
-    t55 = t46 * (t35 * t50)
+    t52 = t46 * (t35 * s_base_elbow)
+    t53 = t51 - t52
+    t54 = t46 * (t35 * t50)
     del t35, t50
-    t56 = t46 * (ey * s_base_elbow)
+    t55 = t46 * (ey * s_base_elbow)
     del ey, s_base_elbow, t46
-    c2 = t55 + t56
-    t57 = _runtime.wrap_cut(np.arctan2(-t54, c2)) + t44
-    t58 = A_elbow * S_elbow
+    c2 = t54 + t55
+    t56 = _runtime.wrap_cut(np.arctan2(-t53, c2)) + t44
+    t57 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t59 = C_elbow * B_elbow
+    t58 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    t60 = 1.0 / (t58 + t59)
-    s3 = area_elbow * t60
-    del area_elbow
-    t61 = t60 * (t58 - t59)
-    del t58, t59, t60
-    t62 = np.arctan2(s3, -t61)
-    t63 = s_phi * c2 + t37 * t54
-    t64 = t37 * c2 - s_phi * t54
-    del c2, t54
-    t65 = np.arctan2(-(t61 * t63 + s3 * t64), s3 * t63 - t61 * t64)
+    t59 = t57 - t58
+    t60 = np.arctan2(area_elbow, -t59)
+    t61 = 1.0 / (t57 + t58)
+    del t57, t58
+    t62 = t59 * t61
+    del t59
+    t63 = s_phi * c2 + t37 * t53
+    s3 = area_elbow * t61
+    del area_elbow, t61
+    t64 = t37 * c2 - s_phi * t53
+    del c2, t53
+    t65 = np.arctan2(-(t62 * t63 + s3 * t64), t63 * s3 - t62 * t64)
     del t63, t64
     t66 = t32 * t37 + T33 * s_phi
     del t32
@@ -1501,16 +1489,16 @@ def _ik_common(
     t69 = s_phi * (T12 * c1 - T22 * t8) - T32 * t37
     del c1, t8
     t70 = _runtime.wrap_cut(-np.arctan2(t68, -t69)) + t44
-    t71 = t51 + t53
-    del t51, t53
-    c2_left_noflip_down = t55 - t56
-    del t55, t56
+    t71 = t51 + t52
+    del t51, t52
+    c2_left_noflip_down = t54 - t55
+    del t54, t55
     t72 = _runtime.wrap_cut(np.arctan2(-t71, c2_left_noflip_down))
     t73 = t37 * c2_left_noflip_down - s_phi * t71
     t74 = s_phi * c2_left_noflip_down + t37 * t71
     del c2_left_noflip_down, t71
-    t75 = np.arctan2(s3 * t73 - t61 * t74, -(t61 * t73 + s3 * t74))
-    del s3, t61, t73, t74
+    t75 = np.arctan2(s3 * t73 - t62 * t74, -(t62 * t73 + s3 * t74))
+    del s3, t62, t73, t74
     t76 = t30 + t34
     del t34
     ey_left_flip_up = t36 + t38
@@ -1539,50 +1527,50 @@ def _ik_common(
     t86 = S_elbow_left_flip_up * B_elbow_left_flip_up
     t87 = 1.0 / (t85 + t86)
     t88 = (t85 - t86) * t87
-    del t85, t86
     t89 = t84 * (ey_left_flip_up * t88)
-    t90 = 2.0 * np.sqrt(A_elbow_left_flip_up) * np.sqrt(B_elbow_left_flip_up)
-    area_elbow_left_flip_up = t90 * np.sqrt(C_elbow_left_flip_up) * np.sqrt(S_elbow_left_flip_up)
-    del t90
+    area_elbow_left_flip_up = 2.0 * np.sqrt(t85 * t86)
+    del t85, t86
     s_base_elbow_left_flip_up = t87 * area_elbow_left_flip_up
     del t87
-    t91 = t84 * (t76 * s_base_elbow_left_flip_up)
-    t92 = t89 - t91
-    t93 = t84 * (t76 * t88)
+    t90 = t84 * (t76 * s_base_elbow_left_flip_up)
+    t91 = t89 - t90
+    t92 = t84 * (t76 * t88)
     del t76, t88
-    t94 = t84 * (ey_left_flip_up * s_base_elbow_left_flip_up)
+    t93 = t84 * (ey_left_flip_up * s_base_elbow_left_flip_up)
     del ey_left_flip_up, s_base_elbow_left_flip_up, t84
-    c2_left_flip_up = t93 + t94
-    t95 = _runtime.wrap_cut(np.arctan2(-t92, c2_left_flip_up))
-    t96 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    c2_left_flip_up = t92 + t93
+    t94 = _runtime.wrap_cut(np.arctan2(-t91, c2_left_flip_up))
+    t95 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t97 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t96 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t98 = 1.0 / (t96 + t97)
-    s3_left_flip_up = area_elbow_left_flip_up * t98
-    del area_elbow_left_flip_up
-    t99 = t98 * (t96 - t97)
-    del t96, t97, t98
-    t100 = np.arctan2(s3_left_flip_up, -t99)
-    t101 = s_phi * c2_left_flip_up + t37 * t92
-    t102 = t37 * c2_left_flip_up - s_phi * t92
-    del c2_left_flip_up, t92
-    t103 = np.arctan2(t99 * t101 + s3_left_flip_up * t102, t99 * t102 - s3_left_flip_up * t101)
+    t97 = t95 - t96
+    t98 = np.arctan2(area_elbow_left_flip_up, -t97)
+    t99 = 1.0 / (t95 + t96)
+    del t95, t96
+    t100 = t97 * t99
+    del t97
+    t101 = s_phi * c2_left_flip_up + t37 * t91
+    s3_left_flip_up = area_elbow_left_flip_up * t99
+    del area_elbow_left_flip_up, t99
+    t102 = t37 * c2_left_flip_up - s_phi * t91
+    del c2_left_flip_up, t91
+    t103 = np.arctan2(t100 * t101 + s3_left_flip_up * t102, t100 * t102 - t101 * s3_left_flip_up)
     del t101, t102
     t104 = _runtime.wrap_cut(-np.arctan2(-t66, M_33)) + t82
     del M_33, t66
     t105 = _runtime.wrap_cut(-np.arctan2(-t68, t69)) + t82
     del t68, t69
-    t106 = t89 + t91
-    del t89, t91
-    c2_left_flip_down = t93 - t94
-    del t93, t94
+    t106 = t89 + t90
+    del t89, t90
+    c2_left_flip_down = t92 - t93
+    del t92, t93
     t107 = _runtime.wrap_cut(np.arctan2(-t106, c2_left_flip_down))
     t108 = s_phi * c2_left_flip_down + t37 * t106
     t109 = t37 * c2_left_flip_down - s_phi * t106
     del c2_left_flip_down, t106
-    t110 = np.arctan2(t99 * t108 - s3_left_flip_up * t109, t99 * t109 + s3_left_flip_up * t108)
-    del s3_left_flip_up, t108, t109, t99
+    t110 = np.arctan2(t100 * t108 - s3_left_flip_up * t109, t100 * t109 + s3_left_flip_up * t108)
+    del s3_left_flip_up, t100, t108, t109
     t111 = t5 - t7
     del t5, t7
     c1_right_noflip_up = t9 + t10
@@ -1626,37 +1614,37 @@ def _ik_common(
     t127 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
     t128 = 1.0 / (t126 + t127)
     t129 = (t126 - t127) * t128
-    del t126, t127
     t130 = t125 * (ey_right_noflip_up * t129)
-    t131 = 2.0 * np.sqrt(A_elbow_right_noflip_up) * np.sqrt(B_elbow_right_noflip_up)
-    area_elbow_right_noflip_up = t131 * np.sqrt(C_elbow_right_noflip_up) * np.sqrt(S_elbow_right_noflip_up)
-    del t131
+    area_elbow_right_noflip_up = 2.0 * np.sqrt(t126 * t127)
+    del t126, t127
     s_base_elbow_right_noflip_up = t128 * area_elbow_right_noflip_up
     del t128
-    t132 = t125 * (t116 * s_base_elbow_right_noflip_up)
-    t133 = t130 - t132
-    t134 = t125 * (t116 * t129)
+    t131 = t125 * (t116 * s_base_elbow_right_noflip_up)
+    t132 = t130 - t131
+    t133 = t125 * (t116 * t129)
     del t116, t129
-    t135 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    t134 = ey_right_noflip_up * s_base_elbow_right_noflip_up
     del ey_right_noflip_up, s_base_elbow_right_noflip_up
-    t136 = t125 * t135
-    del t125, t135
-    c2_right_noflip_up = t134 + t136
-    t137 = _runtime.wrap_cut(np.arctan2(-t133, c2_right_noflip_up))
-    t138 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t135 = t125 * t134
+    del t125, t134
+    c2_right_noflip_up = t133 + t135
+    t136 = _runtime.wrap_cut(np.arctan2(-t132, c2_right_noflip_up))
+    t137 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
     del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t139 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t138 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t140 = 1.0 / (t138 + t139)
-    s3_right_noflip_up = area_elbow_right_noflip_up * t140
-    del area_elbow_right_noflip_up
-    t141 = t140 * (t138 - t139)
-    del t138, t139, t140
-    t142 = np.arctan2(s3_right_noflip_up, -t141)
-    t143 = s_phi_right_noflip_up * c2_right_noflip_up + c_phi_right_noflip_up * t133
-    t144 = c_phi_right_noflip_up * c2_right_noflip_up - s_phi_right_noflip_up * t133
-    del c2_right_noflip_up, t133
-    t145 = np.arctan2(-(t141 * t143 + s3_right_noflip_up * t144), s3_right_noflip_up * t143 - t141 * t144)
+    t139 = t137 - t138
+    t140 = np.arctan2(area_elbow_right_noflip_up, -t139)
+    t141 = 1.0 / (t137 + t138)
+    del t137, t138
+    t142 = t139 * t141
+    del t139
+    t143 = s_phi_right_noflip_up * c2_right_noflip_up + c_phi_right_noflip_up * t132
+    s3_right_noflip_up = area_elbow_right_noflip_up * t141
+    del area_elbow_right_noflip_up, t141
+    t144 = c_phi_right_noflip_up * c2_right_noflip_up - s_phi_right_noflip_up * t132
+    del c2_right_noflip_up, t132
+    t145 = np.arctan2(-(t142 * t143 + s3_right_noflip_up * t144), t143 * s3_right_noflip_up - t142 * t144)
     del t143, t144
     t146 = M_13_right_noflip_up * c_phi_right_noflip_up + T33 * s_phi_right_noflip_up
     del M_13_right_noflip_up
@@ -1672,16 +1660,16 @@ def _ik_common(
     t152 = t151 - T32 * c_phi_right_noflip_up
     del t151
     t153 = _runtime.wrap_cut(-np.arctan2(t150, -t152)) + t123
-    t154 = t130 + t132
-    del t130, t132
-    c2_right_noflip_down = t134 - t136
-    del t134, t136
+    t154 = t130 + t131
+    del t130, t131
+    c2_right_noflip_down = t133 - t135
+    del t133, t135
     t155 = _runtime.wrap_cut(np.arctan2(-t154, c2_right_noflip_down))
     t156 = c_phi_right_noflip_up * c2_right_noflip_down - s_phi_right_noflip_up * t154
     t157 = s_phi_right_noflip_up * c2_right_noflip_down + c_phi_right_noflip_up * t154
     del c2_right_noflip_down, t154
-    t158 = np.arctan2(s3_right_noflip_up * t156 - t141 * t157, -(t141 * t156 + s3_right_noflip_up * t157))
-    del s3_right_noflip_up, t141, t156, t157
+    t158 = np.arctan2(s3_right_noflip_up * t156 - t142 * t157, -(t142 * t156 + s3_right_noflip_up * t157))
+    del s3_right_noflip_up, t142, t156, t157
     t159 = across_right_noflip_up + t115
     del t115
     ey_right_flip_up = t36 + t117
@@ -1711,37 +1699,37 @@ def _ik_common(
     t169 = S_elbow_right_flip_up * B_elbow_right_flip_up
     t170 = 1.0 / (t168 + t169)
     t171 = (t168 - t169) * t170
-    del t168, t169
     t172 = t167 * (ey_right_flip_up * t171)
-    t173 = 2.0 * np.sqrt(A_elbow_right_flip_up) * np.sqrt(B_elbow_right_flip_up)
-    area_elbow_right_flip_up = t173 * np.sqrt(C_elbow_right_flip_up) * np.sqrt(S_elbow_right_flip_up)
-    del t173
+    area_elbow_right_flip_up = 2.0 * np.sqrt(t168 * t169)
+    del t168, t169
     s_base_elbow_right_flip_up = t170 * area_elbow_right_flip_up
     del t170
-    t174 = t167 * (t159 * s_base_elbow_right_flip_up)
-    t175 = t172 - t174
-    t176 = t167 * (t159 * t171)
+    t173 = t167 * (t159 * s_base_elbow_right_flip_up)
+    t174 = t172 - t173
+    t175 = t167 * (t159 * t171)
     del t159, t171
-    t177 = ey_right_flip_up * s_base_elbow_right_flip_up
+    t176 = ey_right_flip_up * s_base_elbow_right_flip_up
     del ey_right_flip_up, s_base_elbow_right_flip_up
-    t178 = t167 * t177
-    del t167, t177
-    c2_right_flip_up = t176 + t178
-    t179 = _runtime.wrap_cut(np.arctan2(-t175, c2_right_flip_up))
-    t180 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t177 = t167 * t176
+    del t167, t176
+    c2_right_flip_up = t175 + t177
+    t178 = _runtime.wrap_cut(np.arctan2(-t174, c2_right_flip_up))
+    t179 = A_elbow_right_flip_up * S_elbow_right_flip_up
     del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t181 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t180 = C_elbow_right_flip_up * B_elbow_right_flip_up
     del B_elbow_right_flip_up, C_elbow_right_flip_up
-    t182 = 1.0 / (t180 + t181)
-    s3_right_flip_up = area_elbow_right_flip_up * t182
-    del area_elbow_right_flip_up
-    t183 = t182 * (t180 - t181)
-    del t180, t181, t182
-    t184 = np.arctan2(s3_right_flip_up, -t183)
-    t185 = s_phi_right_noflip_up * c2_right_flip_up + c_phi_right_noflip_up * t175
-    t186 = c_phi_right_noflip_up * c2_right_flip_up - s_phi_right_noflip_up * t175
-    del c2_right_flip_up, t175
-    t187 = np.arctan2(t183 * t185 + s3_right_flip_up * t186, t183 * t186 - s3_right_flip_up * t185)
+    t181 = t179 - t180
+    t182 = np.arctan2(area_elbow_right_flip_up, -t181)
+    t183 = 1.0 / (t179 + t180)
+    del t179, t180
+    t184 = t181 * t183
+    del t181
+    t185 = s_phi_right_noflip_up * c2_right_flip_up + c_phi_right_noflip_up * t174
+    s3_right_flip_up = area_elbow_right_flip_up * t183
+    del area_elbow_right_flip_up, t183
+    t186 = c_phi_right_noflip_up * c2_right_flip_up - s_phi_right_noflip_up * t174
+    del c2_right_flip_up, t174
+    t187 = np.arctan2(t184 * t185 + s3_right_flip_up * t186, t184 * t186 - t185 * s3_right_flip_up)
     del t185, t186
     t188 = _runtime.wrap_cut(-np.arctan2(-t146, M_33_right_noflip_up))
     del M_33_right_noflip_up, t146
@@ -1749,16 +1737,16 @@ def _ik_common(
     del t188
     t190 = _runtime.wrap_cut(-np.arctan2(-t150, t152)) + t165
     del t150, t152
-    t191 = t172 + t174
-    del t172, t174
-    c2_right_flip_down = t176 - t178
-    del t176, t178
+    t191 = t172 + t173
+    del t172, t173
+    c2_right_flip_down = t175 - t177
+    del t175, t177
     t192 = _runtime.wrap_cut(np.arctan2(-t191, c2_right_flip_down))
     t193 = s_phi_right_noflip_up * c2_right_flip_down + c_phi_right_noflip_up * t191
     t194 = c_phi_right_noflip_up * c2_right_flip_down - s_phi_right_noflip_up * t191
     del c2_right_flip_down, t191
-    t195 = np.arctan2(t183 * t193 - s3_right_flip_up * t194, t183 * t194 + s3_right_flip_up * t193)
-    del s3_right_flip_up, t183, t193, t194
+    t195 = np.arctan2(t184 * t193 - s3_right_flip_up * t194, t184 * t194 + s3_right_flip_up * t193)
+    del s3_right_flip_up, t184, t193, t194
     t196 = _runtime.status(invalid, unreachable, np.False_)
     del unreachable
     t197 = _runtime.status(invalid, unreachable_2, np.False_)
@@ -1790,7 +1778,7 @@ def _ik_common(
     t212 = 1.0 / n_near
     del n_near
     uc_near = (k_near - d_near) * t212
-    t213 = 2.0 * (t209 / t210) * np.sqrt(d_near) * np.sqrt(k_near)
+    t213 = 2.0 * (t209 / t210) * np.sqrt(k_near * d_near)
     del d_near, k_near
     t214 = t212 * t213
     del t212, t213
@@ -1822,10 +1810,10 @@ def _ik_common(
     t225 = 1.0 / n_near_left_flip_up
     del n_near_left_flip_up
     uc_near_left_flip_up = (k_near_left_flip_up - d_near_left_flip_up) * t225
-    t226 = 2.0 * (t209 / t224) * np.sqrt(d_near_left_flip_up)
-    del d_near_left_flip_up, t209
-    us_near_left_flip_up = t225 * (t226 * np.sqrt(k_near_left_flip_up))
-    del k_near_left_flip_up, t225, t226
+    t226 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
+    del d_near_left_flip_up, k_near_left_flip_up
+    us_near_left_flip_up = t225 * (2.0 * (t209 / t224) * t226)
+    del t209, t225, t226
     t227 = t30 * uc_near_left_flip_up + t36 * us_near_left_flip_up
     t228 = s_phi + t211 * t227
     del s_phi, t227
@@ -1870,10 +1858,10 @@ def _ik_common(
     uc_near_right_noflip_up = t245 * t246
     del t245
     t247 = across_right_noflip_up * uc_near_right_noflip_up
-    t248 = 2.0 * (t241 / t242) * np.sqrt(d_near_right_noflip_up)
-    del d_near_right_noflip_up, t242
-    t249 = t246 * (t248 * np.sqrt(k_near_right_noflip_up))
-    del k_near_right_noflip_up, t246, t248
+    t248 = k_near_right_noflip_up * d_near_right_noflip_up
+    del d_near_right_noflip_up, k_near_right_noflip_up
+    t249 = t246 * (2.0 * (t241 / t242) * np.sqrt(t248))
+    del t242, t246, t248
     t250 = s_phi_right_noflip_up - t244 * (t247 - t36 * t249)
     del t247
     t251 = across_right_noflip_up * t249 + t36 * uc_near_right_noflip_up
@@ -1904,10 +1892,10 @@ def _ik_common(
     del n_near_right_flip_up
     uc_near_right_flip_up = (k_near_right_flip_up - d_near_right_flip_up) * t260
     t261 = across_right_noflip_up * uc_near_right_flip_up
-    t262 = 2.0 * (t241 / t259) * np.sqrt(d_near_right_flip_up)
-    del d_near_right_flip_up, t241
-    us_near_right_flip_up = t260 * (t262 * np.sqrt(k_near_right_flip_up))
-    del k_near_right_flip_up, t260, t262
+    t262 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
+    del d_near_right_flip_up, k_near_right_flip_up
+    us_near_right_flip_up = t260 * (2.0 * (t241 / t259) * t262)
+    del t241, t260, t262
     t263 = s_phi_right_noflip_up + t244 * (t261 + t36 * us_near_right_flip_up)
     del s_phi_right_noflip_up, t261
     t264 = across_right_noflip_up * us_near_right_flip_up
@@ -1924,50 +1912,50 @@ def _ik_common(
     del here_right_flip_up, t201, t258, t259, t268
     return (
         t45,
-        t57,
-        _runtime.wrap_cut(t62) + t44,
+        t56,
+        _runtime.wrap_cut(t60) + t44,
         _runtime.wrap_cut(t65) + t44,
         t67,
         t70,
         t45,
         t72 + t44,
-        _runtime.wrap_cut(-t62) + t44,
+        _runtime.wrap_cut(-t60) + t44,
         _runtime.wrap_cut(t75) + t44,
         t67,
         t70,
         t83,
-        t95 + t82,
-        _runtime.wrap_cut(t100) + t82,
+        t94 + t82,
+        _runtime.wrap_cut(t98) + t82,
         _runtime.wrap_cut(t103) + t82,
         t104,
         t105,
         t83,
         t107 + t82,
-        _runtime.wrap_cut(-t100) + t82,
+        _runtime.wrap_cut(-t98) + t82,
         _runtime.wrap_cut(t110) + t82,
         t104,
         t105,
         t124,
-        t137 + t123,
-        _runtime.wrap_cut(t142) + t123,
+        t136 + t123,
+        _runtime.wrap_cut(t140) + t123,
         _runtime.wrap_cut(t145) + t123,
         t148,
         t153,
         t124,
         t155 + t123,
-        _runtime.wrap_cut(-t142) + t123,
+        _runtime.wrap_cut(-t140) + t123,
         _runtime.wrap_cut(t158) + t123,
         t148,
         t153,
         t166,
-        t179 + t165,
-        _runtime.wrap_cut(t184) + t165,
+        t178 + t165,
+        _runtime.wrap_cut(t182) + t165,
         _runtime.wrap_cut(t187) + t165,
         t189,
         t190,
         t166,
         t192 + t165,
-        _runtime.wrap_cut(-t184) + t165,
+        _runtime.wrap_cut(-t182) + t165,
         _runtime.wrap_cut(t195) + t165,
         t189,
         t190,

@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import timeit
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import metadata
@@ -63,14 +64,11 @@ def explained(error: BaseException) -> str:
     return f"{type(error).__name__}: {text[:110]}"
 
 
-def clock(run: Callable[[], object], postures: int, repeat: int) -> Run:
+def clock(call: timeit.Timer, postures: int, repeat: int) -> Run:
     def timed() -> float:
         if postures > 1:
             time.sleep(SETTLED)
-        start = time.perf_counter_ns()
-        for _ in range(repeat):
-            run()
-        return (time.perf_counter_ns() - start) / repeat / postures
+        return call.timeit(repeat) / repeat / postures * 1e9
 
     return timed
 
@@ -120,9 +118,9 @@ def calls_from_c(report: Report, cases: list[Case], rounds: int, folder: Path) -
 def from_python(
     peer: batches.Peer, case: Case, layout: str, rows: np.ndarray, expected: np.ndarray
 ) -> Run:
-    run, values = peer(case, layout, rows)
+    call, values = peer(case, layout, rows)
     check(case, values()[: len(expected)], expected)
-    return clock(run, len(rows), 1 if len(rows) > 1 else 2000)
+    return clock(call, len(rows), 1 if len(rows) > 1 else 2000)
 
 
 def calls_from_python(report: Report, cases: list[Case], rounds: int, n: int) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import timeit
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -11,9 +12,14 @@ import numpy as np
 
 from .cases import Case, NotApplicableError
 
-Run = Callable[[], Any]
-Peer = Callable[[Case, str, np.ndarray], tuple[Run, Run]]
+Values = Callable[[], Any]
+Peer = Callable[[Case, str, np.ndarray], tuple[timeit.Timer, Values]]
 NAMES = ("sin", "cos", "arctan2", "sqrt", "abs")
+
+
+def statement(code: str, **names: Any) -> timeit.Timer:
+    """A call as a user writes it, to be timed without another around it."""
+    return timeit.Timer(code, globals=names)
 
 
 def numpy_like(module: Any) -> dict[str, Any]:
@@ -30,22 +36,23 @@ def planes_of(rows: np.ndarray) -> np.ndarray:
     return memory
 
 
-def ours(backend: str, case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+def ours(backend: str, case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
     function = case.ours(backend)
     core = case.source.inputs[0].shape
     if len(rows) == 1:
         x = rows.reshape(core)
         out = function(x)
         out = out if isinstance(out, tuple) else np.asarray(out)
-        return lambda: function(x, out=out), lambda: first(function(x)).reshape(1, -1)
+        call = statement("function(x, out=out)", function=function, x=x, out=out)
+        return call, lambda: first(function(x)).reshape(1, -1)
     if layout == "rows":
         x = rows.reshape(-1, *core)
         out = function(x)
-        return lambda: function(x, out=out), lambda: first(function(x, out=out)).reshape(len(x), -1)
-    x = planes_of(rows).reshape((*core, len(rows)), copy=False)
-    x = np.moveaxis(x, -1, 0)
-    out = like_planes(function(x))
-    return lambda: function(x, out=out), lambda: first(function(x, out=out)).reshape(len(x), -1)
+    else:
+        x = np.moveaxis(planes_of(rows).reshape((*core, len(rows)), copy=False), -1, 0)
+        out = like_planes(function(x))
+    call = statement("function(x, out=out)", function=function, x=x, out=out)
+    return call, lambda: first(function(x, out=out)).reshape(len(x), -1)
 
 
 def first(result: Any) -> np.ndarray:
@@ -63,7 +70,7 @@ def stacked(values: Any, n: int) -> np.ndarray:
     return np.stack([np.broadcast_to(np.asarray(v), (n,)) for v in values], axis=-1)
 
 
-def lambdify(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+def lambdify(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
     function = case.translate(numpy_like(np))
     planes = list(planes_of(rows)) if layout == "planes" else list(rows.T)
     parameters = list(case.parameters.values())
@@ -72,10 +79,10 @@ def lambdify(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
         with np.errstate(all="ignore"):
             return function(*planes, *parameters)
 
-    return run, lambda: stacked(run(), len(rows))
+    return statement("run()", run=run), lambda: stacked(run(), len(rows))
 
 
-def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
     if layout == "planes":
         raise NotApplicableError("takes rows")
     import symengine as se
@@ -88,7 +95,7 @@ def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     function = se.Lambdify(symbols, expressions, backend=backend, cse=True)
     x = np.hstack([rows, np.tile(list(case.parameters.values()), (len(rows), 1))])
     out = np.empty((len(rows), case.width))
-    return lambda: function(x, out=out), lambda: function(x)
+    return statement("function(x, out=out)", function=function, x=x, out=out), lambda: function(x)
 
 
 def casadi_names() -> dict[str, Any]:
@@ -101,7 +108,7 @@ def casadi_names() -> dict[str, Any]:
     }
 
 
-def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
     if layout == "planes":
         raise NotApplicableError("takes rows")
     import casadi as ca
@@ -120,17 +127,14 @@ def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     buffer.set_arg(1, memoryview(constants))
     buffer.set_res(0, memoryview(out))
 
-    def run(_alive: Any = (buffer, x_rows, constants, out)) -> None:
-        trigger()
-
     def values_of() -> np.ndarray:
-        run()
+        trigger()
         return out.copy()
 
-    return run, values_of
+    return statement("trigger()", trigger=trigger, alive=(buffer, x_rows, constants)), values_of
 
 
-def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
     import math
 
     import numba as nb
@@ -158,10 +162,10 @@ def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
         kernel(x, p, out)
         return (out.T if layout == "planes" else out).copy()
 
-    return lambda: kernel(x, p, out), values
+    return statement("kernel(x, p, out)", kernel=kernel, x=x, p=p, out=out), values
 
 
-def pytensor(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+def pytensor(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
     import pytensor as pt
     import pytensor.tensor as tensor
 
@@ -177,10 +181,11 @@ def pytensor(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
     planes = (
         list(planes_of(rows)) if layout == "planes" else [np.ascontiguousarray(c) for c in rows.T]
     )
-    return lambda: function(*planes), lambda: stacked(function(*planes), len(rows))
+    call = statement("function(*planes)", function=function, planes=planes)
+    return call, lambda: stacked(function(*planes), len(rows))
 
 
-def jax(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
+def jax(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
     os.environ.setdefault("JAX_PLATFORMS", "cpu")
     import jax as library
     import jax.numpy as jnp
@@ -200,7 +205,7 @@ def jax(case: Case, layout: str, rows: np.ndarray) -> tuple[Run, Run]:
         result = np.asarray(function(x))
         return result.T if axis else result
 
-    return lambda: function(x).block_until_ready(), values
+    return statement("function(x).block_until_ready()", function=function, x=x), values
 
 
 PEERS: dict[str, Peer] = {

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
+import tempfile
 import timeit
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from . import native
 from .cases import Case, NotApplicableError
 
 Values = Callable[[], Any]
 Peer = Callable[[Case, str, np.ndarray], tuple[timeit.Timer, Values]]
+WRITING = "writing alone"
 NAMES = ("sin", "cos", "arctan2", "sqrt", "abs")
 
 
@@ -98,22 +103,12 @@ def symengine(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, 
     return statement("function(x, out=out)", function=function, x=x, out=out), lambda: function(x)
 
 
-def casadi_names() -> dict[str, Any]:
-    import casadi as ca
-
-    return {
-        **{n: getattr(ca, n) for n in ("sin", "cos", "atan2", "sqrt")},
-        "abs": ca.fabs,
-        "nonnegative": lambda x: ca.if_else(x >= 0, 1, 0),
-    }
-
-
 def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
     if layout == "planes":
         raise NotApplicableError("takes rows")
     import casadi as ca
 
-    names = casadi_names()
+    names = native.casadi_names()
     x = ca.SX.sym("x", len(case.source.symbols))
     p = ca.SX.sym("p", len(case.parameters))
     values = ca.vertcat(*case.translate(names)(*ca.vertsplit(x), *ca.vertsplit(p)))
@@ -208,8 +203,38 @@ def jax(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values
     return statement("function(x).block_until_ready()", function=function, x=x), values
 
 
+def of_planes(
+    printed: Callable[[Case], str], case: Case, layout: str, rows: np.ndarray
+) -> tuple[timeit.Timer, Values]:
+    """C for a structure of arrays."""
+    if layout != "planes" or len(rows) == 1:
+        raise NotApplicableError("takes planes")
+    pointer, size = ctypes.c_void_p, ctypes.c_size_t
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder, "planes.c")
+        run = native.compiled(
+            ["gcc", "-std=gnu99"], source, printed(case), native.widest()
+        ).evaluate
+    run.argtypes, run.restype = [size, pointer, pointer, size, pointer, size], None
+    x = planes_of(rows)
+    out = planes_of(np.empty((len(rows), case.width)))
+    p = np.array(list(case.parameters.values()))
+    strides = [a.strides[0] // a.itemsize for a in (x, out)]
+    arguments = (
+        len(rows), p.ctypes.data, x.ctypes.data, strides[0], out.ctypes.data, strides[1]
+    )  # fmt: skip
+    call = statement("run(*arguments)", run=run, arguments=arguments, alive=(p, x, out))
+
+    def values() -> np.ndarray:
+        run(*arguments)
+        return out.T.copy()
+
+    return call, values
+
+
 PEERS: dict[str, Peer] = {
     "closedform C": partial(ours, "c"),
+    "limit": partial(of_planes, native.limit_of_planes),
     "closedform NumPy": partial(ours, "numpy"),
     "lambdify": lambdify,
     "symengine": symengine,
@@ -217,4 +242,5 @@ PEERS: dict[str, Peer] = {
     "numba": numba,
     "pytensor": pytensor,
     "jax": jax,
+    WRITING: partial(of_planes, native.writing_of_planes),
 }

@@ -10,11 +10,11 @@ import subprocess
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from .batches import casadi_names
 from .cases import Case, NotApplicableError
 
 HERE = Path(__file__).parent
@@ -22,6 +22,14 @@ GENERATED = HERE.parent / "generated" / "c"
 FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast"]
 LIBRARY = ["-fPIC", "-shared", "-fno-semantic-interposition"]
 TARGETS = {"AVX-512": "x86-64-v4", "AVX2": "x86-64-v3"}
+
+
+def widest() -> str:
+    """The target with the widest vectors of this machine, of which gcc may spare half by itself."""
+    info = Path("/proc/cpuinfo")
+    wide = info.exists() and " avx512vl " in info.read_text()
+    return TARGETS["AVX-512" if wide else "AVX2"]
+
 
 LOOP = """
 #include <time.h>
@@ -58,12 +66,91 @@ __attribute__((noinline)) void evaluate(const double *in, double *out)
 """
 
 
-def limit(case: Case) -> str:
-    """A kernel written by hand for this function, with one eight-lane sincos."""
+def by_hand(case: Case) -> str:
+    """The body of a kernel written by hand for this function, without its trigonometry."""
     source = HERE / "limits" / f"{case.full}.c"
     if not source.exists():
         raise NotApplicableError("no kernel written by hand")
     return f'#include "closedform.h"\n#include "{source}"\n'
+
+
+def limit(case: Case) -> str:
+    """A kernel written by hand for one posture, with one eight-lane sincos."""
+    return f"""
+#define ARCTANGENTS cf_atan2_lanes
+{by_hand(case)}
+__attribute__((noinline)) void evaluate(const double *in, double *out)
+{{
+    enum {{ LANES = ANGLES <= 4 ? 4 : 8 }};
+    double angles[LANES] = {{ 0 }}, s[LANES], c[LANES];
+    angles_of(in, angles);
+    if (ANGLES) cf_sincos_lanes(LANES, angles, s, c);
+    body(in, s, c, out);
+}}
+"""
+
+
+def limit_of_planes(case: Case) -> str:
+    """The same for planes: in blocks, the sines and cosines first."""
+    n, width = len(case.source.symbols), case.width
+    coordinates = [f"x[{k} * xs + at + i]" for k in range(n)]
+    inputs = ", ".join([*coordinates, *(f"p[{k}]" for k in range(len(case.parameters)))])
+    sines, cosines = (", ".join(f"{f}[{k}][i]" for k in range(8)) for f in "sc")
+    angles = " ".join(f"a[{k}][i] = t[{k}];" for k in range(8))
+    # many planes written at once miss the address cache, so that they are written one by one
+    apart = width > 16
+    place = "r[{k}][i]" if apart else "y[{k} * ys + at + i]"
+    stores = " ".join(f"{place.format(k=k)} = out[{k}];" for k in range(width))
+    copies = (
+        f"for (int k = 0; k < {width}; ++k) memcpy(y + k * ys + at, r[k], length * sizeof **r);"
+    )
+    return f"""
+#define ONE(k, y, x, angle) angle[k] = cf_atan2(y[k], x[k])
+#define ARCTANGENTS(n, y, x, angle) ONE(0, y, x, angle), ONE(1, y, x, angle), ONE(2, y, x, angle)
+{by_hand(case)}
+void evaluate(size_t n, const double *p, const double *x, size_t xs, double *y, size_t ys)
+{{
+    enum {{ BLOCK = {512 if apart else 256} }};
+    double a[8][BLOCK], s[8][BLOCK], c[8][BLOCK];
+    {f"double r[{width}][BLOCK + 8];" if apart else ""}
+    for (size_t at = 0; at < n; at += BLOCK) {{
+        const size_t length = n - at < BLOCK ? n - at : BLOCK;
+        #pragma GCC ivdep
+        for (size_t i = 0; i < length && ANGLES; ++i) {{
+            const double in[] = {{ {inputs} }};
+            double t[8];
+            angles_of(in, t);
+            {angles}
+        }}
+        for (int k = 0; k < ANGLES; ++k)
+            cf_sincos_block(length, a[k], s[k], c[k]);
+        #pragma GCC ivdep
+        for (size_t i = 0; i < length; ++i) {{
+            const double in[] = {{ {inputs} }}, si[] = {{ {sines} }}, ci[] = {{ {cosines} }};
+            double out[{width}];
+            body(in, si, ci, out);
+            {stores}
+        }}
+        {copies if apart else ""}
+    }}
+}}
+"""
+
+
+def writing_of_planes(case: Case) -> str:
+    """Planes of as many results, written with nothing to compute: what memory allows."""
+    n = len(case.source.symbols)
+    return f"""
+#include <stddef.h>
+void evaluate(size_t n, const double *p, const double *x, size_t xs, double *y, size_t ys)
+{{
+    enum {{ BLOCK = 512 }};
+    for (size_t at = 0; at < n; at += BLOCK)
+        for (size_t k = 0; k < {case.width}; ++k)
+            for (size_t i = at; i < n && i < at + BLOCK; ++i)
+                y[k * ys + i] = x[k % {n} * xs + i] + p[0];
+}}
+"""
 
 
 def sympy_c(case: Case) -> str:
@@ -76,6 +163,16 @@ def sympy_c(case: Case) -> str:
         "#include <math.h>\n__attribute__((noinline)) "
         f"void evaluate(const double *in, double *out)\n{{\n    {body}\n}}\n"
     )
+
+
+def casadi_names() -> dict[str, Any]:
+    import casadi as ca
+
+    return {
+        **{n: getattr(ca, n) for n in ("sin", "cos", "atan2", "sqrt")},
+        "abs": ca.fabs,
+        "nonnegative": lambda x: ca.if_else(x >= 0, 1, 0),
+    }
 
 
 def casadi(case: Case) -> str:
@@ -171,20 +268,19 @@ def build(name: str, case: Case, target: str, folder: Path) -> ctypes.CDLL:
     """The library of one competitor, compiled for ``target``."""
     printer, language = SOURCES[name]
     suffix, compiler = ("c", ["gcc", "-std=gnu99"]) if language == "c" else ("cc", ["g++"])
-    stem = f"{name.replace('.', '_')}_{case.full}_{target}"
-    source, library = folder / f"{stem}.{suffix}", folder / f"{stem}.so"
-    source.write_text(printer(case))
+    stem = folder / f"{name.replace('.', '_')}_{case.full}_{target}"
     loop = folder / f"loop.{suffix}"
     loop.write_text(LOOP)
-    command = [
-        *compiler,
-        *FLAGS,
-        *LIBRARY,
-        f"-march={target}",
-        f"-I{GENERATED}",
-        "-I/usr/include/eigen3",
-    ]
-    command += ["-o", str(library), str(source), str(loop), "-lm"]
+    return compiled(compiler, stem.with_suffix(f".{suffix}"), printer(case), target, loop)
+
+
+def compiled(
+    compiler: list[str], source: Path, code: str, target: str, *others: Path
+) -> ctypes.CDLL:
+    source.write_text(code)
+    library = source.with_suffix(".so")
+    command = [*compiler, *FLAGS, *LIBRARY, f"-march={target}", f"-I{GENERATED}"]
+    command += ["-I/usr/include/eigen3", "-o", str(library), str(source), *map(str, others), "-lm"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         told = done.stderr.strip().splitlines()

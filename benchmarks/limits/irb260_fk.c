@@ -1,10 +1,16 @@
 /* By hand: theta1, theta2, theta3, theta5, l1..l6 in; x, y, z, yaw out. The yaw is brought into
- * range by the remainder and not, as the generated one, by an arctangent. */
-__attribute__((noinline)) void evaluate(const double *in, double *out)
+ * range by the remainder. */
+enum { ANGLES = 3 };
+
+static inline void angles_of(const double *in, double *angles)
 {
-    const double angles[4] = { in[0], in[1], in[1] + in[2], 0.0 };
-    double s[4], c[4];
-    cf_sincos_lanes(4, angles, s, c);
+    angles[0] = in[0];
+    angles[1] = in[1];
+    angles[2] = in[1] + in[2];
+}
+
+static inline void body(const double *in, const double *s, const double *c, double *out)
+{
     const double r = in[4] + in[6] * s[1] + in[7] * c[2] + in[9];
     out[0] = -s[0] * r;
     out[1] = c[0] * r;

@@ -1,10 +1,19 @@
 /* By hand: q1..q6, a2, a3, d3, d4 in; T row by row out. */
-__attribute__((noinline)) void evaluate(const double *in, double *out)
+enum { ANGLES = 6 };
+
+static inline void angles_of(const double *in, double *angles)
+{
+    angles[0] = in[0];
+    angles[1] = in[1];
+    angles[2] = in[1] + in[2];
+    angles[3] = in[3];
+    angles[4] = in[4];
+    angles[5] = in[5];
+}
+
+static inline void body(const double *in, const double *s, const double *c, double *out)
 {
     const double a2 = in[6], a3 = in[7], d3 = in[8], d4 = in[9];
-    const double angles[8] = { in[0], in[1], in[1] + in[2], in[3], in[4], in[5] };
-    double s[8], c[8];
-    cf_sincos_lanes(8, angles, s, c);
     /* The wrist in axes of the forearm: Rz(q4) Ry(-q5) Rz(q6). */
     const double c45 = c[3] * c[4], s45 = s[3] * c[4];
     const double nx = c45 * c[5] - s[3] * s[5], ox = -c45 * s[5] - s[3] * c[5], ax = -c[3] * s[4];

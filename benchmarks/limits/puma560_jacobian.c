@@ -1,14 +1,23 @@
 /* By hand: q1..q6, a2, a3, d3, d4 in; (v; omega) of the wrist centre, row by row, out. */
-__attribute__((noinline)) void evaluate(const double *in, double *out)
+enum { ANGLES = 5 };
+
+static inline void angles_of(const double *in, double *angles)
+{
+    angles[0] = in[0];
+    angles[1] = in[1];
+    angles[2] = in[1] + in[2];
+    angles[3] = in[3];
+    angles[4] = in[4];
+}
+
+static inline void body(const double *in, const double *s, const double *c, double *out)
 {
     const double a2 = in[6], a3 = in[7], d3 = in[8], d4 = in[9];
-    const double angles[8] = { in[0], in[1], in[1] + in[2], in[3], in[4] };
-    double s[8], c[8];
-    cf_sincos_lanes(8, angles, s, c);
     const double C1 = c[0], S1 = s[0], C = c[2], S = s[2];
     const double fr = a3 * C - d4 * S, fh = a3 * S + d4 * C; /* the forearm: out and up */
     const double r = a2 * c[1] + fr, h = a2 * s[1] + fh;
-    for (int k = 0; k < 36; ++k) out[k] = 0;
+    out[3] = out[4] = out[5] = out[9] = out[10] = out[11] = out[12] = 0;
+    out[15] = out[16] = out[17] = out[18] = out[24] = out[31] = out[32] = 0;
     out[0] = d3 * C1 - S1 * r;
     out[1] = -C1 * h;
     out[2] = -C1 * fh;

@@ -114,6 +114,15 @@ def test_a_wrong_solution_is_found(name: str) -> None:
         prove_lemma(dataclasses.replace(lemma, solution=wrong), program, given)
 
 
+@pytest.mark.parametrize("name", ["sine and cosine", "arm", "arm beside another", "two sines"])
+def test_a_wrong_meaning_of_a_name_is_found(name: str) -> None:
+    lemma, program, given = applied(name)
+    handed = next(iter(lemma.means))
+    wrong = {**lemma.means, handed: -lemma.means[handed]}
+    with pytest.raises(ProofError, match="does not vanish"):
+        prove_lemma(dataclasses.replace(lemma, means=wrong), program, given)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_a_missing_branch_is_found(name: str) -> None:
     lemma, program, given = applied(name)

@@ -114,8 +114,10 @@ class Ranges:
                 return True
             case "input":
                 return node.payload in self.lengths
-            case "sum" | "div":
+            case "sum":
                 return all(map(self.not_negative, node.args))
+            case "div":  # by the negative zero it would be
+                return self.not_negative(node.args[0]) and self.positive(node.args[1])
             case "select":
                 return all(map(self.not_negative, node.args[1:]))
             case "max":

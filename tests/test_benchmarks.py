@@ -59,6 +59,21 @@ def test_a_flawed_inverse_is_seen():
     assert figures["rad"] == pytest.approx(1e-4, rel=1e-3)
 
 
+def test_inverses_can_be_timed():
+    T = np.tile(np.eye(4), (3, 1, 1))
+    for solver in (solvers.ours_single(), solvers.ours_batch(puma560, "numpy", "rows")):
+        assert inverses.clock(solver.timed(T), len(T))() > 0
+
+
+def test_tables_of_batches_and_calls():
+    """With whatever peers there are; the others are listed with their error."""
+    command = [sys.executable, "-m", "benchmarks", "--only", "batch", "--only", "single"]
+    command += ["--rounds", "1", "--batch", "2000", "2R"]
+    told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert told.count("| closedform C |") == told.count("| lambdify |") == 3
+    assert "| writing alone |" in told or not shutil.which("gcc")
+
+
 def test_what_is_no_pose():
     mirrored = np.diag([1.0, 1, -1, 1])[None]
     assert inverses.verdicts(solvers.ours_single(), mirrored) == "INVALID"

@@ -119,7 +119,7 @@ def from_python(
     peer: batches.Peer, case: Case, layout: str, rows: np.ndarray, expected: np.ndarray
 ) -> Run:
     call, values = peer(case, layout, rows)
-    if peer is not batches.PEERS[batches.WRITING]:
+    if values is not None:
         check(case, values()[: len(expected)], expected)
     return clock(call, len(rows), 1 if len(rows) > 1 else 2000)
 

@@ -99,11 +99,10 @@ def sine_cosine(
     above = program.bound(f"above{suffix}", h + c, size, "the amplitude is not smaller than -c")
     half = sp.atan2(sp.sqrt(below), sp.sqrt(above))
     onward = program.let(f"onward{suffix}", sigma * sp.sqrt(below) * sp.sqrt(above))
+    direction = sp.atan2(a, b) + 2 * sigma * half
     if free:
         nowhere = program.vanishes(f"nowhere{suffix}", h, scale, "the amplitude is zero", free)
-        direction = choose(nowhere, 0, sp.atan2(a, b) + 2 * sigma * half)
-    else:
-        direction = sp.atan2(a, b) + 2 * sigma * half
+        direction = choose(nowhere, 0, direction)
     return Lemma(
         "a sin x + b cos x = c",
         r"a\sin x + b\cos x = c \;\Rightarrow\; x = \operatorname{atan2}(a, b) + "

@@ -14,7 +14,7 @@ COMPILERS := $(foreach cc,gcc clang,$(foreach type,double float,warnings-$(cc)-$
 WARNINGS := -std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
 
 .PHONY: all test check lint types regenerated warnings $(COMPILERS) \
-	format pdf bench accuracy clean distclean help
+	format pdf bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
 all: build/native.stamp  ## derive, prove, generate and build; one line a robot (the default)
@@ -78,6 +78,9 @@ build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
 
 bench: all  ## time the generated code beside the peers installed; writes benchmarks/RESULTS.md
 	$(BIN)/python -m benchmarks $(ARGS)
+
+fuzz: all  ## attack with random input; ARGS="--seconds 600 --seed 2"; failures are saved and tested
+	PYTHONPATH=tests $(BIN)/python -m fuzz $(ARGS)
 
 accuracy: all  ## compare a billion sines, cosines and arctangents with libm; ARGS="--samples N"
 	$(BIN)/python -m benchmarks.accuracy $(ARGS)

@@ -1,0 +1,9 @@
+"""Attacks on the project with random input: ``make fuzz``, and the replay of what they have found.
+
+An attack is a module with a ``NAME``, a function ``round`` that draws one round of input and says
+what it tried and what failed, and a function ``replay`` that tries one saved failure again.
+"""
+
+from . import arguments, kernels, postures, tables
+
+ATTACKS = {attack.NAME: attack for attack in (postures, arguments, kernels, tables)}

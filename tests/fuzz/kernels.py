@@ -1,0 +1,85 @@
+"""The bare C under the address and undefined-behaviour sanitizers, with random numbers."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .outcome import Failure, Outcome
+
+NAME = "kernels"
+CALLS = 20_000
+ROOT = Path(__file__).parents[2]
+GENERATED, RUNTIME = ROOT / "generated" / "c", ROOT / "closedform" / "extension"
+SANITIZE = ("-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+
+
+def available() -> bool:
+    return shutil.which("gcc") is not None
+
+
+def round(rng: np.random.Generator) -> Outcome:
+    """Twenty thousand calls in one process."""
+    outcome = Outcome()
+    seed = int(rng.integers(0, 1 << 40))
+    message, call = _run(seed, CALLS)
+    outcome.count("generated C", calls=call + 1 if message else CALLS, failed=int(bool(message)))
+    if message:
+        outcome.failures.append(Failure(NAME, message, {"seed": seed, "call": call}))
+    return outcome
+
+
+def replay(case: Mapping[str, Any]) -> list[str]:
+    """One saved call."""
+    message, _ = _run(case["seed"], CALLS, case["call"])
+    return [message] if message else []
+
+
+def _run(seed: int, calls: int, only: int | None = None) -> tuple[str, int]:
+    """What the driver died of, and in which call; the message is empty where it did not."""
+    command = [driver(), str(seed), str(calls), *([str(only)] if only is not None else [])]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode == 0:
+        return "", 0
+    last = done.stdout.splitlines()[-1].split()
+    reason = next(
+        (line for line in done.stderr.splitlines() if "rror" in line or "status" in line), ""
+    )
+    return f"{last[2]}: exit code {done.returncode}: {reason}", int(last[1])
+
+
+@cache
+def driver() -> Path:
+    """The driver with all generated C; only what changed is compiled again."""
+    folder = ROOT / "build" / "fuzz"
+    folder.mkdir(parents=True, exist_ok=True)
+    sources = [ROOT / "tests" / "c" / "random_driver.c", *sorted(GENERATED.glob("*.c"))]
+    newest_header = max(p.stat().st_mtime for p in [*GENERATED.glob("*.h"), *RUNTIME.glob("*.h")])
+    command = ["gcc", "-std=c99", "-O1", "-ftree-vectorize", *SANITIZE]
+    command += [f"-I{GENERATED}", f"-I{RUNTIME}"]
+
+    def compiled(source: Path) -> Path:
+        target = folder / f"{source.stem}.o"
+        newest = max(source.stat().st_mtime, newest_header)
+        if not target.is_file() or target.stat().st_mtime < newest:
+            unfinished = target.with_suffix(f".{os.getpid()}.o")
+            subprocess.run([*command, "-c", source, "-o", unfinished], check=True)
+            unfinished.replace(target)
+        return target
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        objects = list(pool.map(compiled, sources))
+    program = folder / "driver"
+    if not program.is_file() or program.stat().st_mtime < max(o.stat().st_mtime for o in objects):
+        unfinished = program.with_suffix(f".{os.getpid()}")
+        subprocess.run(["gcc", *SANITIZE, *objects, "-o", unfinished, "-lm"], check=True)
+        unfinished.replace(program)
+    return program

@@ -1,0 +1,72 @@
+"""What the attacks need to know of a generated mechanism, read from its derivation."""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass
+from functools import cache
+from types import ModuleType
+
+import numpy as np
+
+from closedform import pipeline
+
+BACKENDS = ("numpy", "c")
+NEEDED = {"h6ar": ("L1", "L2", "d"), "h6ar_loop_closed": ("L1", "L2", "d")}
+"""Lengths without which there is no such mechanism: its inverse says INVALID where one is zero."""
+
+
+@dataclass(frozen=True)
+class Robot:
+    """Names, kinds of joints, and the joints that stay close to another, by their places."""
+
+    name: str
+    fields: tuple[str, ...]
+    defaults: tuple[float, ...]
+    signed: tuple[bool, ...]
+    joints: tuple[str, ...]
+    slides: tuple[bool, ...]
+    positive: tuple[bool, ...]
+    beside: tuple[int, ...]
+    angles: tuple[bool, ...]
+    modes: bool
+    needed: tuple[bool, ...]
+
+    def module(self, backend: str) -> ModuleType:
+        return importlib.import_module(f"closedform.generated.{backend}.{self.name}")
+
+    @property
+    def revolute(self) -> np.ndarray:
+        return ~np.array(self.slides)
+
+
+@cache
+def robots() -> tuple[Robot, ...]:
+    """Every mechanism that has a forward map ``fk`` and an inverse ``ik``."""
+    return tuple(_robot(source) for source in pipeline.sources())
+
+
+@cache
+def robot(name: str) -> Robot:
+    (source,) = pipeline.find([name])
+    return _robot(source)
+
+
+def _robot(source: pipeline.Source) -> Robot:
+    d = pipeline.load(source)
+    joints = {j.symbol: j for j in d.joints}
+    actuated = d.actuated
+    inverse = next(i for i in d.inverses if i.function == "ik")
+    return Robot(
+        source.name,
+        tuple(p.name for p in d.parameters),
+        tuple(float(p.value) for p in d.parameters),
+        tuple(not p.nonnegative for p in d.parameters),
+        tuple(s.name for s in actuated),
+        tuple(joints[s].kind == "prismatic" for s in actuated),
+        tuple(s in inverse.nonnegative for s in actuated),
+        tuple(actuated.index(b) if (b := joints[s].beside) is not None else -1 for s in actuated),
+        tuple(s in inverse.angles for s in d["ik"].symbols),
+        bool(d.assembly_modes),
+        tuple(p.name in NEEDED.get(source.name, ()) for p in d.parameters),
+    )

@@ -1,0 +1,91 @@
+"""The attacks of ``make fuzz``: saved failures stay mended, and a fault is found."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from closedform.generated.c import planar_2r
+from fuzz import ATTACKS, arguments, kernels, postures, tables
+from fuzz.__main__ import attack, table
+from fuzz.outcome import CASES
+from fuzz.robots import Robot, robot
+
+SEED = 20
+QUICK = ("planar_2r", "puma560", "rpr_planar", "scara", "spherical_wrist", "stanford_arm", "ur_arm")
+"""Mechanisms whose derivations are loaded in a few seconds."""
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.json")), ids=lambda path: path.stem)
+def test_saved_case(path: Path) -> None:
+    case = json.loads(path.read_text("utf-8"))
+    assert ATTACKS[case["attack"]].replay(case) == []
+
+
+def test_small_round(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(postures, "SIZE", 150)
+    monkeypatch.setattr(postures, "robots", lambda: tuple(map(robot, QUICK)))
+    monkeypatch.setattr(arguments, "CALLS", 300)
+    monkeypatch.setattr(tables, "TABLES", 25)
+    total = attack([postures, arguments, tables], SEED, 0, tmp_path)
+    assert [f.problem for outcome in total.values() for f in outcome.failures] == []
+    assert "| ur_arm | " in "\n".join(table(total))
+
+
+@pytest.mark.skipif(not kernels.available(), reason="gcc and its sanitizers are needed")
+def test_bare_c() -> None:
+    outcome = kernels.round(np.random.default_rng(SEED))
+    assert outcome.failures == []
+
+
+def one_off(x, params):
+    q, status = planar_2r.ik(x, params)
+    return planar_2r.Solutions(q + 1e-9, status)
+
+
+def lossy(x, params):
+    q, status = planar_2r.ik(x, params)
+    return planar_2r.Solutions(np.full_like(q, np.nan), np.ones_like(status))
+
+
+def careless(x, params):
+    q, status = planar_2r.ik(x, params)
+    return planar_2r.Solutions(np.where(q > 0, np.nan, q), status)
+
+
+@pytest.mark.parametrize(
+    ("ik", "kind"),
+    [(one_off, "miss"), (lossy, "lost"), (careless, "nan")],
+    ids=["one_off", "lossy", "careless"],
+)
+def test_faults_are_found(monkeypatch: pytest.MonkeyPatch, ik, kind: str) -> None:
+    planar = robot("planar_2r")
+    broken = SimpleNamespace(fk=planar_2r.fk, singularities=planar_2r.singularities, ik=ik)
+    monkeypatch.setattr(Robot, "module", lambda _self, _backend: broken)
+    rng = np.random.default_rng(0)
+    lengths = np.tile(planar.defaults, (100, 1))
+    q = rng.uniform(-np.pi, np.pi, (100, 2))
+    assert kind in {problem for problem, _, _ in postures.check(planar, lengths, q)}
+
+
+def test_failure_is_saved_and_replayed(tmp_path: Path) -> None:
+    outcome = postures.Outcome()
+    case = {"robot": "planar_2r", "lengths": ["0x1p+0", "0x1p+0"], "q": ["0x1p-2", "0x1p-1"]}
+    outcome.failures.append(postures.Failure("postures", "an example", case))
+    path = outcome.failures[0].save(tmp_path)
+    assert ATTACKS["postures"].replay(json.loads(path.read_text("utf-8"))) == []
+
+
+def test_a_crash_is_a_finding() -> None:
+    call = {"robot": "planar_2r", "function": "no_such_function", "arguments": [], "params": None}
+    (problem,) = arguments.replay({"call": call})
+    assert "no_such_function" in problem
+
+
+def test_a_table_that_acts_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
+    import os
+
+    monkeypatch.setattr(tables, "new", lambda *_a, **_k: os.system("true"))
+    (problem,) = tables.replay({"kind": "dh", "name": "arm", "text": "", "modified": False})
+    assert "os.system" in problem

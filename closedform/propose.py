@@ -342,7 +342,6 @@ class _Maker:
     def _turn_base(self, base: Group, beside: Any) -> str:
         """The first joint, by the distance ``beside`` of the point from the plane it turns."""
         row, h = base.rows[0], base.end * Z
-        self._require(row.sign == 1, "the first axis is along z")
         p = _at("p")
         a, b = source(h[0] * p[1] - h[1] * p[0]), source(h[0] * p[0] + h[1] * p[1])
         c = sp.simplify(beside + h[0] * row.shift[0] + h[1] * row.shift[1])
@@ -436,9 +435,6 @@ class _Maker:
         end = parallel.end * sp.Matrix(fifth.rows[0].shift)
         normal = base.end * Z
         self._require(normal[2] == 0, "the parallel axes are normal to the first")
-        self._require(
-            all(row.sign == 1 for row in parallel.rows), "the parallel axes have one direction"
-        )
         beside = sum((row.shift[2] for row in parallel.rows), end[2])
         pair1 = self._turn_base(base, beside)
         u, v, w = self._links(parallel, [0, 1, 2])

@@ -91,7 +91,7 @@ class Chain:
 
     def let(self, name: str, value: Any) -> sp.Expr:
         """Name a coefficient; what is a symbol or a number already keeps its name."""
-        value = sp.sympify(value)
+        value = sp.sympify(value, strict=True)
         if value.is_Symbol or value.is_number:
             return value
         return self.program.let(name, value)

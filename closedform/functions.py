@@ -128,7 +128,7 @@ def array(name: str, value: Any) -> Array:
     else:
         nested = sp.ImmutableDenseNDimArray(value)
         shape, entries = tuple(nested.shape), list(sp.flatten(nested.tolist()))
-    exact = tuple(sp.sympify(e) for e in entries)
+    exact = tuple(sp.sympify(e, strict=True) for e in entries)
     for entry in exact:
         reject_floats(entry, name)
     return Array(name, shape, exact)
@@ -260,7 +260,9 @@ class Function:
         bounds = []
         for statement in self.body:
             if isinstance(statement, Vanishes):
-                known[statement.symbol] = sp.sympify((flags or {}).get(statement.symbol, False))
+                known[statement.symbol] = sp.sympify(
+                    (flags or {}).get(statement.symbol, False), strict=True
+                )
             elif isinstance(statement, (Let, Bound)) and statement.symbol in needed:
                 value = known[statement.symbol] = substitute(statement.value, known)
                 sum_of_squares = value.is_Add and statement.symbol.is_nonnegative
@@ -309,7 +311,7 @@ class Program:
 
     def let(self, name: str, value: Number, **assumptions: bool) -> sp.Symbol:
         symbol = real(name, **assumptions)
-        value = sp.sympify(value)
+        value = sp.sympify(value, strict=True)
         reject_floats(value, name)
         self.body.append(Let(symbol, value))
         return symbol
@@ -318,7 +320,7 @@ class Program:
         self, name: str, value: sp.Expr, scale: sp.Expr, meaning: str, *, positive: bool = False
     ) -> sp.Symbol:
         symbol = real(name, nonnegative=True)
-        reject_floats(sp.sympify(value), name)
+        reject_floats(sp.sympify(value, strict=True), name)
         self.body.append(Bound(symbol, value, scale, meaning, positive))
         return symbol
 
@@ -334,11 +336,13 @@ class Program:
         free: Sequence[sp.Symbol] = (),
     ) -> sp.Symbol:
         symbol = sp.Symbol(name)
-        self.body.append(Vanishes(symbol, value, sp.sympify(scale), meaning, tuple(free)))
+        self.body.append(
+            Vanishes(symbol, value, sp.sympify(scale, strict=True), meaning, tuple(free))
+        )
         return symbol
 
     def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
-        self.body.append(Require(tuple(values), sp.sympify(scale), meaning))
+        self.body.append(Require(tuple(values), sp.sympify(scale, strict=True), meaning))
 
     def explicit(self, value: Any) -> Any:
         """An expression or a matrix in the names of the program, written out."""

@@ -34,6 +34,7 @@ LARGEST = 64_000
 LONGEST = 2000
 """Characters in a line: the time to read one can grow with the square of its length."""
 JOINTS = 16
+ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
 CHAIN = ("Reaching", "polar", "remainder", "slide", "turn", "turned", "two_links", "zyz")
@@ -168,6 +169,8 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
     header = _header(numbered[0][1], f"{path.name}, line {numbered[0][0]}")
     if len(numbered) == 1:
         raise TableError(f"{path.name}: the table has no rows, only the names of its columns")
+    if len(numbered) > ROWS + 1:
+        raise TableError(f"{path.name}: the table has more than {ROWS} rows")
     for i, cells in numbered[1:]:
         where = f"{path.name}, line {i}"
         if len(cells) != len(header):
@@ -182,7 +185,7 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
         if found := _joint(cell.get("joint", ""), entries, where, table.parameters):
             _add_joint(table, *found, where)
         else:
-            table.notes.append(f"{where}: no joint, so the row is a fixed transform")
+            table.notes.append(f"{where}: the row has no joint, so it is a fixed transform")
         table.rows.append(tuple(entries[c] for c in COLUMNS))
         places.append(where)
     if not table.joints:
@@ -266,7 +269,7 @@ def _check_angle(angle: Any, text: str, where: str) -> None:
     if near:
         raise TableError(
             f"{where}: angles are in radians and exact, as multiples of pi: write "
-            f"{source(angle - value + near[0])} instead of {shown_name(text)}"
+            f"{source(angle - value + near[0])} instead of {text}"
         )
 
 
@@ -399,7 +402,12 @@ def _parameter(name: str, entry: Any, where: str) -> dict[str, str]:
             )
     text = {key: given[key] for key in ("unit", "meaning") if key in given}
     if "value" in given:
-        text["value"] = _plain(given["value"])
+        value = given["value"]
+        if not isinstance(value, str | int) or isinstance(value, bool):
+            raise TableError(
+                f"{where}: the value of {shown_name(name)} is {shown(value)}; it must be a number"
+            )
+        text["value"] = _plain(value)
         _check_value(name, text["value"], where)
     return text
 

@@ -24,6 +24,7 @@ from closedform.frames import (
     simplest,
     twist_matrix,
 )
+from closedform.functions import reject_text
 from closedform.links import Group, Link, Motion, Row, groups_of
 
 
@@ -345,6 +346,7 @@ def from_screws(
 
 def _constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
     """Exact entries in which only parameters stand."""
+    reject_text(entries, where)
     exact = sp.Matrix(entries)
     exact = sp.Matrix(*exact.shape, [_exact(e, where) for e in exact])
     joints = {j.symbol for j in d.joints}
@@ -480,8 +482,7 @@ def _exact(value: Any, where: str) -> sp.Expr:
         raise TypeError(
             f"{where}: {value} is a float; write an integer or sympy.Rational('{value}')"
         )
-    if isinstance(value, str):
-        raise TypeError(f"{where}: {value!r} is a text; write the expression without quotes")
+    reject_text(value, where)
     exact = sp.sympify(value, strict=True)
     if exact.atoms(sp.Float):
         raise TypeError(

@@ -37,6 +37,15 @@ def real(name: str, **assumptions: bool) -> sp.Symbol:
     return sp.Symbol(name, **({"real": True} | assumptions))
 
 
+def reject_text(value: Any, where: str) -> None:
+    """Raise TypeError where a text stands for an expression: SymPy would run it as Python."""
+    if isinstance(value, str):
+        raise TypeError(f"{where}: {value!r} is a text; write the expression without quotes")
+    if isinstance(value, list | tuple):
+        for part in value:
+            reject_text(part, where)
+
+
 def reject_floats(expr: sp.Basic, where: str) -> None:
     """Raise ``TypeError`` if a floating-point number stands in ``expr``."""
     floats = sorted(expr.atoms(sp.Float), key=str)
@@ -120,6 +129,7 @@ def array(name: str, value: Any) -> Array:
 
     Column matrices are vectors: a shape of ``(n, 1)`` becomes ``(n,)``.
     """
+    reject_text(value, name)
     if isinstance(value, sp.MatrixBase):
         shape: tuple[int, ...] = value.shape if value.shape[1] != 1 else (value.shape[0],)
         entries = list(value)

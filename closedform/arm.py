@@ -370,7 +370,8 @@ def _check_unit(w: sp.Matrix, where: str) -> None:
         remedy = f"write ({', '.join(map(str, w / length))})"
     else:
         remedy = "numbers are exact: write sqrt(2)/2, not 0.7071"
-    raise RowError(f"{where}: the direction ({text}) has no unit length; {remedy}")
+    size = str(length) if w.free_symbols else f"{float(length):.6g}"
+    raise RowError(f"{where}: the direction ({text}) has the length {size}, not 1; {remedy}")
 
 
 def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
@@ -382,8 +383,8 @@ def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
     R = T[:3, :3]
     if sp.simplify(R.T * R) != sp.eye(3):
         raise RowError(
-            f"{where}: its rotation {R.tolist()} is none: the rows must be unit vectors at right "
-            f"angles to each other, written exactly (sqrt(3)/2, not 0.866)"
+            f"{where}: its rotation {R.tolist()} is not one: {_not_orthonormal(R)}; the rows must "
+            f"be unit vectors at right angles to each other, written exactly (sqrt(3)/2, not 0.866)"
         )
     if sp.simplify(R.det()) != 1:
         raise RowError(
@@ -391,6 +392,20 @@ def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
             f"product of the first two, x, y and z of the tool"
         )
     return T
+
+
+def _not_orthonormal(R: sp.Matrix) -> str:
+    """The row that is not a unit vector, or the rows that are not at right angles."""
+    for i in range(3):
+        for j in range(i + 1):
+            value = sp.simplify(R.row(i).dot(R.row(j)))
+            if value != (1 if i == j else 0):
+                size = sp.sqrt(value) if i == j else value
+                shown = size if size.free_symbols else f"{float(size):.6g}"
+                if i == j:
+                    return f"row {i + 1} has the length {shown}"
+                return f"the scalar product of the rows {j + 1} and {i + 1} is {shown}"
+    return "its columns are not"
 
 
 def _frame_along(w: sp.Matrix) -> sp.Matrix:

@@ -84,7 +84,7 @@ def test_a_row_that_makes_no_sense(row, message: str) -> None:
 def test_a_screw_that_makes_no_sense() -> None:
     d = derivation()
     for axis, message in (
-        ((THETA1, (0, 0, 2), (0, 0, 0)), r"axis 1: the direction \(0, 0, 2\) has no unit length"),
+        ((THETA1, (0, 0, 2), (0, 0, 0)), r"axis 1: the direction \(0, 0, 2\) has the length 2, not 1"),
         ((THETA1, (0, 0), (0, 0, 0)), "a direction and a point of 3 coordinates"),
         ((real("q9"), (0, 0, 1), (0, 0, 0)), "q9 is not a joint"),
     ):

@@ -102,7 +102,7 @@ def axis(**given: str) -> str:
         (AXIS + axis(), "axis 2: two joints have the name t1"),
         (axis(kind='"helical"'), "the kind is revolute or prismatic, not helical"),
         (axis(pitch="3"), "axis 1: the key pitch is unknown"),
-        (axis(direction="[0, 1, 1]"), "no unit length; write (0, sqrt(2)/2, sqrt(2)/2)"),
+        (axis(direction="[0, 1, 1]"), "the length 1.41421, not 1; write (0, sqrt(2)/2, sqrt(2)/2)"),
         (axis(direction="[0, 0.7, 0.7]"), "write sqrt(2)/2, not 0.7071"),
         (axis(direction='["u", 0, 0]'), "write numbers, or the cosine and the sine of an angle"),
         (axis(direction="[0, 0, 0]"), "the direction (0, 0, 0) is zero"),
@@ -117,7 +117,14 @@ def axis(**given: str) -> str:
         (AXIS + '[home]\nposition = ["t1", 0, 0]\n', "at home all joints are zero"),
         (axis() + "rotation = 3\n", "rotation has 3 rows of 3 entries, not 3"),
         (axis() + "rotation = [[1, 0], [0, 1, 0], [0, 0, 1]]\n", "rotation, row 1 needs 3"),
-        (axis() + "rotation = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]\n", "is none: the rows must be"),
+        (
+            axis() + "rotation = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]\n",
+            "is not one: row 1 has the length 2;",
+        ),
+        (
+            axis() + "rotation = [[1, 0, 0], [0.6, 0.8, 0], [0, 0, 1]]\n",
+            "the scalar product of the rows 1 and 2 is 0.6;",
+        ),
         (axis() + "rotation = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]\n", "is mirrored"),
     ],
 )

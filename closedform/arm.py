@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 
@@ -21,8 +21,11 @@ from closedform.frames import (
     merge_angles,
     reduce_circle,
     rotation,
+    simplest,
     twist_matrix,
 )
+from closedform.functions import reject_text
+from closedform.links import Group, Link, Motion, Row, groups_of
 
 
 class RowError(ValueError):
@@ -206,59 +209,92 @@ def from_dh(
 ) -> Serial:
     """The chain of a Denavit-Hartenberg table with rows ``(a, alpha, d, theta)``.
 
-    The variable of a row is the joint that stands in it: in ``theta`` for a revolute joint, in
-    ``d`` for a prismatic one.  ``modified`` rows are Craig's (proximal).  ``tool`` is the pose of
-    the tool in the last frame.
+    The variable of a row is the joint that stands in it, with either sign: in ``theta`` for a
+    revolute joint, in ``d`` for a prismatic one.  A row without a joint is a fixed transform, such
+    as a base or a tool.  ``modified`` rows are Craig's (proximal).  ``tool`` is the pose of the
+    tool in the last frame.
     """
+    moves, lead = [], sp.eye(4)
+    links: list[Link] = []
     for i, row in enumerate(rows, 1):
-        if len(row) != 4:
-            raise RowError(
-                f"{d.name}: row {i} of the Denavit-Hartenberg table has {len(row)} entries "
-                f"({', '.join(map(str, row))}); it needs 4: a, alpha, d, theta"
-            )
-    known = {p.symbol for p in d.parameters} | {j.symbol for j in d.joints}
-    joints = {j.symbol: j.kind for j in d.joints}
-    motions: list[tuple[sp.Symbol, str]] = []
-    for i, row in enumerate(rows, 1):
-        entries = [_exact(e, f"{d.name}: row {i} of the Denavit-Hartenberg table") for e in row]
-        unknown = sorted(map(str, {s for e in entries for s in e.free_symbols} - known))
-        if unknown:
-            raise RowError(
-                f"{d.name}: row {i} of the Denavit-Hartenberg table: the symbol {unknown[0]} is "
-                f"neither a parameter nor a joint; declare it with d.parameter or d.joint"
-            )
-        here = sorted({s for e in entries for s in e.free_symbols if s in joints}, key=str)
-        if len(here) != 1:
-            raise RowError(
-                f"{d.name}: row {i} of the Denavit-Hartenberg table must hold exactly one joint, "
-                f"not {', '.join(map(str, here)) or 'none'}"
-            )
-        column, kind = (3, "theta") if joints[here[0]] == "revolute" else (2, "d")
-        place = entries.pop(column)
-        if not place.has(here[0]):
-            raise RowError(
-                f"{d.name}: row {i} of the Denavit-Hartenberg table: the {joints[here[0]]} joint "
-                f"{here[0]} must stand in the column {kind}"
-            )
-        if place.diff(here[0]) != 1 or any(e.has(here[0]) for e in entries):
-            raise RowError(
-                f"{d.name}: row {i} of the Denavit-Hartenberg table: the joint {here[0]} must "
-                f"stand in the column {kind} alone, as it is or with a constant added to it, not "
-                f"as {place if place.diff(here[0]) != 1 else tuple(row)}"
-            )
-        motions.append((here[0], joints[here[0]]))
-    exact = [tuple(map(sp.sympify, row)) for row in rows]
-    moves = [
-        denavit_hartenberg(a, alpha, d_, theta, modified=modified) for a, alpha, d_, theta in exact
-    ]
-    lead = sp.eye(4)
-    if modified:  # cut before each rotation about z instead of before each one about x
-        lead = denavit_hartenberg(exact[0][0], exact[0][1], sp.S.Zero, sp.S.Zero)
-        following = [*(row[:2] for row in exact[1:]), (sp.S.Zero, sp.S.Zero)]
-        exact = [(*x, *row[2:]) for row, x in zip(exact, following, strict=True)]
+        where = f"{d.name}: row {i} of the Denavit-Hartenberg table"
+        a, alpha, offset, theta = entries = _dh_row(d, row, where)
+        moves.append(denavit_hartenberg(a, alpha, offset, theta, modified=modified))
+        motion = _motion(d, entries, where)
+        step = homogeneous(rotation("x", alpha), (a, 0, 0))
+        if modified:
+            lead = _followed(lead, links, step)
+        if motion:
+            links.append(Link(motion, theta, offset, sp.eye(4)))
+        else:
+            fixed = denavit_hartenberg(sp.S.Zero, sp.S.Zero, offset, theta)
+            lead = _followed(lead, links, fixed)
+        if not modified:
+            lead = _followed(lead, links, step)
+    if not links:
+        raise RowError(f"{d.name}: no row of the Denavit-Hartenberg table holds a joint")
     last = sp.eye(4) if tool is None else _rigid(d, tool, "the tool")
     rest = () if tool is None else (last,)
-    return _assembled(motions, _groups(exact, motions), lead, last, (*moves, *rest))
+    turned = sp.eye(3)
+    if lead[:2, 2].is_zero_matrix:  # the base is turned about the first axis, as the joint turns
+        turned, lead = lead[:3, :3], homogeneous(sp.eye(3), tuple(lead[:3, 3]))
+    motions = [link.motion for link in links]
+    return _assembled(motions, groups_of(links, turned), lead, last, (*moves, *rest))
+
+
+def _dh_row(d: Derivation, row: Sequence[Any], where: str) -> list[sp.Expr]:
+    """The exact entries of a row, in which only parameters and joints stand."""
+    if len(row) != 4:
+        raise RowError(
+            f"{where} has {len(row)} entries ({', '.join(map(str, row))}); it needs 4: a, alpha, "
+            f"d, theta"
+        )
+    entries = [_exact(e, where) for e in row]
+    known = {p.symbol for p in d.parameters} | {j.symbol for j in d.joints}
+    if unknown := sorted(map(str, {s for e in entries for s in e.free_symbols} - known)):
+        raise RowError(
+            f"{where}: the symbol {unknown[0]} is neither a parameter nor a joint; declare it "
+            f"with d.parameter or d.joint"
+        )
+    return entries
+
+
+def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | None:
+    """What the joint of a row moves; None where it holds no joint."""
+    joints = {j.symbol: j.kind for j in d.joints}
+    held = sorted({s for e in entries for s in e.free_symbols if s in joints}, key=str)
+    if not held:
+        return None
+    if len(held) > 1:
+        raise RowError(f"{where} must hold at most one joint, not {', '.join(map(str, held))}")
+    (joint,) = held
+    column, name = (3, "theta") if joints[joint] == "revolute" else (2, "d")
+    place = entries[column]
+    if not place.has(joint):
+        raise RowError(
+            f"{where}: the {joints[joint]} joint {joint} must stand in the column {name}"
+        )
+    sense = place.diff(joint)
+    if sense not in (1, -1) or any(
+        e.has(joint) for e in (*entries[:column], *entries[column + 1 :])
+    ):
+        raise RowError(
+            f"{where}: the joint {joint} must stand in the column {name} alone, with either sign, "
+            f"as it is or with a constant added to it, not as "
+            f"{place if sense not in (1, -1) else tuple(entries)}"
+        )
+    return Motion(joint, joints[joint] == "prismatic", int(sense))
+
+
+def _followed(lead: sp.Matrix, links: list[Link], step: sp.Matrix) -> sp.Matrix:
+    """The constant motion before the first joint; ``step`` goes there, or to the last joint."""
+    before = links[-1].after if links else lead
+    plain = sp.eye(4) in (before, step)
+    after = before * step if plain else simplest((before * step).applyfunc(sp.expand))
+    if not links:
+        return after
+    links[-1] = links[-1]._replace(after=after)
+    return lead
 
 
 def from_screws(
@@ -272,7 +308,7 @@ def from_screws(
     if not axes:
         raise RowError(f"{d.name}: there are no axes")
     kinds = {j.symbol: j.kind for j in d.joints}
-    motions: list[tuple[sp.Symbol, str]] = []
+    motions: list[Motion] = []
     directions, points, moves = [], [], []
     for i, (joint, direction, point) in enumerate(axes, 1):
         where = f"{d.name}: axis {i}"
@@ -285,7 +321,7 @@ def from_screws(
         _check_unit(w, where)
         revolute = kinds[joint] == "revolute"
         twist = sp.Matrix([*at.cross(w), *w]) if revolute else sp.Matrix([*w, 0, 0, 0])
-        motions.append((joint, kinds[joint]))
+        motions.append(Motion(joint, not revolute))
         directions.append(w)
         points.append(at)
         moves.append(exponential(twist, joint))
@@ -294,11 +330,10 @@ def from_screws(
     lead = homogeneous(frame, tuple(points[0]))
     groups: list[Group] = []
     current: list[Row] = []
-    for i, (joint, kind) in enumerate(motions):
+    for i, (joint, slides, _) in enumerate(motions):
         sign = 1 if frame[:, 2] == directions[i] else -1
         last = i == len(motions) - 1
         step = frame.T * ((home[:3, 3] if last else points[i + 1]) - points[i])
-        slides = kind == "prismatic"
         turn = sp.S.Zero if slides else sign * joint
         shift = tuple(step + sp.Matrix([0, 0, sign * joint if slides else 0]))
         current.append(Row(sign, turn, shift, slides))
@@ -311,6 +346,7 @@ def from_screws(
 
 def _constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
     """Exact entries in which only parameters stand."""
+    reject_text(entries, where)
     exact = sp.Matrix(entries)
     exact = sp.Matrix(*exact.shape, [_exact(e, where) for e in exact])
     joints = {j.symbol for j in d.joints}
@@ -334,7 +370,8 @@ def _check_unit(w: sp.Matrix, where: str) -> None:
         remedy = f"write ({', '.join(map(str, w / length))})"
     else:
         remedy = "numbers are exact: write sqrt(2)/2, not 0.7071"
-    raise RowError(f"{where}: the direction ({text}) has no unit length; {remedy}")
+    size = str(length) if w.free_symbols else f"{float(length):.6g}"
+    raise RowError(f"{where}: the direction ({text}) has the length {size}, not 1; {remedy}")
 
 
 def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
@@ -346,8 +383,8 @@ def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
     R = T[:3, :3]
     if sp.simplify(R.T * R) != sp.eye(3):
         raise RowError(
-            f"{where}: its rotation {R.tolist()} is none: the rows must be unit vectors at right "
-            f"angles to each other, written exactly (sqrt(3)/2, not 0.866)"
+            f"{where}: its rotation {R.tolist()} is not one: {_not_orthonormal(R)}; the rows must "
+            f"be unit vectors at right angles to each other, written exactly (sqrt(3)/2, not 0.866)"
         )
     if sp.simplify(R.det()) != 1:
         raise RowError(
@@ -355,6 +392,20 @@ def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
             f"product of the first two, x, y and z of the tool"
         )
     return T
+
+
+def _not_orthonormal(R: sp.Matrix) -> str:
+    """The row that is not a unit vector, or the rows that are not at right angles."""
+    for i in range(3):
+        for j in range(i + 1):
+            value = sp.simplify(R.row(i).dot(R.row(j)))
+            if value != (1 if i == j else 0):
+                size = sp.sqrt(value) if i == j else value
+                shown = size if size.free_symbols else f"{float(size):.6g}"
+                if i == j:
+                    return f"row {i + 1} has the length {shown}"
+                return f"the scalar product of the rows {j + 1} and {i + 1} is {shown}"
+    return "its columns are not"
 
 
 def _frame_along(w: sp.Matrix) -> sp.Matrix:
@@ -367,7 +418,7 @@ def _frame_along(w: sp.Matrix) -> sp.Matrix:
 
 
 def _assembled(
-    motions: Sequence[tuple[sp.Symbol, str]],
+    motions: Sequence[Motion],
     groups: Sequence[Group],
     lead: sp.Matrix,
     last: sp.Matrix,
@@ -385,7 +436,7 @@ def _assembled(
         key=sp.count_ops,
     )
     return Serial(
-        tuple(joint for joint, _ in motions),
+        tuple(motion.joint for motion in motions),
         reduce_circle((pose * last).applyfunc(sp.expand)),
         sp.Matrix.hstack(*(_to_base(*groups[k].twist(j), groups[:k], lead) for k, j in places)),
         sp.Matrix.hstack(*(_to_frame(k, j, groups, len(groups), last) for k, j in places)),
@@ -396,76 +447,6 @@ def _assembled(
         lead,
         last,
     )
-
-
-class Row(NamedTuple):
-    """The sign of an axis along z, its turn, the shift to the next axis, and whether it slides."""
-
-    sign: int
-    turn: sp.Expr
-    shift: tuple[sp.Expr, ...]
-    slides: bool
-
-
-@dataclass(frozen=True)
-class Group:
-    """Consecutive joints with parallel axes, and the constant rotation that ends them.
-
-    What turns in a plane adds up, so no product of two sines of one group ever occurs.
-    """
-
-    rows: tuple[Row, ...]
-    end: sp.Matrix
-
-    def angle(self, start: int, stop: int | None = None) -> sp.Expr:
-        return sp.Add(*(row.turn for row in self.rows[start:stop]))
-
-    def span(self, start: int, stop: int | None = None, turned: sp.Expr = sp.S.Zero) -> sp.Matrix:
-        """From the axis ``start`` to the axis ``stop``, seen from a frame that is turned."""
-        total = sp.zeros(3, 1)
-        for i, row in list(enumerate(self.rows))[start:stop]:
-            total += rotation("z", self.angle(start, i + 1) - turned) * sp.Matrix(row.shift)
-        return total
-
-    @property
-    def rotation(self) -> sp.Matrix:
-        return rotation("z", self.angle(0)) * self.end
-
-    def transform(self) -> sp.Matrix:
-        return homogeneous(self.rotation, tuple(self.span(0)))
-
-    def twist(self, j: int) -> tuple[sp.Matrix, sp.Matrix]:
-        """The axis ``j`` in the frame where the group starts: angular and linear part."""
-        axis = sp.Matrix([0, 0, self.rows[j].sign])
-        if self.rows[j].slides:
-            return sp.zeros(3, 1), axis
-        return axis, self.span(0, j).cross(axis)
-
-    def twist_at_end(self, j: int) -> tuple[sp.Matrix, sp.Matrix]:
-        """The axis ``j`` in the frame where the group ends."""
-        axis, back = sp.Matrix([0, 0, self.rows[j].sign]), self.end.T
-        if self.rows[j].slides:
-            return sp.zeros(3, 1), back * axis
-        return back * axis, back * axis.cross(self.span(j, None, self.angle(j)))
-
-
-def _groups(
-    rows: Sequence[tuple[sp.Expr, ...]], motions: Sequence[tuple[sp.Symbol, str]]
-) -> list[Group]:
-    """The rows of a distal table by parallel axes; a half turn about x mirrors what follows."""
-    groups: list[Group] = []
-    current: list[Row] = []
-    sign = 1
-    for i, ((a, alpha, offset, theta), (_, kind)) in enumerate(zip(rows, motions, strict=True)):
-        shift = (a, sp.S.Zero, sign * offset)
-        current.append(Row(sign, sign * theta, shift, kind == "prismatic"))
-        flipped = alpha in (sp.pi, -sp.pi)
-        sign = -sign if flipped else sign
-        if i == len(rows) - 1 or not (flipped or alpha == 0):
-            total = (sp.S.Zero if flipped else alpha) + (sp.pi if sign < 0 else 0)
-            groups.append(Group(tuple(current), rotation("x", total)))
-            current, sign = [], 1
-    return groups
 
 
 def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[Group], lead: sp.Matrix) -> sp.Matrix:
@@ -516,7 +497,8 @@ def _exact(value: Any, where: str) -> sp.Expr:
         raise TypeError(
             f"{where}: {value} is a float; write an integer or sympy.Rational('{value}')"
         )
-    exact = sp.sympify(value)
+    reject_text(value, where)
+    exact = sp.sympify(value, strict=True)
     if exact.atoms(sp.Float):
         raise TypeError(
             f"{where}: the float {sorted(exact.atoms(sp.Float), key=str)[0]} stands in {exact}; "

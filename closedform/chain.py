@@ -91,7 +91,7 @@ class Chain:
 
     def let(self, name: str, value: Any) -> sp.Expr:
         """Name a coefficient; what is a symbol or a number already keeps its name."""
-        value = sp.sympify(value)
+        value = sp.sympify(value, strict=True)
         if value.is_Symbol or value.is_number:
             return value
         return self.program.let(name, value)
@@ -196,17 +196,30 @@ class Chain:
             if isinstance(meaning, sp.sin | sp.cos):
                 pairs.setdefault(meaning.args[0], {})[type(meaning)] = name
         result = Pair(sp.S.Zero, sp.S.One)
+        given = {*self.targets, *(p.symbol for p in self.d.parameters)}
         for term, factor in sp.expand(total).as_coefficients_dict().items():
             known = pairs.get(term, {})
             s, c = known.get(sp.sin), known.get(sp.cos)
             if not term.free_symbols:
                 s, c, factor = sp.sin(factor * term), sp.cos(factor * term), sp.S.One
-            elif term in self.targets:
+            elif term in given:
                 s, c = sp.sin(term), sp.cos(term)
             if s is None or c is None or abs(factor) != 1:
                 return None
             result += Pair(factor * s, c)
         return result
+
+    def by_angles(self, total: sp.Expr) -> sp.Expr:
+        """A sum in solved unknowns: a joint by the solved auxiliary angle that holds it alone."""
+        found = {}
+        for symbol, value in self.defined.items():
+            held = [j for j in self.joints if value.has(j)]
+            if symbol in self.values and len(held) == 1 and held[0] not in self.values:
+                (joint,) = held
+                sense = value.diff(joint)
+                if abs(sense) == 1:
+                    found[joint] = sense * (symbol - value.xreplace({joint: sp.S.Zero}))
+        return sp.expand(total.xreplace(found))
 
     # The end
 

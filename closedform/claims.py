@@ -142,7 +142,7 @@ class Decimal(Check):
 
     def judge(self) -> Verdict:
         digits = len(self.printed.partition(".")[2])
-        scaled = sp.sympify(self.exact) * 10**digits
+        scaled = sp.sympify(self.exact, strict=True) * 10**digits
         units = scaled - sp.Rational(self.printed) * 10**digits
         value = evaluate([self.exact], {})[0].str(digits + 6, radius=False)
         exact = f"the exact value is {value}{self._unit}"
@@ -210,7 +210,8 @@ class Count(Check):
         return Verdict(REFUTED, text, "infinitely many" if found is None else str(found))
 
     def _found(self) -> int | None:
-        equations = [e for e in map(sp.sympify, self.equations) if e != 0]
+        equations = [sp.sympify(e, strict=True) for e in self.equations]
+        equations = [e for e in equations if e != 0]
         try:
             counted = count_solutions(
                 equations, self.unknowns, target_substitution=dict(self.given or {})
@@ -333,7 +334,7 @@ class Undecidable(Check):
 
 def _entries(value: Exact) -> list[Expr]:
     many = isinstance(value, sp.MatrixBase | Sequence)
-    entries = [sp.sympify(e) for e in (value if many else [value])]
+    entries = [sp.sympify(e, strict=True) for e in (value if many else [value])]
     for e in entries:
         reject_floats(e, "a claim")
     return entries
@@ -373,7 +374,7 @@ def _values(entries: Sequence[Expr]) -> str:
 
 
 def _degrees(angle: Expr) -> str:
-    degrees = sp.sympify(angle) * 180 / sp.pi
+    degrees = sp.sympify(angle, strict=True) * 180 / sp.pi
     if degrees.is_Rational:
         return rf"{sp.latex(degrees)}^\circ"
     return rf"{_fixed(_nearest(degrees * 10**4), 4)}^\circ"

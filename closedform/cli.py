@@ -262,15 +262,19 @@ def new_command(options: argparse.Namespace) -> None:
     if options.modified and kind != "dh":
         raise CommandError("--modified goes with --from dh: axes have no convention", 2)
     _require_extra()
-    from closedform.new import new
+    from closedform.new import check_name, new
 
-    target = options.output / f"{options.name}.py"
-    if target.exists():
-        raise CommandError(f"{target} exists already")
+    notes: list[str] = []
     try:
-        text = new(options.name, kind, path, modified=options.modified)
+        check_name(options.name)
+        target = options.output / f"{options.name}.py"
+        if os.path.lexists(target):
+            raise CommandError(f"{target} exists already")
+        text = new(options.name, kind, path, modified=options.modified, report=notes.append)
     except (ValueError, TypeError) as error:
         raise CommandError(str(error)) from error
+    for note in notes:
+        print(f"closedform: note: {note}", file=sys.stderr)
     _write(options.output, {Path(target.name): text})
     print(f"{target}; now: closedform derive {target} -o out")
 

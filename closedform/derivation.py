@@ -304,9 +304,9 @@ class Derivation:
         self._check_new(name)
         check_text(f"{self.name}: {name}", meaning, unit, source)
         symbol = real(name, positive=True) if nonnegative else real(name)
-        exact = sp.sympify(value)
+        exact = sp.nan if isinstance(value, str) else sp.sympify(value, strict=True)
         if not exact.is_Rational:
-            hint = f": write sympy.Rational('{value}')" if isinstance(value, float) else ""
+            hint = f": write sympy.Rational('{value}')" if isinstance(value, float | str) else ""
             raise TypeError(f"{self.name}: the value of {name} must be an exact rational{hint}")
         self.parameters.append(Parameter(symbol, unit, exact, meaning, source, nonnegative))
         return symbol

@@ -37,6 +37,15 @@ def real(name: str, **assumptions: bool) -> sp.Symbol:
     return sp.Symbol(name, **({"real": True} | assumptions))
 
 
+def reject_text(value: Any, where: str) -> None:
+    """Raise TypeError where a text stands for an expression: SymPy would run it as Python."""
+    if isinstance(value, str):
+        raise TypeError(f"{where}: {value!r} is a text; write the expression without quotes")
+    if isinstance(value, list | tuple):
+        for part in value:
+            reject_text(part, where)
+
+
 def reject_floats(expr: sp.Basic, where: str) -> None:
     """Raise ``TypeError`` if a floating-point number stands in ``expr``."""
     floats = sorted(expr.atoms(sp.Float), key=str)
@@ -120,6 +129,7 @@ def array(name: str, value: Any) -> Array:
 
     Column matrices are vectors: a shape of ``(n, 1)`` becomes ``(n,)``.
     """
+    reject_text(value, name)
     if isinstance(value, sp.MatrixBase):
         shape: tuple[int, ...] = value.shape if value.shape[1] != 1 else (value.shape[0],)
         entries = list(value)
@@ -128,7 +138,7 @@ def array(name: str, value: Any) -> Array:
     else:
         nested = sp.ImmutableDenseNDimArray(value)
         shape, entries = tuple(nested.shape), list(sp.flatten(nested.tolist()))
-    exact = tuple(sp.sympify(e) for e in entries)
+    exact = tuple(sp.sympify(e, strict=True) for e in entries)
     for entry in exact:
         reject_floats(entry, name)
     return Array(name, shape, exact)
@@ -260,7 +270,9 @@ class Function:
         bounds = []
         for statement in self.body:
             if isinstance(statement, Vanishes):
-                known[statement.symbol] = sp.sympify((flags or {}).get(statement.symbol, False))
+                known[statement.symbol] = sp.sympify(
+                    (flags or {}).get(statement.symbol, False), strict=True
+                )
             elif isinstance(statement, (Let, Bound)) and statement.symbol in needed:
                 value = known[statement.symbol] = substitute(statement.value, known)
                 sum_of_squares = value.is_Add and statement.symbol.is_nonnegative
@@ -309,7 +321,7 @@ class Program:
 
     def let(self, name: str, value: Number, **assumptions: bool) -> sp.Symbol:
         symbol = real(name, **assumptions)
-        value = sp.sympify(value)
+        value = sp.sympify(value, strict=True)
         reject_floats(value, name)
         self.body.append(Let(symbol, value))
         return symbol
@@ -318,7 +330,7 @@ class Program:
         self, name: str, value: sp.Expr, scale: sp.Expr, meaning: str, *, positive: bool = False
     ) -> sp.Symbol:
         symbol = real(name, nonnegative=True)
-        reject_floats(sp.sympify(value), name)
+        reject_floats(sp.sympify(value, strict=True), name)
         self.body.append(Bound(symbol, value, scale, meaning, positive))
         return symbol
 
@@ -334,11 +346,13 @@ class Program:
         free: Sequence[sp.Symbol] = (),
     ) -> sp.Symbol:
         symbol = sp.Symbol(name)
-        self.body.append(Vanishes(symbol, value, sp.sympify(scale), meaning, tuple(free)))
+        self.body.append(
+            Vanishes(symbol, value, sp.sympify(scale, strict=True), meaning, tuple(free))
+        )
         return symbol
 
     def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
-        self.body.append(Require(tuple(values), sp.sympify(scale), meaning))
+        self.body.append(Require(tuple(values), sp.sympify(scale, strict=True), meaning))
 
     def explicit(self, value: Any) -> Any:
         """An expression or a matrix in the names of the program, written out."""

@@ -220,6 +220,7 @@ def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
 
     It is read from the sine and the cosine of the sum, which needs no reduction.
     """
+    total = chain.by_angles(total)
     pair = chain.pair_of(total)
     if pair is None:
         raise ShapeError(

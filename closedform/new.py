@@ -6,18 +6,15 @@ structure of the arm is known, it holds the proposed inverse; else a place for i
 
 from __future__ import annotations
 
-import json
 import re
 import sys
-from collections.abc import Mapping, Sequence
-from fractions import Fraction
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import sympy as sp
-
 from closedform.arm import RowError, Serial, from_dh, from_screws
 from closedform.derivation import Derivation, Paper
+from closedform.formulas import number
 from closedform.names import check_robot, check_text
 from closedform.propose import NoChainError, propose, source
 from closedform.tables import (
@@ -34,23 +31,50 @@ IMPORTS = frozenset({"numpy", "sympy", "flint", "jinja2"})
 """Modules that a script beside them, of the same name, would hide."""
 
 
-def new(name: str, kind: str, path: Path, *, modified: bool = False) -> str:
-    """The source of a derivation called ``name``, from a table of the given kind.
-
-    ``kind`` is ``"dh"`` (then ``modified`` rows are Craig's) or ``"screws"``.  Raises
-    ``ValueError`` where the name or the table cannot be used, with the place and the remedy.
-    """
+def check_name(name: str) -> None:
+    """Raise ``ValueError`` unless a script may have this name."""
     check_robot(name)
     if name in IMPORTS or name in sys.stdlib_module_names:
         raise ValueError(f"{name} is a module of Python; choose another name, such as {name}_arm")
+
+
+def new(
+    name: str,
+    kind: str,
+    path: Path,
+    *,
+    modified: bool = False,
+    report: Callable[[str], None] = lambda note: None,
+) -> str:
+    """The source of a derivation called ``name``, from a table of the given kind.
+
+    ``kind`` is ``"dh"`` (then ``modified`` rows are Craig's) or ``"screws"``.  ``report`` is called
+    with each note on what was read otherwise than it is written.  Raises ``ValueError`` where the
+    name or the table cannot be used, with the place and the remedy.
+    """
+    check_name(name)
     table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
     check_names(table, path.name)
     for symbol, given in table.parameters.items():
         check_text(f"{path.name}: {symbol}", given.get("meaning", ""), given.get("unit", ""))
     try:
-        return skeleton(name, table, path.name)
+        script = skeleton(name, table, path.name)
     except RowError as error:
         raise TableError(f"{path.name}: {str(error).removeprefix(f'{name}: ')}") from error
+    for note in table.notes:
+        report(note)
+    return script
+
+
+def _literal(text: str) -> str:
+    """A text as a literal of Python, in double quotes where it holds none."""
+    return repr(text) if '"' in text else f'"{repr(chr(39) + text)[2:]}'
+
+
+def _comment(text: str) -> str:
+    """A text as one line of comment."""
+    line = " ".join(text.split())
+    return "# " + "".join(c if c.isprintable() else "?" for c in line)
 
 
 def skeleton(name: str, table: Table, origin: str) -> str:
@@ -58,7 +82,9 @@ def skeleton(name: str, table: Table, origin: str) -> str:
     origin = re.sub(r"[^\w .()-]", "_", origin)
     d = Derivation(name, name, Paper("own", "own", ()), "")
     negative = [
-        n for n, given in table.parameters.items() if given.get("value", "1").startswith("-")
+        n
+        for n, given in table.parameters.items()
+        if given.get("value", "1").startswith("-") or given.get("unit") == "rad"
     ]
     for symbol in table.parameters:
         d.parameter(symbol, value=1, unit="", meaning="", nonnegative=symbol not in negative)
@@ -79,12 +105,13 @@ def skeleton(name: str, table: Table, origin: str) -> str:
         '    "Say here how the mechanism is built, where its zero is and which way it turns.",',
         ")",
     ]
+    lines += [_comment(f"{note}.") for note in table.notes]
     for symbol, given in table.parameters.items():
-        value = Fraction(given.get("value") or "1")
+        value = number(given.get("value") or "1")
         exact = f"{value.numerator}" if value.denominator == 1 else f'Rational("{value}")'
         sign = ", nonnegative=False" if symbol in negative else ""
         unit, meaning = (
-            json.dumps(given.get(key) or default, ensure_ascii=False)
+            _literal(given.get(key) or default)
             for key, default in (("unit", "m"), ("meaning", "say what it measures"))
         )
         lines.append(
@@ -104,7 +131,6 @@ def _arm(d: Derivation, table: Table, known: Mapping[str, Any]) -> Serial:
     """The chain of the table, with the symbols of the derivation."""
 
     def own(e: Any) -> Any:
-        e = sp.sympify(e)
         return e.xreplace({s: known[s.name] for s in e.free_symbols})
 
     if table.rows:
@@ -140,16 +166,15 @@ def _inverse_lines(arm: Serial) -> list[str]:
     try:
         found = propose(arm)
     except NoChainError as error:
-        reason = str(error).replace("\n", " ")
         return [
-            f"# Inverse: {reason}.",
+            _comment(f"Inverse: {error}."),
             "# Put it here, lemma by lemma; docs/adding-a-mechanism.md says how:",
             f"# {chain}",
             "# ik.solve(turn, theta1, a, b, c, {+1: 'left', -1: 'right'})",
             '# ik.finish("All solutions.")',
         ]
     return [
-        f"# Inverse, as proposed for: {found.structure}.",
+        _comment(f"Inverse, as proposed for: {found.structure}."),
         "# Edit it as you like, and name the branches; the proof decides.",
         chain,
         *found.lines,

@@ -13,6 +13,7 @@ the engineer accepts or edits them, and the proof decides.  Known are
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -28,6 +29,8 @@ from closedform.pairs import Pair
 Z = sp.Matrix([0, 0, 1])
 NAMES = ("Abs", "Matrix", "Rational", "atan", "atan2", "cos", "pi", "sin", "sqrt")
 """What the lines use of SymPy."""
+NAME = re.compile(r"[A-Za-z_]\w*(\[\d\]|\.[cs])?", re.ASCII)
+"""Of a symbol, of an entry of a vector, or of the sine or the cosine of a pair."""
 
 
 class NoChainError(ValueError):
@@ -47,8 +50,13 @@ class Proposal:
         return "\n".join(self.lines) + "\n"
 
     def apply(self, ik: Any) -> None:
-        """Run the lines, for the chain ``ik``; what is wrong with them the proof finds."""
+        """Run the lines, for the chain ``ik``; what is wrong with them the proof finds.
+
+        The lines hold nothing that stood in a table but names and expressions that were printed
+        from SymPy objects by :func:`source`, which refuses any other name.
+        """
         names: dict[str, Any] = {
+            "__builtins__": {},
             **{s.name: s for s in (*(p.symbol for p in ik.d.parameters), *ik.joints)},
             **{n: getattr(linklemmas, n) for n in (*self.lemmas, "turned", "Reaching")},
             **{n: getattr(sp, n) for n in NAMES},
@@ -61,6 +69,11 @@ class Proposal:
 class _Source(StrPrinter):  # type: ignore[misc]
     """Expressions as Python; a fraction of integers stays exact."""
 
+    def _print_Symbol(self, expr: Any) -> str:
+        if not NAME.fullmatch(expr.name):
+            raise ValueError(f"{expr.name!r} is not a name that can stand in a line of Python")
+        return str(expr.name)
+
     def _print_Rational(self, expr: Any) -> str:
         return f"Rational({expr.p}, {expr.q})"
 
@@ -70,7 +83,7 @@ class _Source(StrPrinter):  # type: ignore[misc]
 
 
 def source(e: Any) -> str:
-    text: str = _Source().doprint(sp.sympify(e))
+    text: str = _Source().doprint(sp.sympify(e, strict=True))
     return text
 
 
@@ -183,11 +196,20 @@ class _Maker:
         vectors = self._links(group, turns)
         self._tool(group, vectors)
         self.add("x, y = ik.x[0], ik.x[1]")
-        self._two_links([group.rows[i].turn for i in turns], vectors, "x", "y", alone=True)
+        x, y = self._less_by(self.arm.lead[:2, 3])
+        self._two_links([group.rows[i].turn for i in turns], vectors, x, y, alone=True)
         return "planar arm of two links"
 
     def _plain_lead(self) -> bool:
-        return bool(self.arm.lead[:3, :3] == sp.eye(3) and self.arm.lead[:2, 3] == sp.zeros(2, 1))
+        return bool(self.arm.lead[:3, :3] == sp.eye(3))
+
+    def _less_by(self, offset: sp.Matrix) -> tuple[str, str]:
+        """The names of x and y, less what lies between them and the two links."""
+        if offset == sp.zeros(2, 1):
+            return "x", "y"
+        for name, value in zip("xy", offset, strict=True):
+            self.add(f"w{name} = ik.let('w{name}', {source(sp.Symbol(name) - value)})")
+        return "wx", "wy"
 
     def _tool(self, group: Group, vectors: list[sp.Matrix]) -> None:
         """The tool is carried by the last link."""
@@ -196,7 +218,7 @@ class _Maker:
     def _level(self, groups: Sequence[Group], names: Sequence[str]) -> str:
         """Arms that turn about one axis: two links and a yaw, with or without a slide."""
         self._require(len(groups) == 1, "all axes are parallel")
-        self._require(self._plain_lead(), "the axes are along z, the first through the origin")
+        self._require(self._plain_lead(), "the axes are along z")
         (group,) = groups
         rows = group.rows
         turns = [i for i, row in enumerate(rows) if not row.slides]
@@ -208,14 +230,10 @@ class _Maker:
         yaw = self.arm.coordinates().values[-1]  # type: ignore[union-attr]
         joints = [rows[i].turn for i in turns]
         total = sum(joints)
-        away, x, y = vectors[2], "x", "y"
-        if away != sp.zeros(2, 1):
-            # the last link is at the angle of the yaw, up to a constant
-            x_, y_, yaw_ = sp.symbols("x y yaw")
-            carried = rotation("z", yaw_ + sp.simplify(total - yaw)) * sp.Matrix([*away, 0])
-            self.add(f"wx = ik.let('wx', {source(x_ - carried[0])})")
-            self.add(f"wy = ik.let('wy', {source(y_ - carried[1])})")
-            x, y = "wx", "wy"
+        # the last link is at the angle of the yaw, up to a constant
+        ahead = sp.Symbol("yaw") + sp.simplify(total - yaw)
+        carried = rotation("z", ahead) * sp.Matrix([*vectors[2], 0])
+        x, y = self._less_by(self.arm.lead[:2, 3] + carried[:2, 0])
         self._two_links(joints[:2], vectors[:2], x, y, alone=x == "x")
         for i in slides:
             symbol = _symbol(self.arm, rows, i)
@@ -342,7 +360,6 @@ class _Maker:
     def _turn_base(self, base: Group, beside: Any) -> str:
         """The first joint, by the distance ``beside`` of the point from the plane it turns."""
         row, h = base.rows[0], base.end * Z
-        self._require(row.sign == 1, "the first axis is along z")
         p = _at("p")
         a, b = source(h[0] * p[1] - h[1] * p[0]), source(h[0] * p[0] + h[1] * p[1])
         c = sp.simplify(beside + h[0] * row.shift[0] + h[1] * row.shift[1])
@@ -436,9 +453,6 @@ class _Maker:
         end = parallel.end * sp.Matrix(fifth.rows[0].shift)
         normal = base.end * Z
         self._require(normal[2] == 0, "the parallel axes are normal to the first")
-        self._require(
-            all(row.sign == 1 for row in parallel.rows), "the parallel axes have one direction"
-        )
         beside = sum((row.shift[2] for row in parallel.rows), end[2])
         pair1 = self._turn_base(base, beside)
         u, v, w = self._links(parallel, [0, 1, 2])

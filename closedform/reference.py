@@ -80,9 +80,9 @@ class Evaluator:
         named: Mapping[Symbol, Expr] | None = None,
     ) -> None:
         self.symbols = tuple(symbols)
-        self.exprs = tuple(sp.sympify(e) for e in exprs)
+        self.exprs = tuple(sp.sympify(e, strict=True) for e in exprs)
         self.rel_bits, self.max_bits = rel_bits, max_bits
-        named = {name: sp.sympify(value) for name, value in (named or {}).items()}
+        named = {name: sp.sympify(value, strict=True) for name, value in (named or {}).items()}
         missing = _free_symbols((*self.exprs, *named.values())) - {*self.symbols, *named}
         if missing:
             raise KeyError(f"no value for {', '.join(sorted(map(str, missing)))}")

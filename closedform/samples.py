@@ -137,7 +137,7 @@ class Magnitudes:
         self._steps: list[Callable[[list[Any], Sequence[Any]], Any]] = []
         self._known: dict[sp.Basic, int] = {}
         self._divisors: list[sp.Expr] = []
-        self._results = [self._place(sp.sympify(e)) for e in exprs]
+        self._results = [self._place(sp.sympify(e, strict=True)) for e in exprs]
         self._evaluate = Evaluator(tuple(symbols), self._divisors)
 
     def __call__(self, values: Sequence[float], dtype: type = float) -> list[float]:

@@ -122,7 +122,7 @@ class _System:
         saturate: Sequence[Expr],
     ) -> None:
         self._circles: dict[Symbol, tuple[Symbol, Symbol]] = {}
-        given = [sp.sympify(e).subs(substitution) for e in [*equations, *saturate]]
+        given = [sp.sympify(e, strict=True).subs(substitution) for e in [*equations, *saturate]]
         unknowns, given = _absolute_angles(unknowns, given)
         self._unknowns = set(unknowns)
         algebraic = [self._without_angles(e) for e in given]

@@ -45,3 +45,8 @@ DOUBLE = Tolerances(
     feasibility=1e-12, vanishing=2.0**-50, rotation=1e-6, round_trip=1.1e-12, ulps=8.0
 )
 FLOAT = Tolerances(feasibility=1e-6, vanishing=2.0**-21, rotation=1e-4, round_trip=4e-6, ulps=8.0)
+UNIT_LENGTH = 1e-3
+"""A direction or a rotation given in decimals may miss the unit length by this: three decimals.
+
+It decides what ``closedform new`` reads as a rounded unit vector; a mistake is usually larger.
+"""

@@ -122,7 +122,7 @@ def export_inverse(
     continua = [
         Continuum(
             flag,
-            {x: sp.sympify(value) for x, value in locus.items()},
+            {x: sp.sympify(value, strict=True) for x, value in locus.items()},
             joint,
             r"R_{36} = R_{03}^T R",
         )

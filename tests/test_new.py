@@ -166,3 +166,131 @@ def test_new_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert main(["new", "arm2", "--from", "dh", "nowhere.csv"]) == 2
     assert (tmp_path / "arm.py").read_text("utf-8") == "mine"
     assert "arm" not in sys.modules
+
+
+def turned(axis: int, angle: float) -> np.ndarray:
+    """The 4x4 rotation about a coordinate axis."""
+    c, s = np.cos(angle), np.sin(angle)
+    T = np.eye(4)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    T[i, i], T[i, j], T[j, i], T[j, j] = c, -s, s, c
+    return T
+
+
+def drawn(arm, count: int = 30) -> np.ndarray:
+    """Postures whose own answer must be among those of the inverse."""
+    q = np.random.default_rng(1).uniform(-3, 3, (count, len(arm.JOINTS)))
+    found, status = arm.ik(arm.fk(q))
+    assert (status == 0).any(axis=1).all()
+    gaps = np.abs(np.angle(np.exp(1j * (found - q[:, None])))).max(-1)
+    assert np.where(status == 0, gaps, np.inf).min(-1).max() < 1e-8
+    return q
+
+
+FIXED = """\
+# L1 = 0.5 m: upper arm
+# L2 = 0.25 m: forearm
+a, alpha, d, theta
+0.1, 0, 0.3, pi/2
+L1, pi, 0, -t1
+L2, 0, 0, t2
+0.1, 0, d3, 0
+0, pi, 0, t4
+0, 0, -0.1, 0
+"""
+
+
+def quick(folder: Path, name: str, kind: str, text: str, monkeypatch: pytest.MonkeyPatch):
+    """As ``derived``, NumPy alone and without the cross-check."""
+    table = folder / f"{name}.table"
+    table.write_text(text, "utf-8")
+    assert main(["new", name, "--from", kind, str(table), "-o", str(folder)]) == 0
+    script, out = str(folder / f"{name}.py"), str(folder / f"out_{name}")
+    assert main(["derive", script, "-o", out, "--backend", "numpy", "--no-crosscheck"]) == 0
+    monkeypatch.syspath_prepend(str(folder))
+    importlib.invalidate_caches()
+    return importlib.import_module(f"out_{name}.numpy.{name}")
+
+
+def test_fixed_rows_and_a_joint_with_a_minus_sign(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A base beside the first axis, and a tool, around a SCARA arm that turns backwards."""
+    arm = quick(tmp_path, "fixed", "dh", FIXED, monkeypatch)
+    said = capsys.readouterr().err
+    for line in (4, 9):
+        assert f"line {line}: the row has no joint, so it is a fixed transform" in said
+    assert arm.JOINTS == ("t1", "t2", "d3", "t4")
+    for t1, t2, d3, t4 in (q := drawn(arm)):
+        T = dh(0.1, 0, 0.3, np.pi / 2) @ dh(0.5, np.pi, 0, -t1) @ dh(0.25, 0, 0, t2)
+        T = T @ dh(0.1, 0, d3, 0) @ dh(0, np.pi, 0, t4) @ dh(0, 0, -0.1, 0)
+        np.testing.assert_allclose(arm.pose([t1, t2, d3, t4]), T, atol=1e-14)
+    T = arm.pose(q)
+    np.testing.assert_allclose(arm.jacobian(q)[:, 2], [[0, 0, -1, 0]] * len(q), atol=1e-15)
+    assert T.shape == (30, 4, 4)
+
+
+NAMED = """\
+# L1 = 0.5 m: upper arm
+# angle1 = 0.4 m: a name that is in use
+a, alpha, d, theta
+0, pi/2, angle1, theta1 + pi/18
+L1, 0, 0, theta2 - pi/18
+0.45, 0, 0, 0.3 - theta3
+"""
+
+
+def test_angles_without_square_roots_become_parameters(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arm = quick(tmp_path, "named", "dh", NAMED, monkeypatch)
+    said = capsys.readouterr().err
+    assert "line 4, column theta: the cosine of pi/18 has no form in square roots" in said
+    assert "the parameter angle2 = 0.17453292519943295769 rad" in said
+    assert "# named.table, line 4, column theta: the cosine of pi/18" in (
+        tmp_path / "named.py"
+    ).read_text("utf-8")
+    assert arm.Parameters() == (0.5, 0.4, np.pi / 18, 0.3)
+    assert arm.Parameters._fields == ("L1", "angle1", "angle2", "angle3")
+    for t1, t2, t3 in drawn(arm):
+        T = dh(0, np.pi / 2, 0.4, t1 + np.pi / 18) @ dh(0.5, 0, 0, t2 - np.pi / 18)
+        np.testing.assert_allclose(arm.pose([t1, t2, t3]), T @ dh(0.45, 0, 0, 0.3 - t3), atol=1e-14)
+
+
+ROUNDED = """\
+[[axes]]
+joint = "theta1"
+direction = [0, 0.7071, 0.7071]
+[[axes]]
+joint = "theta2"
+direction = [1, 0, 0]
+[[axes]]
+joint = "theta3"
+direction = [1.0, 0, 0]
+point = [0, 0.3, 0]
+[home]
+position = [0, 0.3, 0.3]
+rotation = [[1, 0, 0], [0, 0.9962, -0.0872], [0, 0.0872, 0.9962]]
+"""
+
+
+def test_directions_in_decimals_are_made_exact(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arm = quick(tmp_path, "rounded", "screws", ROUNDED, monkeypatch)
+    said = capsys.readouterr().err
+    assert "axis 1: the direction (0, 0.7071, 0.7071) is rounded; the unit vector " in said
+    assert "(0, sqrt(2)/2, sqrt(2)/2) is taken for it" in said
+    assert "[home]: the rotation is rounded; the rows (1, 0, 0), " in said
+    tilt = turned(0, -np.pi / 4)
+    elbow = np.eye(4)
+    elbow[1, 3] = 0.3
+    home = turned(0, np.arcsin(0.0872))
+    home[1:3, 3] = 0.3
+    for t1, t2, t3 in drawn(arm):
+        T = tilt @ turned(2, t1) @ np.linalg.inv(tilt) @ turned(0, t2)
+        T = T @ elbow @ turned(0, t3) @ np.linalg.inv(elbow) @ home
+        pose = arm.pose([t1, t2, t3])
+        np.testing.assert_allclose(pose[:, 3], T[:, 3], atol=1e-14)
+        np.testing.assert_allclose(pose, T, atol=1e-4)
+        np.testing.assert_allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3), atol=1e-14)

@@ -19,6 +19,7 @@ from closedform.claims import REFUTED
 from closedform.derivation import Continuum, Derivation, Inverse, Joint, Step
 from closedform.emit.prose import Prose, escape, loosen, mixed, spaced, symbol_name, upright
 from closedform.emit.text import citation
+from closedform.formulas import PRINTED, formula
 from closedform.functions import Array, Bound, Function, Let, Match, Statement, Vanishes, real
 from closedform.prove import InverseResult, Proof
 
@@ -265,7 +266,8 @@ class Page:
         known = self.derivation[result.function]
         named = self.named_bounds(known, result.assumptions)
         assumed = dict.fromkeys(
-            self.math(named.get(a) or sp.sympify(a, symbols)) for a in result.assumptions
+            self.math(named.get(a) or formula(a, lambda n: symbols.get(n, real(n)), PRINTED))
+            for a in result.assumptions
         )
         given = [rf"{e} \ge 0" for e in assumed]
         how = {

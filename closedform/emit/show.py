@@ -124,7 +124,9 @@ def _text(value: sp.Expr) -> str:
 
 def _equation(lhs: str, value: Any) -> list[str]:
     """Two-dimensional where it fits, else on lines of text."""
-    form = PrettyPrinter({"use_unicode": True, "wrap_line": False})._print(sp.sympify(value))
+    form = PrettyPrinter({"use_unicode": True, "wrap_line": False})._print(
+        sp.sympify(value, strict=True)
+    )
     picture, space = list(form.picture), 3 + len(lhs) + 3
     if space + form.width() <= WIDTH:
         pad = " " * space

@@ -42,7 +42,7 @@ class Graph:
         return self._nodes[key]
 
     def const(self, value: sp.Expr | int) -> Node:
-        value = sp.sympify(value)
+        value = sp.sympify(value, strict=True)
         if value.is_negative:
             return self.neg(self.const(-value))
         return self.node("const", payload=value)
@@ -110,7 +110,9 @@ class Graph:
         if b.op == "neg":
             return self.neg(self.div(a, b.args[0]))
         if a.op == b.op == "const":
-            return self.const(sp.sympify(a.payload) / sp.sympify(b.payload))
+            return self.const(
+                sp.sympify(a.payload, strict=True) / sp.sympify(b.payload, strict=True)
+            )
         return self.node("div", a, b)
 
     def select(self, condition: Node, a: Node, b: Node) -> Node:

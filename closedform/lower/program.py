@@ -250,7 +250,9 @@ class _Branch:
         valid, reachable, singular = self._valid_input(), [], []
 
         def limit(name: str, scale: sp.Expr) -> Node:
-            return graph.product([graph.node("tolerance", payload=name), build(sp.sympify(scale))])
+            return graph.product(
+                [graph.node("tolerance", payload=name), build(sp.sympify(scale, strict=True))]
+            )
 
         for statement in self.function.body:
             if isinstance(statement, Let):

@@ -50,7 +50,7 @@ class Ranges:
         """The least and the largest value in units of pi, if anything is known of them."""
         value = constant_of(node)
         if value is not None:
-            multiple = 2 * sp.sympify(value) / sp.pi
+            multiple = 2 * sp.sympify(value, strict=True) / sp.pi
             return _point(Fraction(int(multiple), 2)) if multiple.is_Integer else None
         if node.op == "atan2":
             y, x = node.args

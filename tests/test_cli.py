@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 from closedform import pipeline
-from closedform.cli import Progress, main
+from closedform.cli import main
+from closedform.console import Progress
 
 README = Path(__file__).parents[1] / "README.md"
 
@@ -149,12 +150,12 @@ def test_a_difference_found_by_the_cross_check_fails(
 
     write = cli._write
 
-    def spoiled(root: Path, printed: pipeline.Files) -> None:
+    def spoiled(root: Path, printed: pipeline.Files) -> list[Path]:
         path = Path("numpy/slider.py")
         if path in printed:
             assert "q1 + a," in printed[path]
             printed[path] = printed[path].replace("q1 + a,", "q1 - a,")
-        write(root, printed)
+        return write(root, printed)
 
     monkeypatch.setattr(cli, "_write", spoiled)
     output = tmp_path / "out"
@@ -326,7 +327,7 @@ def test_progress_is_shown_only_when_it_takes_long(monkeypatch: pytest.MonkeyPat
     for patience, shown in ((60.0, False), (0.0, True)):
         stderr = io.StringIO()
         monkeypatch.setattr(sys, "stderr", stderr)
-        monkeypatch.setattr("closedform.cli.PATIENCE", patience)
+        monkeypatch.setattr("closedform.console.PATIENCE", patience)
         with Progress() as progress:
             progress("planar_2r", "inverse: ik")
             time.sleep(0.5)

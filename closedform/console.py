@@ -28,6 +28,7 @@ ASCII |= {
     "×": "x",
     "°": " deg",
     "→": "->",
+    "®": "(R)",
     "§": "sec. ",
 }
 
@@ -126,6 +127,8 @@ class Progress:
         self.thread = threading.Thread(target=self._run, daemon=True)
 
     def __call__(self, name: str, what: str) -> None:
+        if name:
+            self.current.pop("", None)
         if what:
             self.current[name] = what
         else:

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import sympy as sp
 from sympy.printing.pretty.pretty import PrettyPrinter
+from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
 from closedform.derivation import Derivation
 from closedform.emit.text import citation
@@ -132,8 +133,12 @@ def _text(value: sp.Expr) -> str:
 def _equation(lhs: str, value: Any, pretty: bool) -> list[str]:
     """Two-dimensional where it fits, else on lines of text; a value may be LaTeX."""
     if isinstance(value, str):
-        return _wrap(f"{lhs} = {plain(value)}", 3)
-    form = PrettyPrinter({"use_unicode": pretty, "wrap_line": False})._print(sp.sympify(value))
+        return _wrap(f"{lhs} = {value}", 3)
+    before = pretty_use_unicode(pretty)  # roots and brackets go by this, not by the setting
+    try:
+        form = PrettyPrinter({"use_unicode": pretty, "wrap_line": False})._print(sp.sympify(value))
+    finally:
+        pretty_use_unicode(before)
     picture, space = list(form.picture), 3 + len(lhs) + 3
     if space + form.width() <= WIDTH:
         pad = " " * space

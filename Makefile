@@ -1,44 +1,75 @@
 # make help lists the targets. With -j N, N robots are proved at a time.
 
-PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
+ifndef PYTHON
+PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+endif
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 DERIVING := $(shell find closedform derivations templates -name '*.py' -o -name '*.jinja')
 PRINTED := $(shell find generated -type f ! -name '*.so' ! -path '*/__pycache__/*')
-C_SOURCES := $(wildcard generated/c/*.[ch] closedform/extension/*.[ch])
 PORTABLE := $(filter-out generated/c/extension.c,$(wildcard generated/c/*.c))
 PDFS := $(patsubst generated/latex/%.tex,build/pdf/%.pdf,$(wildcard generated/latex/*.tex))
 COMPILERS := $(foreach cc,gcc clang,$(foreach type,double float,warnings-$(cc)-$(type)))
 WARNINGS := -std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
 
-.PHONY: all test check lint types regenerated warnings $(COMPILERS) \
+# Two makes at once take turns at what writes: the second finds everything done.
+define LOCK
+import fcntl, os, sys
+lock = os.open(sys.argv[1], os.O_RDWR | os.O_CREAT)
+try:
+    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+except OSError:
+    print("waiting for another make", file=sys.stderr, flush=True)
+    fcntl.flock(lock, fcntl.LOCK_EX)
+os.set_inheritable(lock, True)
+os.execvp(sys.argv[2], sys.argv[2:])
+endef
+# An environment in which venv or pip was killed is made anew; where pip fails it is kept.
+define INSTALL
+set -e
+for file in pyproject.toml setup.py; do
+    [ .venv/installed.stamp -nt $$file ] || stale=1
+done
+[ "$$stale" ] || exit 0
+[ ! -e .venv/unfinished ] || rm -rf .venv
+mkdir -p .venv
+touch .venv/unfinished
+echo "installing into .venv what is needed"
+[ -x $(BIN)/python ] || $(PYTHON) -m venv .venv
+status=0
+$(BIN)/python -m pip install --quiet --no-compile --editable '.[dev]' || status=$$?
+[ $$status -gt 128 ] || rm .venv/unfinished
+[ $$status = 0 ] || exit $$status
+touch .venv/installed.stamp
+endef
+export LOCK INSTALL
+LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
+
+.PHONY: all native test check lint types regenerated warnings $(COMPILERS) \
 	format pdf bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
-all: build/native.stamp  ## derive, prove, generate and build; one line a robot (the default)
+all: native  ## derive, prove, generate and build; one line a robot (the default)
 	@cat build/derived.txt
 
 .venv/installed.stamp: pyproject.toml setup.py
 	@test -n "$(PYTHON)" || { echo "closedform needs Python 3.11 or later: make PYTHON=..."; exit 1; }
-	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --no-compile --editable '.[dev]'
-	@touch $@
+	@$(LOCKED) sh -c "$$INSTALL"
 
 # The list of what was proved. Files in generated/ are written only where they change.
 build/derived.txt: .venv/installed.stamp $(DERIVING) $(PRINTED)
-	@mkdir -p build
-	@$(BIN)/closedform derive > $@.new
-	@mv $@.new $@
+	@$(LOCKED) sh -c '$(BIN)/closedform derive > $@.new && mv $@.new $@'
 
-build/native.stamp: build/derived.txt $(C_SOURCES) setup.py
-	@$(BIN)/python setup.py --quiet build_ext --inplace
-	@touch $@
+# What is there already is checked by content, which takes less than a second.
+native: build/derived.txt
+	@$(LOCKED) $(BIN)/python setup.py --quiet build_ext --inplace
 
 test: all  ## run the tests on all cores; ARGS="-k name" selects
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
+# Nothing here may depend on all, which would first mend what is to be found.
 check: lint types regenerated warnings  ## lint, types, warnings of C; generated/ is what is printed
 
 lint: .venv/installed.stamp
@@ -48,14 +79,14 @@ lint: .venv/installed.stamp
 types: .venv/installed.stamp
 	$(BIN)/mypy
 
-regenerated: all
+regenerated: .venv/installed.stamp
 	$(BIN)/closedform check
 
 warnings: $(COMPILERS)
 
 # Optimised, because without it a compiler does not see every use of an unset variable.
 $(filter %-float,$(COMPILERS)): FLOAT := -DCLOSEDFORM_FLOAT
-$(COMPILERS): warnings-%: build/derived.txt
+$(COMPILERS): warnings-%:
 	@compiler=$(firstword $(subst -, ,$*)); \
 	command -v $$compiler >/dev/null || { echo "$@: there is no $$compiler, skipped"; exit 0; }; \
 	for source in $(PORTABLE); do \
@@ -71,9 +102,11 @@ pdf: $(PDFS)  ## the derivations as PDF, in build/pdf
 build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
 	@command -v pdflatex >/dev/null || { \
 		echo "make pdf needs pdflatex; on Debian: apt install texlive-latex-recommended"; exit 1; }
-	@mkdir -p $(@D)
-	@for pass in 1 2; do pdflatex -interaction=nonstopmode -halt-on-error -output-directory=$(@D) $< \
-		> $(@D)/$*.txt || { tail -n 30 $(@D)/$*.txt; exit 1; }; done
+	@mkdir -p $(@D)/unfinished
+	@for pass in 1 2; do \
+		pdflatex -interaction=nonstopmode -halt-on-error -output-directory=$(@D)/unfinished $< \
+			> $(@D)/$*.txt || { tail -n 30 $(@D)/$*.txt; exit 1; }; done
+	@mv $(@D)/unfinished/$*.pdf $@
 	@echo $@
 
 bench: all  ## time the generated code beside the peers installed; writes benchmarks/RESULTS.md
@@ -87,7 +120,7 @@ accuracy: all  ## compare a billion sines, cosines and arctangents with libm; AR
 
 clean:  ## remove what was built, but neither .venv nor generated sources
 	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
-	rm -f generated/c/_native*.so
+	rm -f generated/c/_native*.so generated/.*.[0-9]* generated/*/.*.[0-9]*
 	find closedform derivations generated templates tests -name __pycache__ -exec rm -rf {} +
 
 distclean: clean  ## and .venv

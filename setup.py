@@ -1,13 +1,20 @@
-"""The compiled part of the build: one extension module with all generated C."""
+"""The compiled part of the build: one extension module with all generated C.
 
+A build may be killed at any time, and two may run at once.  So every file is made in a folder of
+its own and then renamed, and a file that is there is used only if it was made from the same inputs
+and is still as it was then.
+"""
+
+import hashlib
 import os
+import shutil
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
-from setuptools.modified import newer_group
 
 FOLDERS = (Path("closedform/extension"), Path("generated/c"))
 SOURCES = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.c"))
@@ -24,6 +31,21 @@ def read_by(source):
     return [source, "setup.py", *(map(str, headers) if robot else HEADERS)]
 
 
+def digest(files, *settings):
+    """A digest of the content of files and of settings."""
+    total = hashlib.sha256(repr(settings).encode())
+    for path in files:
+        total.update(hashlib.sha256(Path(path).read_bytes()).digest())
+    return total.hexdigest()
+
+
+def replace(target, content):
+    """Write a small file under another name and rename it."""
+    unfinished = Path(f"{target}.{os.getpid()}")
+    unfinished.write_text(content, "utf-8")
+    os.replace(unfinished, target)
+
+
 class BuildExtension(build_ext):
     """Compiles what changed of the sources, side by side."""
 
@@ -35,21 +57,66 @@ class BuildExtension(build_ext):
             self.extensions = []
 
     def build_extensions(self):
-        compile_in_turn = self.compiler.compile
+        # What has to be made is decided by content, below, and not by the times of files.
+        self.everything, self.force = self.force, True
+        compiler = self.compiler
+        compile_in_turn, link_in_turn = compiler.compile, compiler.link_shared_object
 
-        def compile_one(source, output_dir, **options):
-            made = self.compiler.object_filenames([source], output_dir=output_dir)
-            if newer_group(read_by(source), made[0]):
-                compile_in_turn([source], output_dir=output_dir, **options)
-            return made
+        def compile_one(source, output_dir, options):
+            (target,) = compiler.object_filenames([source], output_dir=output_dir)
+            settings = (numpy.__version__, getattr(compiler, "compiler_so", ""), options)
+            self.make(
+                target,
+                digest(read_by(source), *settings),
+                lambda folder: compile_in_turn([source], output_dir=folder, **options)[0],
+            )
+            return target
 
         def compile_side_by_side(sources, output_dir=None, **options):
+            longest_first = sorted(sources, key=os.path.getsize, reverse=True)
             with ThreadPoolExecutor(os.cpu_count()) as pool:
-                compiled = pool.map(lambda s: compile_one(s, output_dir, **options), sources)
-                return [name for names in compiled for name in names]
+                made = pool.map(lambda s: compile_one(s, output_dir, options), longest_first)
+                objects = dict(zip(longest_first, made, strict=True))
+            return [objects[source] for source in sources]
 
-        self.compiler.compile = compile_side_by_side
+        def link(objects, target, **options):
+            def linked(folder):
+                finished = os.path.join(folder, os.path.basename(target))
+                link_in_turn(objects, finished, **options)
+                return finished
+
+            settings = (getattr(compiler, "linker_so", ""), options)
+            self.make(target, digest(objects, *settings), linked)
+
+        compiler.compile, compiler.link_shared_object = compile_side_by_side, link
         super().build_extensions()
+
+    def make(self, target, inputs, build):
+        """Build a file, unless it was made from these inputs and is still whole."""
+        record = Path(self.build_temp, f"{os.path.basename(target)}.made")
+        try:
+            whole = record.read_text("utf-8") == f"{inputs} {digest([target])}"
+        except OSError:
+            whole = False
+        if whole and not self.everything:
+            return
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        os.makedirs(self.build_temp, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix="unfinished-", dir=self.build_temp) as folder:
+            finished = build(folder)
+            made = digest([finished])
+            shutil.move(finished, f"{target}.{os.getpid()}")
+        os.replace(f"{target}.{os.getpid()}", target)
+        replace(record, f"{inputs} {made}")
+
+    def copy_file(self, infile, outfile, *arguments, **options):
+        """Into the checkout, where a process may be using the file that is replaced."""
+        if os.path.exists(outfile) and digest([outfile]) == digest([infile]):
+            return outfile, False
+        unfinished = f"{outfile}.{os.getpid()}.so"
+        shutil.copy2(infile, unfinished)
+        os.replace(unfinished, outfile)
+        return outfile, True
 
 
 setup(

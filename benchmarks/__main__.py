@@ -24,6 +24,8 @@ from pathlib import Path
 
 import numpy as np
 
+from closedform.disk import replace
+
 from . import batches, inverses, native
 from .cases import CASES, Case, NotApplicableError, check
 
@@ -195,7 +197,7 @@ def main() -> int:
     whole = not (arguments.cases or arguments.only)
     output = arguments.output or (Path(__file__).with_name("RESULTS.md") if whole else None)
     if output:
-        output.write_text("\n".join(report.lines) + "\n")
+        replace(output, ("\n".join(report.lines) + "\n").encode())
     return 0
 
 

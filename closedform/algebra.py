@@ -144,8 +144,18 @@ def positive_form(expr: Expr, slack: Sequence[tuple[sp.Symbol, Expr]]) -> Expr:
     return sp.expand(top) / bottom
 
 
-def decide(problem: Problem, nonnegative: Iterable[Expr] = (), seed: int = 0) -> Decision:
-    """Prove that every entry is zero, or refute it at a point where the assumptions hold."""
+def decide(
+    problem: Problem,
+    nonnegative: Iterable[Expr] = (),
+    seed: int = 0,
+    *,
+    sides: Sequence[Sequence[Expr]] = (),
+) -> Decision:
+    """Prove that every entry is zero, or refute it at a point where the assumptions hold.
+
+    With ``sides``, the expressions that each entry is the difference of, the counterexample is a
+    point where these have values too.
+    """
     guards = [guard(g) for g in nonnegative]
     try:
         result, obstacle = is_zero(problem, guards), ""
@@ -155,7 +165,7 @@ def decide(problem: Problem, nonnegative: Iterable[Expr] = (), seed: int = 0) ->
         verdict = "proved under assumption" if result.assumptions else "proved"
         return Decision(True, verdict, result.assumptions, result, None)
     witness = find_counterexample(
-        sp.Matrix(entries_of(problem)), conditions=[g >= 0 for g in guards], seed=seed
+        sp.Matrix(entries_of(problem)), conditions=[g >= 0 for g in guards], seed=seed, sides=sides
     )
     if witness:
         return Decision(False, "refuted", tuple(guards), result, witness)

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import sympy as sp
+from sympy.core.relational import Relational
 
 from closedform.algebra import Undecided, decide
 from closedform.functions import reject_floats
@@ -76,7 +77,9 @@ class Identity(Check):
     small: sp.Symbol | None = None
 
     def judge(self) -> Verdict:
-        decision = decide(_difference(self.printed, self.derived), self.nonnegative)
+        difference = _difference(self.printed, self.derived)
+        sides = list(zip(_entries(self.printed), _entries(self.derived), strict=True))
+        decision = decide(difference, self.nonnegative, sides=sides)
         if decision.holds:
             assumed = ", ".join(f"{a} >= 0" for a in decision.assumptions)
             return Verdict(decision.verdict, f"where {assumed}" if assumed else "")
@@ -96,12 +99,11 @@ class Identity(Check):
             entry = "entry ({},{}): ".format(*(k + 1 for k in divmod(found.entry, shape[1])))
         elif isinstance(self.printed, Sequence):
             entry = f"part {found.entry + 1}: "
-        at = ", ".join(f"{s} = {v}" for s, v in found.point.items())
         printed, derived = (
             _value(_entries(side)[found.entry], found.point)
             for side in (self.printed, self.derived)
         )
-        return f"{entry}{f'at {at} ' if at else ''}the printed form is {printed}, not {derived}"
+        return f"{entry}{_at(found)}the printed form is {printed}, not {derived}"
 
     def _order(self, small: sp.Symbol) -> str:
         """The leading term of the largest error, if all errors vanish with ``small``."""
@@ -142,7 +144,7 @@ class Decimal(Check):
 
     def judge(self) -> Verdict:
         digits = len(self.printed.partition(".")[2])
-        scaled = sp.sympify(self.exact, strict=True) * 10**digits
+        scaled = _constant(self.exact) * 10**digits
         units = scaled - sp.Rational(self.printed) * 10**digits
         value = evaluate([self.exact], {})[0].str(digits + 6, radius=False)
         exact = f"the exact value is {value}{self._unit}"
@@ -174,10 +176,15 @@ class Posture(Check):
 
     def judge(self) -> Verdict:
         reached, target = self._reached(self.printed), _entries(self.target)
-        decision = decide(_difference(reached, target))
+        decision = decide(_difference(reached, target), sides=[(*reached, *target)] * len(reached))
         if decision.holds:
             return Verdict(PROVED, "the forward map takes them to the target")
-        evidence = f"they reach ({_values(reached)}), not ({_values(target)})"
+        assert decision.counterexample is not None
+        where = decision.counterexample.point
+        evidence = (
+            f"{_at(decision.counterexample)}they reach ({_values(reached, where)}), "
+            f"not ({_values(target, where)})"
+        )
         if self.corrected is None:
             return Verdict(REFUTED, evidence)
         _require_equal(self._reached(self.corrected), target)
@@ -251,6 +258,8 @@ class Holds(Check):
     relations: Mapping[str, Expr]
 
     def judge(self) -> Verdict:
+        if not self.relations:
+            raise ValueError("Holds needs at least one relation")
         failed = [name for name, relation in self.relations.items() if not _holds(relation)]
         if failed:
             return Verdict(REFUTED, f"not so: {', '.join(failed)}")
@@ -277,6 +286,8 @@ class Every(Check):
     parts: Mapping[str, Check]
 
     def judge(self) -> Verdict:
+        if not self.parts:
+            raise ValueError("Every needs at least one part")
         verdicts = {name: check.judge() for name, check in self.parts.items()}
         worst = max(verdicts.values(), key=lambda v: _SEVERITY.index(v.kind)).kind
         return Verdict(
@@ -340,6 +351,14 @@ def _entries(value: Exact) -> list[Expr]:
     return entries
 
 
+def _constant(value: Expr) -> Expr:
+    (e,) = _entries(value)
+    if e.free_symbols:
+        names = ", ".join(sorted(map(str, e.free_symbols)))
+        raise ValueError(f"{e} is not a constant: it depends on {names}")
+    return e
+
+
 def _difference(a: Exact, b: Exact) -> Exact:
     shape = getattr(a, "shape", None)
     if shape != getattr(b, "shape", None):
@@ -369,12 +388,20 @@ def _value(e: Expr, point: Mapping[sp.Symbol, Expr]) -> str:
     return str(evaluate([e], point)[0].str(6, radius=False))
 
 
-def _values(entries: Sequence[Expr]) -> str:
-    return ", ".join(_value(e, {}) for e in entries)
+def _values(entries: Sequence[Expr], point: Mapping[sp.Symbol, Expr]) -> str:
+    return ", ".join(_value(e, point) for e in entries)
+
+
+def _at(found: Counterexample) -> str:
+    """Where a counterexample is; nothing is said of constants."""
+    at = ", ".join(f"{s} = {v}" for s, v in found.point.items())
+    return f"at {at} " if at else ""
 
 
 def _degrees(angle: Expr) -> str:
     degrees = sp.sympify(angle, strict=True) * 180 / sp.pi
+    if degrees.free_symbols:
+        return str(sp.latex(angle))
     if degrees.is_Rational:
         return rf"{sp.latex(degrees)}^\circ"
     return rf"{_fixed(_nearest(degrees * 10**4), 4)}^\circ"
@@ -389,7 +416,7 @@ def _denested(e: Expr) -> Expr:
 
 def _sign(e: Expr) -> int:
     """The sign of a constant; zero only if it is proved to vanish."""
-    (e,) = _entries(e)
+    e = _constant(e)
     if e.is_Rational:
         return int(sp.sign(e))
     ball = evaluate([e], {})[0]
@@ -404,6 +431,8 @@ def _holds(relation: Expr) -> bool:
     """Whether a relation between constants holds; SymPy may have decided it already."""
     if relation in (sp.true, sp.false):
         return bool(relation)
+    if not isinstance(relation, Relational):
+        raise TypeError(f"{relation} is neither an equation nor an inequality")
     sign = _sign(relation.lhs - relation.rhs)
     allowed = {
         sp.Eq: (0,),

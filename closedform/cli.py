@@ -7,24 +7,22 @@ or a comparison failed, 2 where the command was called wrongly.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import difflib
 import importlib.util
 import os
-import shutil
-import sys
-import threading
-import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from types import TracebackType
 
-from closedform import __version__, pipeline
+from closedform import __version__, console, pipeline, versions
+from closedform.console import Progress
+from closedform.disk import locked
 
 DIFF_LINES = 20
-PATIENCE = 1.0
-"""Seconds of silence before progress is shown."""
-INTERVAL = 5.0
-"""Seconds between two lines of progress where the output is no terminal."""
+NAMED = 4
+"""Files that are named where many have changed."""
+PRETTY = "─│⎡⎣√θ₁"
+"""What a formula in two dimensions is drawn with; a terminal without it gets ASCII."""
 
 
 class CommandError(Exception):
@@ -35,78 +33,48 @@ class CommandError(Exception):
         self.code = code
 
 
-class Progress:
-    """Says on stderr what is going on, once it takes long."""
-
-    def __init__(self) -> None:
-        self.start = time.monotonic()
-        self.current: dict[str, str] = {}
-        self.terminal = sys.stderr.isatty()
-        self.shown = 0.0
-        self.finished = threading.Event()
-        self.thread = threading.Thread(target=self._run, daemon=True)
-
-    def __call__(self, name: str, what: str) -> None:
-        if what:
-            self.current[name] = what
-        else:
-            self.current.pop(name, None)
-
-    def __enter__(self) -> Progress:
-        self.thread.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.finished.set()
-        self.thread.join()
-        if self.terminal and self.shown:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
-
-    def _run(self) -> None:
-        while not self.finished.wait(0.2):
-            passed = time.monotonic() - self.start
-            due = self.terminal or not self.shown or passed - self.shown >= INTERVAL
-            if passed >= PATIENCE and due and self.current:
-                self.shown = passed
-                self._show(passed)
-
-    def _show(self, passed: float) -> None:
-        doing = [f"{n}: {what}" if n else what for n, what in sorted(self.current.copy().items())]
-        line = f"[{passed:4.0f} s] {' | '.join(doing)}"
-        if self.terminal:
-            line = line[: shutil.get_terminal_size().columns - 1]
-            print(f"\r\x1b[K{line}", end="", file=sys.stderr, flush=True)
-        else:
-            print(line, file=sys.stderr, flush=True)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
-    options = parser().parse_args(arguments)
-    command: Callable[[argparse.Namespace], None] = options.command
+    console.open_streams()
     try:
+        options = _parsed(arguments)
+        command: Callable[[argparse.Namespace], None] = options.command
         command(options)
-        sys.stdout.flush()
     except CommandError as error:
         return _complain(str(error), error.code)
-    except pipeline.DerivationError as error:
+    except (pipeline.DerivationError, console.StreamError) as error:
         return _complain(str(error))
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+    except OSError as error:
+        return _complain(_reason(error))
     except KeyboardInterrupt:
         return _complain("interrupted", 130)
     return 0
 
 
+def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
+    try:
+        return parser().parse_args(arguments)
+    except SystemExit as stop:
+        if not stop.code:
+            console.write("")  # argparse does not mind a help that could not be written
+        raise
+
+
 def _complain(message: str, code: int = 1) -> int:
-    print(f"closedform: {message}", file=sys.stderr)
+    console.say(f"closedform: {message}")
     return code
+
+
+def _reason(error: OSError) -> str:
+    """What failed, and with which file."""
+    try:
+        os.getcwd()
+    except OSError:
+        return "the current folder does not exist any more"
+    reason = error.strerror or str(error)
+    return f"{error.filename}: {reason}" if error.filename else reason
 
 
 def parser() -> argparse.ArgumentParser:
@@ -175,8 +143,7 @@ def list_command(options: argparse.Namespace) -> None:
     """List the derivations."""
     sources = pipeline.sources()
     width = max((len(s.name) for s in sources), default=0)
-    for source in sources:
-        print(f"{source.name:<{width}}  {source.title}")
+    console.write("".join(f"{s.name:<{width}}  {s.title}\n" for s in sources))
 
 
 def show_command(options: argparse.Namespace) -> None:
@@ -189,8 +156,9 @@ def show_command(options: argparse.Namespace) -> None:
         progress(source.name, "derivation")
         derivation = pipeline.load(source)
         kept = pipeline.default_store().get(source)
-        text = show(derivation, kept[0] if kept else None, options.format)
-    print(text.rstrip("\n"))
+        pretty = console.has(PRETTY)
+        text = show(derivation, kept[0] if kept else None, options.format, pretty=pretty)
+    console.write(text.rstrip("\n") + "\n")
 
 
 def derive_command(options: argparse.Namespace) -> None:
@@ -201,24 +169,35 @@ def derive_command(options: argparse.Namespace) -> None:
     own = root.resolve() == pipeline.generated().resolve()
     if own:
         _require_checkout(chosen)
+    elif root.exists() and not root.is_dir():
+        raise CommandError(f"cannot write to {root}: it is not a folder")
     result = _run(options, chosen, backends, pipeline.sources() if own else chosen)
     printed = result.files if own else pipeline.standalone(result.files)
-    _write(root, printed)
+    if own:
+        _update(root, printed, backends if not options.names else ())
+    else:
+        _write(root, printed)
     for failure in result.neighbours:
-        print(f"closedform: warning: {failure}", file=sys.stderr)
+        console.say(f"closedform: warning: {failure}")
     if result.neighbours:
-        print(
-            "closedform: warning: the files that all robots share were left as they are",
-            file=sys.stderr,
-        )
+        console.say("closedform: warning: the files that all robots share were left as they are")
     if not own and not options.no_crosscheck:
         _crosscheck(root, chosen, backends)
     width = max(len(robot.name) for robot in result.robots)
-    for robot in result.robots:
-        print(robot.line(width))
-    if own and not options.names:
-        for path in pipeline.extra_files(root, printed, backends):
-            (root / path).unlink()
+    console.write("".join(f"{robot.line(width)}\n" for robot in result.robots))
+
+
+def _update(root: Path, printed: pipeline.Files, whole: Sequence[str]) -> None:
+    """Bring the generated package up to date; of the ``whole`` back ends, remove what is stale."""
+    with _alone():
+        changed = _write(root, printed)
+        for path in pipeline.extra_files(root, printed, whole):
+            (root / path).unlink(missing_ok=True)
+            changed.append(path)
+    if changed:
+        names = ", ".join(str(path) for path in changed[:NAMED])
+        more = f" and {len(changed) - NAMED} more" if len(changed) > NAMED else ""
+        console.say(f"closedform: changed in {root}: {names}{more}")
 
 
 def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
@@ -245,11 +224,12 @@ def check_command(options: argparse.Namespace) -> None:
     """Print everything anew and compare it, byte for byte, with what is in generated/."""
     root = pipeline.generated()
     printed = _run(options, pipeline.sources(), pipeline.BACKENDS, pipeline.sources()).files
-    differences = list(_differences(root, printed))
+    with _alone():
+        differences = list(_differences(root, printed))
     if differences:
-        print("\n".join(differences))
+        console.write("\n".join(differences) + "\n")
         raise CommandError(f"{root} is not what the derivations print: run make")
-    print(f"{len(printed)} generated files are up to date")
+    console.write(f"{len(printed)} generated files are up to date\n")
 
 
 def new_command(options: argparse.Namespace) -> None:
@@ -276,12 +256,12 @@ def new_command(options: argparse.Namespace) -> None:
     for note in notes:
         print(f"closedform: note: {note}", file=sys.stderr)
     _write(options.output, {Path(target.name): text})
-    print(f"{target}; now: closedform derive {target} -o out")
+    console.write(f"{target}; now: closedform derive {target} -o out\n")
 
 
 def errata_command(options: argparse.Namespace) -> None:
     """Print every claim of the papers, or of one, that is not simply proved."""
-    print(_errata_of(options) if options.paper else _errata(), end="")
+    console.write(_errata_of(options) if options.paper else _errata())
 
 
 def _errata() -> str:
@@ -307,6 +287,8 @@ def _require_extra() -> None:
         raise CommandError(
             f"this needs {', '.join(missing)}, not installed: pip install 'closedform[derive]'"
         )
+    for difference in versions.warnings():
+        console.say(f"closedform: warning: {difference}")
 
 
 def _find(names: Sequence[str]) -> list[pipeline.Source]:
@@ -346,6 +328,7 @@ def _run(
 ) -> pipeline.Result:
     _require_extra()
     with Progress() as progress:
+        progress("", "starting")
         result = pipeline.run(
             chosen,
             backends,
@@ -359,11 +342,17 @@ def _run(
     return result
 
 
-def _write(root: Path, printed: pipeline.Files) -> None:
+def _write(root: Path, printed: pipeline.Files) -> list[Path]:
     try:
-        pipeline.write(root, printed)
+        return pipeline.write(root, printed)
     except OSError as error:
-        raise CommandError(f"cannot write to {root}: {error.strerror}") from error
+        raise CommandError(f"cannot write to {root}: {_reason(error)}") from error
+
+
+def _alone() -> contextlib.AbstractContextManager[None]:
+    """No other process changes the generated package."""
+    root = pipeline.checkout()
+    return locked(root / "build" / "generated.lock") if root else contextlib.nullcontext()
 
 
 def _differences(root: Path, printed: pipeline.Files) -> Iterable[str]:

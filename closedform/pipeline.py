@@ -6,6 +6,7 @@ Nothing here imports SymPy before a derivation is loaded, so that listing works 
 from __future__ import annotations
 
 import ast
+import contextlib
 import hashlib
 import importlib
 import importlib.util
@@ -13,7 +14,9 @@ import json
 import multiprocessing
 import os
 import re
+import signal
 import sys
+import threading
 import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -25,6 +28,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from closedform.disk import replace
+
 if TYPE_CHECKING:
     from closedform.derivation import Derivation
     from closedform.emit.render import Share
@@ -33,6 +38,7 @@ if TYPE_CHECKING:
 BACKENDS = ("numpy", "c", "latex", "data")
 EXTRA = ("sympy", "flint", "jinja2")
 TOOLS = frozenset({"cli.py", "pipeline.py", "new.py", "tables.py", "report.py", "__main__.py"})
+TOOLS |= {"console.py", "disk.py", "versions.py"}
 OUTPUT = frozenset({"emit", "lower", "derivations", "generated", "templates"})
 """With ``TOOLS`` what no proof depends on, by its first name below ``closedform/``."""
 COMPILED = frozenset({".so", ".pyd", ".pyc"})
@@ -261,14 +267,8 @@ class Store:
         ``mark`` is the digest from before the proof: a script may be edited while it is proved.
         """
         data = {"digest": mark, "seconds": seconds, "proof": proof.as_dict()}
-        try:
-            path = self._path(source)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            unfinished = path.with_suffix(f".{os.getpid()}")
-            unfinished.write_text(json.dumps(data, indent=1) + "\n", "utf-8")
-            unfinished.replace(path)
-        except OSError:
-            pass
+        with contextlib.suppress(OSError):
+            replace(self._path(source), (json.dumps(data, indent=1) + "\n").encode())
 
     def _path(self, source: Source) -> Path:
         if self.folder is None:
@@ -429,10 +429,11 @@ def _in_processes(
     outcomes: dict[str, Printed | DerivationError] = {}
     context = multiprocessing.get_context("spawn")
     queue = context.SimpleQueue()
-    with ProcessPoolExecutor(jobs, context, _remember, (queue,)) as pool:
-        futures: dict[Future[Printed], str] = {
-            pool.submit(_reporting, job, source): source.name for source in chosen
-        }
+    with ProcessPoolExecutor(jobs, context, _prepare, (queue,)) as pool, _ending_at_once():
+        with _uninterrupted():
+            futures: dict[Future[Printed], str] = {
+                pool.submit(_reporting, job, source): source.name for source in chosen
+            }
         pending = set(futures)
         while pending:
             done, pending = wait(pending, 0.1, FIRST_COMPLETED)
@@ -447,12 +448,45 @@ def _in_processes(
     return outcomes
 
 
+@contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Processes that are started here do not see Ctrl-C: it is up to us to end them."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextlib.contextmanager
+def _ending_at_once() -> Iterator[None]:
+    """Do not wait for the proofs that are under way where one was interrupted."""
+    try:
+        yield
+    except BaseException:
+        for process in multiprocessing.active_children():
+            process.terminate()
+        raise
+
+
 _queue: Any = None
 
 
-def _remember(queue: Any) -> None:
+def _prepare(queue: Any) -> None:
+    """In a process of the pool: it ends with the one that started it, however that ends."""
     global _queue
     _queue = queue
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: Any) -> None:
+    parent.join()
+    os._exit(1)
 
 
 def _reporting(job: Callable[..., Printed], source: Source) -> Printed:
@@ -485,8 +519,7 @@ def write(root: Path, printed: Files) -> list[Path]:
     for path, text in sorted(printed.items()):
         target, content = root / path, text.encode()
         if not target.is_file() or target.read_bytes() != content:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(content)
+            replace(target, content)
             written.append(path)
     return written
 

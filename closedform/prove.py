@@ -118,6 +118,9 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
             verdict = claim.check.judge()
         except (Undecided, ValueError) as error:
             raise ProofError(f"{derivation.name}, claim {claim.label}: {error}") from error
+        except Exception as error:  # a check may call anything that its author wrote
+            what = f"{type(error).__name__}: {error}"
+            raise ProofError(f"{derivation.name}, claim {claim.label}: {what}") from error
         claims.append(
             ClaimResult(
                 claim.label,

@@ -6,6 +6,7 @@ import itertools
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 from typing import Any, TypeAlias
 
 import sympy as sp
@@ -27,6 +28,7 @@ _ANGLES = tuple(
 )
 _SIMPLE_POINTS = 400
 _RANDOM_POINTS = 200
+_COMPLETIONS = 20
 _BITS = 300  # tells a difference of 1e-80 from zero
 
 
@@ -55,12 +57,16 @@ def find_counterexample(
     symbols: Sequence[Symbol] | None = None,
     conditions: Sequence[Relational] = (),
     seed: int = 0,
+    sides: Sequence[Sequence[Expr]] = (),
 ) -> Counterexample | None:
     """The simplest point found where some entry provably differs from zero.
 
     Points are tried from the simplest on: small integers for coordinates, 1, 2, 3 for positive
     symbols, the usual fractions of `pi` for angles; then random rationals, the same on every run.
     Every condition must provably hold at the point. None if no point serves, which proves nothing.
+
+    ``sides`` holds, for each entry, the expressions that it is the difference of: all of them have
+    a value at the point, which therefore names their symbols too, even those that cancel.
     """
     entries: list[Expr] = sp.Matrix([difference]).flat()
     gaps = [_gap(c) for c in conditions]
@@ -69,6 +75,7 @@ def find_counterexample(
     evaluator = Evaluator(
         names, [*entries, *(g for g, _ in gaps)], rel_bits=_BITS, max_bits=4 * _BITS
     )
+    completions = [cache(partial(_Completion, names, exprs, seed)) for exprs in sides]
     for values in _points(names, _angles(entries), random.Random(seed)):
         try:
             balls = evaluator(values)
@@ -79,8 +86,35 @@ def find_counterexample(
             continue
         for entry, ball in enumerate(balls[: len(entries)]):
             if ball.is_finite() and not ball.contains(0):
-                return Counterexample(dict(zip(names, values, strict=True)), ball, entry)
+                point = dict(zip(names, values, strict=True))
+                completed = completions[entry]()(point) if completions else point
+                if completed is not None:
+                    return Counterexample(completed, ball, entry)
     return None
+
+
+class _Completion:
+    """Extends a point so that expressions have values there which hold more symbols than it has."""
+
+    def __init__(self, names: Sequence[Symbol], exprs: Sequence[Expr], seed: int):
+        free = {s for e in exprs for s in e.free_symbols}
+        self.missing = sorted(free - set(names), key=str)
+        self.evaluator = Evaluator([*names, *self.missing], exprs)
+        self.angles = _angles(exprs)
+        self.seed = seed
+
+    def __call__(self, point: dict[Symbol, Expr]) -> dict[Symbol, Expr] | None:
+        """The point with a value for each missing symbol, by name; None if none is found."""
+        draw = random.Random(self.seed)
+        for values in _points(self.missing, self.angles, draw, _COMPLETIONS, _COMPLETIONS):
+            completed = point | dict(zip(self.missing, values, strict=True))
+            try:
+                balls = self.evaluator(completed)
+            except Undetermined:
+                continue
+            if all(ball.is_finite() for ball in balls):
+                return {s: completed[s] for s in sorted(completed, key=str)}
+        return None
 
 
 def _gap(condition: Relational) -> tuple[Expr, bool]:
@@ -108,14 +142,18 @@ def _angles(entries: Sequence[Expr]) -> set[Symbol]:
 
 
 def _points(
-    names: Sequence[Symbol], angles: set[Symbol], draw: random.Random
+    names: Sequence[Symbol],
+    angles: set[Symbol],
+    draw: random.Random,
+    simple: int = _SIMPLE_POINTS,
+    drawn: int = _RANDOM_POINTS,
 ) -> Iterator[tuple[Expr, ...]]:
     """Points from simple to random, each coordinate within the assumptions on its symbol."""
     menus = [_menu(s, s in angles) for s in names]
-    yield from itertools.islice(_simplest(menus), _SIMPLE_POINTS)
-    for _ in range(_RANDOM_POINTS):
+    yield from itertools.islice(_simplest(menus), simple)
+    for _ in range(drawn):
         yield tuple(draw.choice(menu) for menu in menus)
-    for _ in range(_RANDOM_POINTS):
+    for _ in range(drawn):
         yield tuple(_rational(s, draw) for s in names)
 
 

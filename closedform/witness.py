@@ -21,7 +21,7 @@ def uncovered(derivation: Derivation, function: Function, inverse: Inverse) -> s
     if tuple(inverse.targets) != function.symbols:
         return ""
     parameters = [p.symbol for p in derivation.parameters]
-    values = [float(p.value) for p in derivation.parameters]
+    values = [np.float64(p.value) for p in derivation.parameters]  # divides by zero in silence
     revolute = [j.symbol for j in derivation.joints if j.kind == "revolute"]
     angular = np.array([u in revolute for u in inverse.unknowns])
     forward = sp.lambdify([*inverse.unknowns, *parameters], list(inverse.forward), "numpy")

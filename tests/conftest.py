@@ -4,8 +4,9 @@ import pickle
 from typing import Any
 
 import pytest
-from extension_toy.build import compiled
+from extension_toy.build import compile_toy, loaded
 from hypothesis import settings
+from sharing import shared
 
 from closedform.crosscheck import Finding, table
 
@@ -25,7 +26,7 @@ def findings(pytestconfig: pytest.Config) -> list[Finding]:
 @pytest.fixture(scope="session")
 def native(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The toy extension, for the tests of the runtime."""
-    return compiled(tmp_path_factory.mktemp("toy"))
+    return loaded(shared(tmp_path_factory, "toy", compile_toy))
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

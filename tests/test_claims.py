@@ -105,6 +105,32 @@ class TestIdentity:
         with pytest.raises(TypeError):
             Identity(x / 2, sp.Float("0.5") * x).judge()
 
+    @pytest.mark.parametrize(
+        ("printed", "derived", "evidence"),
+        [
+            (x + y, x + 2 * y, "at x = 0, y = 1 the printed form is 1, not 2"),
+            (sqrt(x - 2) + y, sqrt(x - 2), "at x = 2, y = 1 the printed form is 1, not 0"),
+            (1 / x + y, 1 / x + 2 * y, "at x = 1, y = 1 the printed form is 2, not 3"),
+            (
+                sp.Matrix([t, x + y]),
+                sp.Matrix([t, x]),
+                "entry (2,1): at x = 0, y = 1 the printed form is 1, not 0",
+            ),
+            ([x, sin(t) + x], (x, sin(t)), "part 2: at t = 0, x = 1 the printed form is 1, not 0"),
+        ],
+    )
+    def test_symbols_that_cancel_have_a_value_at_the_counterexample(
+        self, printed: object, derived: object, evidence: str
+    ) -> None:
+        verdict = Identity(printed, derived).judge()
+        assert (verdict.kind, verdict.evidence) == (REFUTED, evidence)
+
+    def test_symbols_of_an_assumption_and_of_an_approximation_cancel_too(self) -> None:
+        verdict = Identity(x + y, x, nonnegative=(t - 3,)).judge()
+        assert verdict.evidence == "at t = 3, x = 0, y = 1 the printed form is 1, not 0"
+        verdict = Identity(x + sin(t), x + t, small=t).judge()
+        assert verdict.kind == APPROXIMATION and "e.g. at t = pi/2, x = 0 " in verdict.evidence
+
     def test_what_can_be_neither_proved_nor_refuted_raises(self) -> None:
         with pytest.raises(Undecided):
             Identity(sqrt(3 + 2 * sqrt(2)), 1 + sqrt(2)).judge()  # true, but out of its sight
@@ -155,6 +181,10 @@ class TestDecimal:
         assert verdict.evidence.startswith(how)
         assert verdict.corrected == nearest
 
+    def test_an_exact_value_is_a_constant(self) -> None:
+        with pytest.raises(ValueError, match="2\\*x is not a constant: it depends on x"):
+            Decimal("3.2", 2 * x).judge()
+
     def test_unit(self) -> None:
         verdict = Decimal("3.2", pi, "cm").judge()
         assert verdict.evidence.endswith("the exact value is 3.141593 cm")
@@ -173,6 +203,16 @@ class TestPosture:
 
     def test_refuted_without_a_correction(self) -> None:
         assert Posture((cos(x), sin(x)), {x: pi}, self.target).judge().corrected == ""
+
+    def test_lengths_without_a_value_get_one_where_it_is_refuted(self) -> None:
+        verdict = Posture((r * cos(x), r * sin(x)), {x: pi}, (sp.Integer(0), r), {x: pi / 2})
+        assert verdict.judge().evidence == "at r = 1 they reach (-1, 0), not (0, 1)"
+        lost = Posture((y + cos(x), r), {x: pi}, (y, r)).judge()
+        assert lost.evidence == "at r = 1, y = 0 they reach (-1, 1), not (0, 1)"
+
+    def test_a_correction_may_depend_on_lengths(self) -> None:
+        verdict = Posture((x,), {x: sp.Integer(0)}, (r,), {x: r}).judge()
+        assert verdict.corrected == "x = r"
 
     def test_angle_that_is_no_fraction_of_a_turn(self) -> None:
         third = (sp.Rational(3, 5), sp.Rational(4, 5))
@@ -360,6 +400,16 @@ def test_relations_between_constants() -> None:
     assert Holds({"nested": sp.Eq(nested, 0, evaluate=False)}).judge().kind == PROVED
     wrong = Holds({"less": sp.true, "more": sp.Ge(two, 3, evaluate=False)}).judge()
     assert wrong == Verdict(REFUTED, "not so: more")
+    with pytest.raises(ValueError, match="x - y is not a constant: it depends on x, y"):
+        Holds({"less": x < y}).judge()
+    with pytest.raises(TypeError, match="neither an equation nor an inequality"):
+        Holds({"both": (x < 1) & (x > 0)}).judge()
+
+
+def test_nothing_is_not_proved() -> None:
+    for check in (Holds({}), Every({})):
+        with pytest.raises(ValueError, match="at least one"):
+            check.judge()
 
 
 def test_an_assumption_that_the_paper_leaves_open() -> None:

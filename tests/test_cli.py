@@ -11,24 +11,29 @@ import time
 from pathlib import Path
 
 import pytest
+from derivations_for_tests import SLIDER
 
 from closedform import pipeline
-from closedform.cli import Progress, main
+from closedform.cli import main
+from closedform.console import Progress
 
 README = Path(__file__).parents[1] / "README.md"
 
-SLIDER = '''"""A slider along x, with an offset."""
 
-import sympy as sp
+CLAIM = """
+from closedform.claims import Enumeration
+d.claim("table", "4 edges", Enumeration(4, lambda: {}[3], "edges"))
+"""
+WRONG_SIGN = """
+from closedform.claims import Identity
+d.claim("eq. (1)", "x = a - q_1", Identity(a - q1, a + q1))
+"""
 
-from closedform.derivation import Derivation, Paper
 
-d = Derivation("slider", "Slider", Paper("toy", "Toys", ("A. Nonymous",)), "One joint.", task=["x"])
-a = d.parameter("a", value=2, unit="m", meaning="offset")
-q1 = d.joint("q1", "prismatic")
-d.step("Position", "The joint and the offset add up.", {"x": a + q1}, equal=[(q1 + a, a + q1)])
-d.function("fk", "Position.", {"q": [q1]}, {"x": [a + q1]})
-'''
+@pytest.fixture(autouse=True)
+def no_progress(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is written to stderr does not hang on the time it takes."""
+    monkeypatch.setattr("closedform.console.PATIENCE", float("inf"))
 
 
 @pytest.fixture
@@ -149,12 +154,12 @@ def test_a_difference_found_by_the_cross_check_fails(
 
     write = cli._write
 
-    def spoiled(root: Path, printed: pipeline.Files) -> None:
+    def spoiled(root: Path, printed: pipeline.Files) -> list[Path]:
         path = Path("numpy/slider.py")
         if path in printed:
             assert "q1 + a," in printed[path]
             printed[path] = printed[path].replace("q1 + a,", "q1 - a,")
-        write(root, printed)
+        return write(root, printed)
 
     monkeypatch.setattr(cli, "_write", spoiled)
     output = tmp_path / "out"
@@ -197,6 +202,7 @@ def test_a_broken_neighbour_does_not_hold_up_a_robot(
         ("[a + q1]})", "[a + q1]})\nd = 3", "slider: slider.py must assign a Derivation to d"),
         ("import sympy", "import simpy", "slider: slider.py, line 3: ModuleNotFoundError"),
         ("[a + q1]", "[a + q1", "slider: SyntaxError"),
+        ("[a + q1]})", f"[a + q1]}}){CLAIM}", "slider: not proved: claim table: KeyError: 3"),
     ],
 )
 def test_a_broken_derivation_gets_one_clear_line(
@@ -209,6 +215,18 @@ def test_a_broken_derivation_gets_one_clear_line(
     assert error.startswith(f"closedform: {message}")
     assert "Traceback" not in error
     assert not (slider.parent / "out").exists()
+
+
+def test_a_wrong_sign_in_a_transcription_is_refuted(
+    slider: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    slider.write_text(SLIDER + WRONG_SIGN, "utf-8")
+    assert (
+        main(["derive", str(slider), "-o", str(slider.parent / "out"), "--backend", "latex"]) == 0
+    )
+    assert "claims: 1 refuted" in capsys.readouterr().out
+    errata = (slider.parent / "out" / "errata.md").read_text("utf-8")
+    assert "at a = 1, q1 = 1 the printed form is 0, not 2" in errata
 
 
 def test_an_output_folder_that_cannot_be_made(
@@ -282,12 +300,16 @@ def test_check_finds_every_kind_of_difference(
     assert "run make" in output.err
 
 
-def test_derive_mends_the_generated_folder(only_planar: Path) -> None:
+def test_derive_mends_the_generated_folder(
+    only_planar: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     before = times(only_planar)
     stale = only_planar / "numpy" / "old_robot.py"
     stale.write_text("", "utf-8")
     (only_planar / "c" / "planar_2r.c").write_text("edited\n", "utf-8")
     assert main(["derive"]) == 0
+    told = capsys.readouterr().err
+    assert f"changed in {only_planar}: c/planar_2r.c, numpy/old_robot.py\n" in told
     assert not stale.exists()
     after = times(only_planar)
     assert {path for path in before if after[path] != before[path]} == {
@@ -326,7 +348,7 @@ def test_progress_is_shown_only_when_it_takes_long(monkeypatch: pytest.MonkeyPat
     for patience, shown in ((60.0, False), (0.0, True)):
         stderr = io.StringIO()
         monkeypatch.setattr(sys, "stderr", stderr)
-        monkeypatch.setattr("closedform.cli.PATIENCE", patience)
+        monkeypatch.setattr("closedform.console.PATIENCE", patience)
         with Progress() as progress:
             progress("planar_2r", "inverse: ik")
             time.sleep(0.5)

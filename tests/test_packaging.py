@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy
 import pytest
+from sharing import shared
 
 from closedform.pipeline import checkout
 
@@ -23,20 +24,22 @@ OUTSIDE = shutil.ignore_patterns(".*", "build", "dist", "*.egg-info", "__pycache
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the sdist of this checkout, and the wheel that was built from the sdist."""
+    return shared(tmp_path_factory, "packaging", build)
+
+
+def build(folder: Path) -> None:
     assert ROOT is not None
-    folder = tmp_path_factory.mktemp("packaging")
     shutil.copytree(ROOT, folder / "checkout", ignore=OUTSIDE)
     run("-m", "build", "--no-isolation", "--outdir", folder, folder / "checkout")
-    return folder
+    (wheel,) = folder.glob("*.whl")
+    pip = ("-m", "pip", "install", "--quiet", "--no-deps", "--no-index")
+    run(*pip, "--target", folder / "target", wheel)
 
 
 @pytest.fixture(scope="module")
 def installed(built: Path) -> Path:
     """The wheel alone, unpacked into a folder."""
-    (wheel,) = built.glob("*.whl")
-    target = built / "target"
-    run("-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", target, wheel)
-    return target
+    return built / "target"
 
 
 def run(*arguments: str | Path) -> str:

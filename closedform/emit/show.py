@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import sympy as sp
 from sympy.printing.pretty.pretty import PrettyPrinter
+from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
 from closedform.derivation import Derivation
 from closedform.emit.text import citation
@@ -19,19 +20,26 @@ WIDTH = 100
 
 
 def show(
-    derivation: Derivation, proof: Proof | None, format: Literal["text", "latex"] = "text"
+    derivation: Derivation,
+    proof: Proof | None,
+    format: Literal["text", "latex"] = "text",
+    *,
+    pretty: bool = True,
 ) -> str:
-    """A derivation on the terminal: plain text of at most 100 columns, or the LaTeX article."""
+    """A derivation on the terminal: plain text of at most 100 columns, or the LaTeX article.
+
+    Formulas are drawn in Unicode, or in ASCII if not ``pretty``.
+    """
     if format == "latex":
         from closedform.emit.latex import document
         from closedform.emit.render import render
 
         empty = Proof(derivation.name, derivation.paper.key, (), 0, ())
         return render("latex/robot.tex.jinja", document(derivation, proof or empty))
-    return "\n".join(line.rstrip() for line in _lines(derivation, proof)) + "\n"
+    return "\n".join(line.rstrip() for line in _lines(derivation, proof, pretty)) + "\n"
 
 
-def _lines(derivation: Derivation, proof: Proof | None) -> Iterator[str]:
+def _lines(derivation: Derivation, proof: Proof | None, pretty: bool) -> Iterator[str]:
     yield from (derivation.title, "=" * len(derivation.title), "")
     yield from _wrap(derivation.mechanism)
     yield from _wrap(f"Source: {citation(derivation)}.")
@@ -50,7 +58,7 @@ def _lines(derivation: Derivation, proof: Proof | None) -> Iterator[str]:
             step.reason, WIDTH, initial_indent=3 * " ", subsequent_indent=3 * " "
         )
         for lhs, value in step.shown:
-            yield from _equation(plain(lhs), value)
+            yield from _equation(plain(lhs), value, pretty)
         for row in step.rows:
             yield from _wrap("  |  ".join(map(_cell, row)), 3)
         if step.vanishes and proof and step.title in proof.steps:
@@ -122,11 +130,17 @@ def _text(value: sp.Expr) -> str:
     return str(value)
 
 
-def _equation(lhs: str, value: Any) -> list[str]:
-    """Two-dimensional where it fits, else on lines of text."""
-    form = PrettyPrinter({"use_unicode": True, "wrap_line": False})._print(
-        sp.sympify(value, strict=True)
-    )
+def _equation(lhs: str, value: Any, pretty: bool) -> list[str]:
+    """Two-dimensional where it fits, else on lines of text; a value may be LaTeX."""
+    if isinstance(value, str):
+        return _wrap(f"{lhs} = {value}", 3)
+    before = pretty_use_unicode(pretty)  # roots and brackets go by this, not by the setting
+    try:
+        form = PrettyPrinter({"use_unicode": pretty, "wrap_line": False})._print(
+            sp.sympify(value, strict=True)
+        )
+    finally:
+        pretty_use_unicode(before)
     picture, space = list(form.picture), 3 + len(lhs) + 3
     if space + form.width() <= WIDTH:
         pad = " " * space
@@ -138,7 +152,7 @@ def _equation(lhs: str, value: Any) -> list[str]:
             line
             for i in range(value.rows)
             for j in range(value.cols)
-            for line in _equation(f"{lhs}[{i + 1},{j + 1}]", value[i, j])
+            for line in _equation(f"{lhs}[{i + 1},{j + 1}]", value[i, j], pretty)
         ]
     return _wrap(f"{lhs} = {value}", 3)
 

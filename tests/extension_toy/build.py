@@ -28,14 +28,20 @@ INCLUDES = [
 ]
 
 
-def compiled(folder: Path) -> Any:
-    target = folder / ("toy_native" + sysconfig.get_config_var("EXT_SUFFIX"))
+def _target(folder: Path) -> Path:
+    return folder / ("toy_native" + sysconfig.get_config_var("EXT_SUFFIX"))
+
+
+def compile_toy(folder: Path) -> None:
     command = [os.environ.get("CC", "cc"), "-std=c99", "-O2", "-fPIC", "-shared"]
     command += ["-fno-math-errno", "-fno-trapping-math", "-DCF_MODULE_NAME=toy_native"]
     command += SANITIZE if SANITIZED else []
     command += [*INCLUDES, *map(str, sorted(RUNTIME.glob("*.c"))), str(TOY), "-lm"]
-    subprocess.run([*command, "-o", str(target)], check=True)
-    spec = importlib.util.spec_from_file_location("toy_native", target)
+    subprocess.run([*command, "-o", str(_target(folder))], check=True)
+
+
+def loaded(folder: Path) -> Any:
+    spec = importlib.util.spec_from_file_location("toy_native", _target(folder))
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules["toy_native"] = module

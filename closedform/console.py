@@ -1,0 +1,167 @@
+"""What the command line writes: any character to any terminal, errors of streams, progress."""
+
+from __future__ import annotations
+
+import codecs
+import contextlib
+import io
+import os
+import re
+import shutil
+import sys
+import threading
+import time
+import unicodedata
+from types import TracebackType
+from typing import TextIO
+
+PATIENCE = 1.0
+"""Seconds of silence before progress is shown."""
+INTERVAL = 5.0
+"""Seconds between two lines of progress where the output is not a terminal."""
+ASCII = {"·": "*", "−": "-", "–": "-", "—": "-", "‘": "'", "’": "'", "“": '"', "”": '"'}
+ASCII |= {
+    "≤": "<=",
+    "≥": ">=",
+    "≠": "!=",
+    "±": "+/-",
+    "×": "x",
+    "°": " deg",
+    "→": "->",
+    "®": "(R)",
+    "§": "sec. ",
+}
+
+
+class StreamError(Exception):
+    """The standard output cannot be written to, and why."""
+
+
+def open_streams() -> None:
+    """Make the standard streams usable, whatever the caller has done to them.
+
+    A stream that was closed goes nowhere, and no file that is opened later takes its number.  What
+    the encoding of a stream does not have is written in ASCII.
+    """
+    if None in (sys.stdout, sys.stderr):
+        while os.open(os.devnull, os.O_RDWR) < 2:
+            pass
+    if sys.stderr is None:
+        sys.stderr = io.StringIO()
+    codecs.register_error("closedform", _ascii)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="closedform")
+
+
+def write(text: str) -> None:
+    """Write to the standard output.  A reader that has gone raises ``BrokenPipeError``."""
+    if sys.stdout is None:
+        raise StreamError("the standard output is closed")
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except OSError as error:
+        _discard(sys.stdout)
+        if isinstance(error, BrokenPipeError):
+            raise
+        raise StreamError(f"cannot write to the standard output: {error.strerror}") from error
+
+
+def say(text: str) -> None:
+    """Write a line to the standard error; where that is impossible, nobody is told."""
+    _show(f"{text}\n")
+
+
+def has(characters: str) -> bool:
+    """Whether the standard output can show these characters as they are."""
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    try:
+        characters.encode(encoding)
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _show(text: str) -> None:
+    try:
+        sys.stderr.write(text)
+        sys.stderr.flush()
+    except OSError:
+        _discard(sys.stderr)
+
+
+def _discard(stream: TextIO) -> None:
+    """Let what is left in a stream go nowhere, so that Python does not fail on it at the end."""
+    with contextlib.suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def _ascii(error: UnicodeError) -> tuple[str, int]:
+    """What a text has that an encoding has not, in ASCII: Greek letters by name, no accents."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    text = error.object[error.start : error.end]
+    return "".join(map(_plain, text)), error.end
+
+
+def _plain(character: str) -> str:
+    if character in ASCII:
+        return ASCII[character]
+    name = unicodedata.name(character, "")
+    if match := re.fullmatch(r"GREEK (SMALL|CAPITAL) LETTER (\w+)", name):
+        return match[2].lower() if match[1] == "SMALL" else match[2].capitalize()
+    decomposed = unicodedata.normalize("NFKD", character).encode("ascii", "ignore").decode()
+    return decomposed or character.encode("ascii", "backslashreplace").decode()
+
+
+class Progress:
+    """Says on stderr what is going on, once it takes long."""
+
+    def __init__(self) -> None:
+        self.start = time.monotonic()
+        self.current: dict[str, str] = {}
+        self.terminal = sys.stderr.isatty()
+        self.shown = 0.0
+        self.finished = threading.Event()
+        self.thread = threading.Thread(target=self._run, daemon=True)
+
+    def __call__(self, name: str, what: str) -> None:
+        if name:
+            self.current.pop("", None)
+        if what:
+            self.current[name] = what
+        else:
+            self.current.pop(name, None)
+
+    def __enter__(self) -> Progress:
+        self.thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.finished.set()
+        self.thread.join()
+        if self.terminal and self.shown:
+            _show("\r\x1b[K")
+
+    def _run(self) -> None:
+        while not self.finished.wait(0.2):
+            passed = time.monotonic() - self.start
+            due = self.terminal or not self.shown or passed - self.shown >= INTERVAL
+            if passed >= PATIENCE and due and self.current:
+                self.shown = passed
+                self._line(passed)
+
+    def _line(self, passed: float) -> None:
+        doing = [f"{n}: {what}" if n else what for n, what in sorted(self.current.copy().items())]
+        line = f"[{passed:4.0f} s] {' | '.join(doing)}"
+        if self.terminal:
+            line = line[: shutil.get_terminal_size().columns - 1]
+            _show(f"\r\x1b[K{line}")
+        else:
+            _show(f"{line}\n")

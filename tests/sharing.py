@@ -1,0 +1,25 @@
+"""What takes long to make is made once for all processes that run the tests."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from closedform.disk import locked
+
+
+def shared(
+    factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object] = lambda _: None
+) -> Path:
+    """A folder of this run of pytest; the process that comes first fills it."""
+    base = factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        base = base.parent
+    folder = base / name
+    with locked(base / f"{name}.lock"):
+        if not (base / f"{name}.made").exists():
+            folder.mkdir()
+            make(folder)
+            (base / f"{name}.made").touch()
+    return folder

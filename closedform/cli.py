@@ -254,7 +254,7 @@ def new_command(options: argparse.Namespace) -> None:
     except (ValueError, TypeError) as error:
         raise CommandError(str(error)) from error
     for note in notes:
-        print(f"closedform: note: {note}", file=sys.stderr)
+        console.say(f"closedform: note: {note}")
     _write(options.output, {Path(target.name): text})
     console.write(f"{target}; now: closedform derive {target} -o out\n")
 

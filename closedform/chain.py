@@ -59,6 +59,8 @@ class Chain:
     lengths: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
+    coefficients: set[sp.Symbol] = field(default_factory=set)
+    """Names of the coefficients of lemmas, which are proved for all values of them."""
 
     def __post_init__(self) -> None:
         self.joints = self.d.actuated
@@ -95,6 +97,18 @@ class Chain:
         if value.is_Symbol or value.is_number:
             return value
         return self.program.let(name, value)
+
+    def named(self, name: str, value: Any, **assumptions: bool) -> sp.Symbol:
+        """A name for a coefficient of a lemma."""
+        symbol = self.program.let(name, value, **assumptions)
+        self.coefficients.add(symbol)
+        return symbol
+
+    def coefficient(self, name: str, value: sp.Expr, **assumptions: bool) -> sp.Expr:
+        """A symbol, its negative or a number as it is; anything else under a name."""
+        if value.is_Symbol or (-value).is_Symbol or value.is_number:
+            return value
+        return self.named(name, value, **assumptions)
 
     def vector(self, name: str, value: sp.Matrix) -> sp.Matrix:
         return sp.Matrix([self.let(f"{name}_{i}", v) for i, v in zip("xyz", value, strict=False)])
@@ -144,7 +158,11 @@ class Chain:
         start = len(self.program.body)
         exact = [sp.Integer(a) if type(a) is int else a for a in arguments]
         applied: Applied = lemma(self, *exact, **options)
-        body: tuple[Statement, ...] = tuple(self.program.body[start:])
+        body: tuple[Statement, ...] = tuple(
+            s
+            for s in self.program.body[start:]
+            if not (isinstance(s, Let) and s.symbol in self.coefficients)
+        )
         for unknown in applied.lemma.solution:
             self._check_unknown(unknown, applied.lemma)
         self._check_coefficients(applied.lemma)

@@ -68,7 +68,7 @@ class Chain:
         sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
         self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
         places = self.forward[:3, 3] if self.is_pose else self.forward
-        self.size = sp.Add(*sized) + max(map(_lengths_in_numbers, places))
+        self.size = sp.Add(*sized) + max(map(lengths_in_numbers, places))
         if self.is_pose:
             self.T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
             self.R, self.p = self.T[:3, :3], self.T[:3, 3]
@@ -179,7 +179,8 @@ class Chain:
         if unknown not in {*self.joints, *self.defined, *self.lengths}:
             raise ShapeError(
                 f"{self.d.name}: the lemma {lemma.name!r} solves for {unknown}, which is neither "
-                f"a joint nor an auxiliary angle or length of the chain"
+                f"a joint nor an auxiliary angle or length of the chain; make it with d.joint, "
+                f"ik.angle or ik.length"
             )
         if unknown in self.values:
             raise ShapeError(
@@ -198,9 +199,9 @@ class Chain:
         if early:
             unknowns = ", ".join(map(str, lemma.solution))
             raise ShapeError(
-                f"{self.d.name}: the lemma {lemma.name!r} for {unknowns} "
-                f"is applied to an equation of another shape: {early[0]} stands in it, which no "
-                f"lemma has solved yet"
+                f"{self.d.name}: the lemma {lemma.name!r} for {unknowns} cannot be applied here: "
+                f"{early[0]} stands in its coefficients, which no lemma has solved yet; solve for "
+                f"{early[0]} before, or take an equation without it"
             )
 
     def pair_of(self, total: sp.Expr) -> Pair | None:
@@ -248,7 +249,10 @@ class Chain:
         self._solve_sums()
         missing = [j for j in self.joints if j not in self.values]
         if missing:
-            raise ShapeError(f"{d.name}: no lemma solves for {missing[0]}")
+            raise ShapeError(
+                f"{d.name}: no lemma solves for {missing[0]}; ik.finish needs every joint, solved "
+                f"for itself or left over in an auxiliary angle"
+            )
         choices = branches(*self.choices) if self.choices else SINGLE
         if self.name == "ik":
             d.branches = choices.labels
@@ -284,7 +288,7 @@ class Chain:
         return inverse
 
 
-def _lengths_in_numbers(place: sp.Expr) -> sp.Expr:
+def lengths_in_numbers(place: sp.Expr) -> sp.Expr:
     """The lengths in a coordinate that are numbers, not parameters: 3 of 3 cos(theta)."""
     total = sp.S.Zero
     for term in sp.Add.make_args(sp.expand(place)):
@@ -298,4 +302,4 @@ def _lengths_in_numbers(place: sp.Expr) -> sp.Expr:
     return total
 
 
-__all__ = ["Chain", "Choice"]
+__all__ = ["Chain", "Choice", "lengths_in_numbers"]

@@ -216,9 +216,23 @@ def derive_command(options: argparse.Namespace) -> None:
     width = max(len(robot.name) for robot in result.robots)
     for robot in result.robots:
         print(robot.line(width))
+    if not own:
+        for robot, source in zip(result.robots, chosen, strict=True):
+            print(f"{robot.proof.outcome()}; next: {_next(robot, source, root, backends)}")
     if own and not options.names:
         for path in pipeline.extra_files(root, printed, backends):
             (root / path).unlink()
+
+
+def _next(
+    robot: pipeline.Printed, source: pipeline.Source, root: Path, backends: Sequence[str]
+) -> str:
+    """What to do with one robot that was printed into a folder of the user's."""
+    if not robot.proof.inverses:
+        return f"write the inverse in {source.path.name}; docs/adding-a-mechanism.md says how"
+    names = {"numpy": f"{robot.name}.py", "c": f"{robot.name}.c", "latex": f"{robot.name}.tex"}
+    printed = [str(root / b / names[b]) for b in backends if b in names]
+    return f"use {' and '.join(printed) or root}"
 
 
 def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
@@ -268,11 +282,11 @@ def new_command(options: argparse.Namespace) -> None:
     if target.exists():
         raise CommandError(f"{target} exists already")
     try:
-        text = new(options.name, kind, path, modified=options.modified)
+        script = new(options.name, kind, path, modified=options.modified)
     except (ValueError, TypeError) as error:
         raise CommandError(str(error)) from error
-    _write(options.output, {Path(target.name): text})
-    print(f"{target}; now: closedform derive {target} -o out")
+    _write(options.output, {Path(target.name): script.text})
+    print(f"{target}: {script.inverse}; next: closedform derive {target} -o out")
 
 
 def errata_command(options: argparse.Namespace) -> None:

@@ -282,8 +282,8 @@ def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
     pair = chain.pair_of(total)
     if pair is None:
         raise ShapeError(
-            f"{chain.d.name}: {joint} = {total} must be a sum of solved angles and angles of the "
-            f"target, each once"
+            f"{chain.d.name}: the lemma 'remaining angle' cannot read {joint} from {total}: it "
+            f"needs a sum of solved angles and angles of the target, each of them once"
         )
     lemma = Lemma(
         "remaining angle",

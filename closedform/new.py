@@ -9,7 +9,9 @@ from __future__ import annotations
 import json
 import re
 import sys
+import textwrap
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -18,6 +20,7 @@ import sympy as sp
 
 from closedform.arm import RowError, Serial, from_dh, from_screws
 from closedform.derivation import Derivation, Paper
+from closedform.mobility import SingularEverywhereError
 from closedform.names import check_robot, check_text
 from closedform.propose import NoChainError, propose, source
 from closedform.tables import (
@@ -34,8 +37,16 @@ IMPORTS = frozenset({"numpy", "sympy", "flint", "jinja2"})
 """Modules that a script beside them, of the same name, would hide."""
 
 
-def new(name: str, kind: str, path: Path, *, modified: bool = False) -> str:
-    """The source of a derivation called ``name``, from a table of the given kind.
+@dataclass(frozen=True)
+class Script:
+    """The source of a derivation, and a clause on the inverse that it proposes or lacks."""
+
+    text: str
+    inverse: str
+
+
+def new(name: str, kind: str, path: Path, *, modified: bool = False) -> Script:
+    """A derivation called ``name``, from a table of the given kind.
 
     ``kind`` is ``"dh"`` (then ``modified`` rows are Craig's) or ``"screws"``.  Raises
     ``ValueError`` where the name or the table cannot be used, with the place and the remedy.
@@ -49,11 +60,11 @@ def new(name: str, kind: str, path: Path, *, modified: bool = False) -> str:
         check_text(f"{path.name}: {symbol}", given.get("meaning", ""), given.get("unit", ""))
     try:
         return skeleton(name, table, path.name)
-    except RowError as error:
+    except (RowError, SingularEverywhereError) as error:
         raise TableError(f"{path.name}: {str(error).removeprefix(f'{name}: ')}") from error
 
 
-def skeleton(name: str, table: Table, origin: str) -> str:
+def skeleton(name: str, table: Table, origin: str) -> Script:
     """The script, with the inverse that is proposed or a place for it."""
     origin = re.sub(r"[^\w .()-]", "_", origin)
     d = Derivation(name, name, Paper("own", "own", ()), "")
@@ -66,6 +77,7 @@ def skeleton(name: str, table: Table, origin: str) -> str:
         d.joint(joint, kind)  # type: ignore[arg-type]
     known = {s.name: s for s in (*(p.symbol for p in d.parameters), *d.actuated)}
     arm = _arm(d, table, known)
+    arm.require_regular(name)
     title = name.replace("_", " ").capitalize()
     lines = [
         f'"""{title}: a derivation from {origin}."""',
@@ -95,9 +107,9 @@ def skeleton(name: str, table: Table, origin: str) -> str:
         argument = ', "prismatic"' if kind == "prismatic" else ""
         lines.append(f'{joint} = d.joint("{joint}"{argument})')
     lines += ["", *_table_lines(table), "forward = arm.export(d)", ""]
-    lines += _inverse_lines(arm)
-    text = "\n".join(lines) + "\n"
-    return text.replace("IMPORTS", _imports(text))
+    inverse, outcome = _inverse_lines(arm)
+    text = "\n".join([*lines, *inverse]) + "\n"
+    return Script(text.replace("IMPORTS", _imports(text)), outcome)
 
 
 def _arm(d: Derivation, table: Table, known: Mapping[str, Any]) -> Serial:
@@ -133,28 +145,33 @@ def _table_lines(table: Table) -> list[str]:
     ]
 
 
-def _inverse_lines(arm: Serial) -> list[str]:
+def _inverse_lines(arm: Serial) -> tuple[list[str], str]:
+    """The lines for the inverse, and what there is of it."""
     task = arm.coordinates()
     angles = ', angles=["yaw"]' if task and "yaw" in task.names else ""
     chain = f"ik = Chain(d, forward{angles})"
     try:
         found = propose(arm)
     except NoChainError as error:
-        reason = str(error).replace("\n", " ")
+        outcome = f"no inverse, because {error.found}"
+        reason = f"No inverse is proposed, because {error.found}.  {error.needed}"
         return [
-            f"# Inverse: {reason}.",
-            "# Put it here, lemma by lemma; docs/adding-a-mechanism.md says how:",
+            *textwrap.wrap(reason, 98, initial_indent="# ", subsequent_indent="# "),
+            "# Write it here, lemma by lemma, in the place of the last line of this file;",
+            "# docs/adding-a-mechanism.md says how:",
             f"# {chain}",
             "# ik.solve(turn, theta1, a, b, c, {+1: 'left', -1: 'right'})",
             '# ik.finish("All solutions.")',
-        ]
+            f"d.no_inverse({json.dumps(error.found)})",
+        ], outcome
+    count = f"{found.branches} branch{'es' if found.branches > 1 else ''}"
     return [
         f"# Inverse, as proposed for: {found.structure}.",
         "# Edit it as you like, and name the branches; the proof decides.",
         chain,
         *found.lines,
         'ik.finish("All solutions of the inverse kinematics.")',
-    ]
+    ], f"an inverse with {count} is proposed ({found.structure})"
 
 
 def _imports(text: str) -> str:

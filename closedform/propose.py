@@ -431,10 +431,10 @@ class _Maker:
         )
 
     def _pose(self, groups: list[Group]) -> str:
-        for k, group in enumerate(groups[-2:], 5):
+        for k, group in ((6, groups[-1]), (5, groups[-2])):
             self._require(
                 len(group.rows) == 1,
-                f"axes {6 if k == 6 else 4} and {5} are parallel",
+                f"axes {k - 1} and {k} are parallel",
                 "The last three axes must change direction.",
             )
             self._require(

@@ -113,7 +113,10 @@ def axis(**given: str) -> str:
         (AXIS + '[home]\nposition = ["t1", 0, 0]\n', "at home all joints are zero"),
         (axis() + "rotation = 3\n", "rotation has 3 rows of 3 entries, not 3"),
         (axis() + "rotation = [[1, 0], [0, 1, 0], [0, 0, 1]]\n", "rotation, row 1 needs 3"),
-        (axis() + "rotation = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]\n", "is none: the rows must be"),
+        (
+            axis() + "rotation = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]\n",
+            "is not a rotation: the rows must be",
+        ),
         (axis() + "rotation = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]\n", "is mirrored"),
     ],
 )

@@ -541,7 +541,7 @@ class _Maker:
         epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
         if e[1].is_negative:
             epsilon = sp.atan2(-e[1], -e[0]) - sp.pi / 2
-        ahead = sp.atan2(w[1], w[0]) - epsilon
+        ahead = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - epsilon
         lengths = f"{source(_length(u))}, {source(_length(v))}"
         self.add(
             f"reaching = Reaching(ik, q[0], q[1], {source(length)}, {lengths}, "

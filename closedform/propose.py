@@ -22,6 +22,7 @@ from sympy.printing.str import StrPrinter
 
 from closedform import linklemmas
 from closedform.arm import Group, Serial
+from closedform.axes import met
 from closedform.frames import rotation
 from closedform.pairs import Pair
 
@@ -445,7 +446,7 @@ class _Maker:
             slide, turn = third.rows
             groups[-3:-2] = [_plain(Group((slide,), sp.eye(3))), Group((turn,), third.end)]
         for k in (-2, -1):
-            groups[k - 1 : len(groups) + k + 1] = _met(groups[k - 1], groups[k])
+            groups[k - 1 : len(groups) + k + 1] = met(groups[k - 1], groups[k])
         wrist = groups[-2:]
         self._require(
             wrist[0].rows[0].shift[:2] == (0, 0),
@@ -572,28 +573,6 @@ def _plain(group: Group) -> Group:
     R = rotation("z", row.turn)
     shift = tuple(R * sp.Matrix(row.shift))
     return Group((row._replace(turn=sp.S.Zero, shift=shift),), R * group.end)
-
-
-def _met(before: Group, after: Group) -> list[Group]:
-    """The groups, with the origin of the second moved along its axis to where the first is met.
-
-    The point that a table of screws names is any on the axis.
-    """
-    *others, last = before.rows
-    direction, shift = before.end * Z, sp.Matrix(last.shift)
-    across = direction[:2, 0]
-    if shift[:2, 0].is_zero_matrix or across.is_zero_matrix:
-        return [before, after]
-    t = -sp.simplify(across.dot(shift[:2, 0]) / across.dot(across))
-    moved = (shift + t * direction).applyfunc(sp.simplify)
-    if not moved[:2, 0].is_zero_matrix:
-        return [before, after]
-    x, y, z = after.rows[0].shift
-    first = after.rows[0]._replace(shift=(x, y, sp.simplify(z - t)))
-    return [
-        Group((*others, last._replace(shift=tuple(moved))), before.end),
-        Group((first, *after.rows[1:]), after.end),
-    ]
 
 
 def _at(name: str) -> Any:

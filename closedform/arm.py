@@ -26,6 +26,7 @@ from closedform.frames import (
 )
 from closedform.functions import reject_text
 from closedform.links import Group, Link, Motion, Row, groups_of
+from closedform.mobility import dependent_joints, singular_everywhere
 
 
 class RowError(ValueError):
@@ -65,6 +66,15 @@ class Serial:
         """
         return _determinant(self.middle)
 
+    def require_regular(self, name: str) -> None:
+        """Raise :class:`~closedform.mobility.SingularEverywhereError` if no posture is regular."""
+        task, n = self.coordinates(), len(self.joints)
+        if task is None and n != 6:
+            return
+        J = self.middle if task is None else task.J
+        if dependent_joints(J, self.joints)[0] < n and _determinant(J) == 0:
+            raise singular_everywhere(name, J, self.joints)
+
     def coordinates(self) -> Coordinates | None:
         """As many task coordinates as joints: of x, y, z and the yaw those that the joints move.
 
@@ -96,6 +106,7 @@ class Serial:
         where the arm has as many (see :meth:`coordinates`), else the pose.
         """
         q, task = self.joints, self.coordinates()
+        self.require_regular(d.name)
         d.step(
             "Pose",
             "The product of the motions from link to link, the angles of parallel axes added.",
@@ -187,7 +198,8 @@ class Serial:
         summary = "The factors of the determinant that hold a joint."
         d.function("singularities", summary, {"q": q}, {"factors": factors})
         if len(d.singularities) != len(factors):
-            d.singularities = tuple(f"{f} = 0".replace("**", "^") for f in factors)
+            shown = (f.primitive()[1] for f in factors)
+            d.singularities = tuple(f"{f} = 0".replace("**", "^") for f in shown)
 
 
 @dataclass(frozen=True)
@@ -353,7 +365,9 @@ def _constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
     for symbol in sorted(exact.free_symbols - {p.symbol for p in d.parameters}, key=str):
         if symbol in joints:
             raise RowError(f"{where}: the joint {symbol} stands in it; at home all joints are zero")
-        raise RowError(f"{where}: the symbol {symbol} is no parameter; declare it with d.parameter")
+        raise RowError(
+            f"{where}: the symbol {symbol} is not a parameter; declare it with d.parameter"
+        )
     return exact
 
 
@@ -383,8 +397,8 @@ def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
     R = T[:3, :3]
     if sp.simplify(R.T * R) != sp.eye(3):
         raise RowError(
-            f"{where}: its rotation {R.tolist()} is not one: {_not_orthonormal(R)}; the rows must "
-            f"be unit vectors at right angles to each other, written exactly (sqrt(3)/2, not 0.866)"
+            f"{where}: {R.tolist()} is not a rotation: {_not_orthonormal(R)}; the rows must be "
+            f"unit vectors at right angles to each other, written exactly (sqrt(3)/2, not 0.866)"
         )
     if sp.simplify(R.det()) != 1:
         raise RowError(
@@ -511,7 +525,29 @@ def _determinant(J: sp.Matrix) -> sp.Expr:
     """Over the polynomials in sines and cosines, reduced on their circles, factored."""
     reduced = determinant(J)
     found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
-    return found
+    return _in_decimals(found)
+
+
+def _in_decimals(product: sp.Expr) -> sp.Expr:
+    """Sums whose coefficients were made whole numbers, by factoring, over a power of ten again.
+
+    A factor then has the size of the lengths that are numbers in it, not a million times that.
+    """
+    number, others = product.as_coeff_Mul()
+    whole, rest = [], []
+    for factor in sp.Mul.make_args(others):
+        base, power = factor.as_base_exp()
+        terms = base.as_coefficients_dict() if base.is_Add else {}
+        digits = len(str(max((abs(int(c)) for c in terms.values()), default=0)))
+        if digits > 1:
+            number *= 10 ** (digits * power)
+            whole.append(sp.Add(*(c * t / 10**digits for t, c in terms.items())) ** power)
+        else:
+            rest.append(factor)
+    if len(whole) == 1 and whole[0].is_Add:
+        whole = [sp.Add(*(number * t for t in whole[0].args))]
+        number = sp.S.One
+    return number * sp.Mul(*whole, *rest)
 
 
 __all__ = [

@@ -59,6 +59,8 @@ class Chain:
     lengths: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
+    coefficients: set[sp.Symbol] = field(default_factory=set)
+    """Names of the coefficients of lemmas, which are proved for all values of them."""
 
     def __post_init__(self) -> None:
         self.joints = self.d.actuated
@@ -66,7 +68,7 @@ class Chain:
         sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
         self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
         places = self.forward[:3, 3] if self.is_pose else self.forward
-        self.size = sp.Add(*sized) + max(map(_lengths_in_numbers, places))
+        self.size = sp.Add(*sized) + max(map(lengths_in_numbers, places))
         if self.is_pose:
             self.T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
             self.R, self.p = self.T[:3, :3], self.T[:3, 3]
@@ -95,6 +97,18 @@ class Chain:
         if value.is_Symbol or value.is_number:
             return value
         return self.program.let(name, value)
+
+    def named(self, name: str, value: Any, **assumptions: bool) -> sp.Symbol:
+        """A name for a coefficient of a lemma."""
+        symbol = self.program.let(name, value, **assumptions)
+        self.coefficients.add(symbol)
+        return symbol
+
+    def coefficient(self, name: str, value: sp.Expr, **assumptions: bool) -> sp.Expr:
+        """A symbol, its negative or a number as it is; anything else under a name."""
+        if value.is_Symbol or (-value).is_Symbol or value.is_number:
+            return value
+        return self.named(name, value, **assumptions)
 
     def vector(self, name: str, value: sp.Matrix) -> sp.Matrix:
         return sp.Matrix([self.let(f"{name}_{i}", v) for i, v in zip("xyz", value, strict=False)])
@@ -144,7 +158,11 @@ class Chain:
         start = len(self.program.body)
         exact = [sp.Integer(a) if type(a) is int else a for a in arguments]
         applied: Applied = lemma(self, *exact, **options)
-        body: tuple[Statement, ...] = tuple(self.program.body[start:])
+        body: tuple[Statement, ...] = tuple(
+            s
+            for s in self.program.body[start:]
+            if not (isinstance(s, Let) and s.symbol in self.coefficients)
+        )
         for unknown in applied.lemma.solution:
             self._check_unknown(unknown, applied.lemma)
         self._check_coefficients(applied.lemma)
@@ -161,7 +179,8 @@ class Chain:
         if unknown not in {*self.joints, *self.defined, *self.lengths}:
             raise ShapeError(
                 f"{self.d.name}: the lemma {lemma.name!r} solves for {unknown}, which is neither "
-                f"a joint nor an auxiliary angle or length of the chain"
+                f"a joint nor an auxiliary angle or length of the chain; make it with d.joint, "
+                f"ik.angle or ik.length"
             )
         if unknown in self.values:
             raise ShapeError(
@@ -180,9 +199,9 @@ class Chain:
         if early:
             unknowns = ", ".join(map(str, lemma.solution))
             raise ShapeError(
-                f"{self.d.name}: the lemma {lemma.name!r} for {unknowns} "
-                f"is applied to an equation of another shape: {early[0]} stands in it, which no "
-                f"lemma has solved yet"
+                f"{self.d.name}: the lemma {lemma.name!r} for {unknowns} cannot be applied here: "
+                f"{early[0]} stands in its coefficients, which no lemma has solved yet; solve for "
+                f"{early[0]} before, or take an equation without it"
             )
 
     def pair_of(self, total: sp.Expr) -> Pair | None:
@@ -243,7 +262,10 @@ class Chain:
         self._solve_sums()
         missing = [j for j in self.joints if j not in self.values]
         if missing:
-            raise ShapeError(f"{d.name}: no lemma solves for {missing[0]}")
+            raise ShapeError(
+                f"{d.name}: no lemma solves for {missing[0]}; ik.finish needs every joint, solved "
+                f"for itself or left over in an auxiliary angle"
+            )
         choices = branches(*self.choices) if self.choices else SINGLE
         if self.name == "ik":
             d.branches = choices.labels
@@ -279,7 +301,7 @@ class Chain:
         return inverse
 
 
-def _lengths_in_numbers(place: sp.Expr) -> sp.Expr:
+def lengths_in_numbers(place: sp.Expr) -> sp.Expr:
     """The lengths in a coordinate that are numbers, not parameters: 3 of 3 cos(theta)."""
     total = sp.S.Zero
     for term in sp.Add.make_args(sp.expand(place)):
@@ -293,4 +315,4 @@ def _lengths_in_numbers(place: sp.Expr) -> sp.Expr:
     return total
 
 
-__all__ = ["Chain", "Choice"]
+__all__ = ["Chain", "Choice", "lengths_in_numbers"]

@@ -184,7 +184,11 @@ def derive_command(options: argparse.Namespace) -> None:
     if not own and not options.no_crosscheck:
         _crosscheck(root, chosen, backends)
     width = max(len(robot.name) for robot in result.robots)
-    console.write("".join(f"{robot.line(width)}\n" for robot in result.robots))
+    lines = [robot.line(width) for robot in result.robots]
+    if not own:
+        for robot, source in zip(result.robots, chosen, strict=True):
+            lines.append(f"{robot.proof.outcome()}; next: {_next(robot, source, root, backends)}")
+    console.write("".join(f"{line}\n" for line in lines))
 
 
 def _update(root: Path, printed: pipeline.Files, whole: Sequence[str]) -> None:
@@ -198,6 +202,17 @@ def _update(root: Path, printed: pipeline.Files, whole: Sequence[str]) -> None:
         names = ", ".join(str(path) for path in changed[:NAMED])
         more = f" and {len(changed) - NAMED} more" if len(changed) > NAMED else ""
         console.say(f"closedform: changed in {root}: {names}{more}")
+
+
+def _next(
+    robot: pipeline.Printed, source: pipeline.Source, root: Path, backends: Sequence[str]
+) -> str:
+    """What to do with one robot that was printed into a folder of the user's."""
+    if not robot.proof.inverses:
+        return f"write the inverse in {source.path.name}; docs/adding-a-mechanism.md says how"
+    names = {"numpy": f"{robot.name}.py", "c": f"{robot.name}.c", "latex": f"{robot.name}.tex"}
+    printed = [str(root / b / names[b]) for b in backends if b in names]
+    return f"use {' and '.join(printed) or root}"
 
 
 def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
@@ -244,19 +259,18 @@ def new_command(options: argparse.Namespace) -> None:
     _require_extra()
     from closedform.new import check_name, new
 
-    notes: list[str] = []
     try:
         check_name(options.name)
         target = options.output / f"{options.name}.py"
         if os.path.lexists(target):
             raise CommandError(f"{target} exists already")
-        text = new(options.name, kind, path, modified=options.modified, report=notes.append)
+        script = new(options.name, kind, path, modified=options.modified)
     except (ValueError, TypeError) as error:
         raise CommandError(str(error)) from error
-    for note in notes:
+    for note in script.notes:
         console.say(f"closedform: note: {note}")
-    _write(options.output, {Path(target.name): text})
-    console.write(f"{target}; now: closedform derive {target} -o out\n")
+    _write(options.output, {Path(target.name): script.text})
+    console.write(f"{target}: {script.inverse}; next: closedform derive {target} -o out\n")
 
 
 def errata_command(options: argparse.Namespace) -> None:

@@ -19,6 +19,7 @@ import sympy as sp
 from flint import arb
 from numpy.typing import NDArray
 
+from closedform.chain import lengths_in_numbers
 from closedform.derivation import Derivation, Inverse
 from closedform.functions import Bound, Function, Let, Vanishes
 from closedform.lower import lower
@@ -30,8 +31,8 @@ WELL_CONDITIONED = 3.0
 """An error of more ulps is set against how much the value moves when its inputs do."""
 
 NESTED = 64.0
-"""The natural scale counts for at most so many times the largest value or parameter: that of a long
-chain of steps, each with the scale of the one before, says nothing any more."""
+"""The natural scale counts for at most so many times the largest value or parameter, or length that
+is a number: that of a long chain of steps, each with the scale of the one before, says nothing."""
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 
@@ -139,6 +140,7 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     margins = [_margins(function, symbols, signs) for _, signs in function.cases()]
     entries = len(exprs) // len(cases)
     flags = [_margins(function, symbols, signs, Vanishes) for _, signs in function.cases()]
+    lengths = _lengths_in_numbers(derivation)
     for sample in joint_samples(derivation, function):
         sample = _round(_thinned(sample, len(exprs)), backend)
         if not len(sample.values):
@@ -156,7 +158,8 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
             scales = magnitudes(values, backend.dtype)
             exacts = reference(values)
             sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
-            most = NESTED * max([*sizes, *map(abs, sample.parameters)], default=1.0)
+            given = [abs(p) for p in (*sample.parameters, *lengths)]
+            most = NESTED * max([*sizes, *given], default=1.0)
             for k, exact in enumerate(exacts):
                 if not exists[k // entries]:
                     if exists[k // entries] is False and not np.isnan(computed[row, k]):
@@ -173,6 +176,12 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     if not finding.worst <= allowed:
         finding.fail(f"{finding.worst:.3g} ulp: {finding.where}")
     return finding
+
+
+def _lengths_in_numbers(derivation: Derivation) -> list[float]:
+    """Of each coordinate of the tool: a number in the place of a parameter is as large as one."""
+    poses = [f.outputs[0].entries for f in derivation.functions if f.name == "pose"]
+    return [float(lengths_in_numbers(place)) for entries in poses for place in entries[3:12:4]]
 
 
 def check_boolean(derivation: Derivation, function: Function, backend: Backend) -> Finding:
@@ -432,10 +441,16 @@ def _check_known(
 
 
 def _movement(truth: _Truth, backend: Backend, sample: Sample, solutions: NDArray[Any]) -> float:
-    """How far the answers move when every coordinate of the target moves by an ulp."""
-    nearby = _nearby(backend, sample)
-    moved = truth.gap(_call(backend, truth.function, nearby)[0], solutions)
-    return float(np.max(moved, initial=0.0, where=np.isfinite(moved)))
+    """How far the answers move when every coordinate of the target moves by an ulp.
+
+    An ulp may be lost in the rounding of what is computed first, so four count as well.
+    """
+    largest = 0.0
+    for ulps in (1, 4):
+        nearby = _nearby(backend, sample, ulps)
+        moved = truth.gap(_call(backend, truth.function, nearby)[0], solutions) / ulps
+        largest = float(np.max(moved, initial=largest, where=np.isfinite(moved)))
+    return largest
 
 
 def _leaves_the_workspace(truth: _Truth, backend: Backend, sample: Sample) -> bool:
@@ -451,11 +466,12 @@ def _leaves_the_workspace(truth: _Truth, backend: Backend, sample: Sample) -> bo
     )
 
 
-def _nearby(backend: Backend, sample: Sample) -> Sample:
-    """Targets that are off one target by an ulp of every coordinate."""
+def _nearby(backend: Backend, sample: Sample, ulps: int = 1) -> Sample:
+    """Targets that are off one target by some ulps of every coordinate."""
     columns = np.arange(sample.values.shape[1])
     signs = np.array([(-1) ** ((pattern >> (columns % 2)) & 1) for pattern in range(4)])
-    return Sample(sample.name, sample.values * (1 + signs * backend.eps), sample.parameters)
+    moved = sample.values * (1 + ulps * signs * backend.eps)
+    return Sample(sample.name, moved, sample.parameters)
 
 
 def table(findings: Sequence[Finding]) -> Iterator[str]:

@@ -285,6 +285,8 @@ class Derivation:
     functions: list[Function] = field(default_factory=list)
     tables: list[Table] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
+    without_inverse: str = ""
+    """Why there is no inverse, as a clause; empty where there is one, or nobody says why."""
 
     def parameter(
         self,
@@ -405,6 +407,11 @@ class Derivation:
     def claim(self, label: str, printed: str, check: Check, where: str = "") -> None:
         """Transcribe a statement of the paper, with the check that will judge it."""
         self.claims.append(Claim(label, printed, check, where))
+
+    def no_inverse(self, because: str) -> None:
+        """Say why there is no inverse, in a clause such as ``"axes 5 and 6 do not intersect"``."""
+        check_text(f"{self.name}: no_inverse", because)
+        self.without_inverse = because
 
     def __getitem__(self, name: str) -> Function:
         for function in self.functions:

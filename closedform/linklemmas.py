@@ -1,14 +1,15 @@
 """The lemmas of :mod:`closedform.lemmas` as links of a chain: each hands its joint on as a pair.
 
-The first argument is the :class:`~closedform.chain.Chain`; coefficients that are no symbols get
-names, so that a lemma is proved for all values of them.  Boundary and degenerate cases are as in
-:mod:`closedform.lemmas`: products of differences under the roots, ``atan2`` at the output, a
-convention where a joint is free.
+The first argument is the :class:`~closedform.chain.Chain`.  A coefficient is a symbol or a number;
+any other expression gets a name, so that the lemma is proved for all its values.  Boundary and
+degenerate cases are as in :mod:`closedform.lemmas`: products of differences under the roots,
+``atan2`` at the output, a convention where a joint is free.  A case that the numbers of an arm rule
+out gets no flag.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -16,11 +17,12 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from closedform.derivation import Degenerate
-from closedform.functions import choose, real
+from closedform.functions import Let, choose, real
 from closedform.lemmas import Lemma, heron_factors, label
 from closedform.pairs import Pair, amplitude_lemma
 from closedform.shapes import ShapeError
 from closedform.solutions import rotation_parametrisation
+from closedform.tolerances import FLOAT
 
 if TYPE_CHECKING:
     from closedform.chain import Chain, Choice
@@ -48,6 +50,39 @@ def named(chain: Chain, angle: sp.Symbol, pair: Pair) -> tuple[Pair, dict[sp.Sym
     return names, {names.s: sp.sin(angle), names.c: sp.cos(angle)}
 
 
+def differs_from_zero(chain: Chain, value: sp.Expr, scale: sp.Expr) -> bool:
+    """Whether a value is a number that no tolerance takes for zero on its scale, a number as well.
+
+    Where the scale holds a parameter, a number may be as small beside it as one likes.
+    """
+    numbers = {
+        s.symbol: s.value for s in chain.program.body if isinstance(s, Let) and s.value.is_number
+    }
+    value, scale = sp.sympify(value).xreplace(numbers), sp.sympify(scale).xreplace(numbers)
+    if not (value.is_number and scale.is_number):
+        return False
+    return bool(abs(value) > 2 * sp.Rational(FLOAT.feasibility) * scale)
+
+
+def vanishing(*coefficients: sp.Expr) -> dict[sp.Symbol, sp.Expr] | None:
+    """Where all coefficients vanish; None where one is a number other than zero."""
+    if any(e.is_number and e != 0 for e in coefficients):
+        return None
+    return {s: sp.S.Zero for e in coefficients for s in e.free_symbols}
+
+
+def degenerate(
+    flag: sp.Basic,
+    loci: Sequence[Mapping[sp.Symbol, sp.Expr] | None],
+    free: sp.Symbol | None,
+    meaning: str,
+) -> tuple[Degenerate, ...]:
+    """The cases of a flag to prove: none where there is no flag, or the case cannot occur."""
+    if not isinstance(flag, sp.Symbol):
+        return ()
+    return tuple(Degenerate((flag,), locus, free, meaning) for locus in loci if locus is not None)
+
+
 def turn(
     chain: Chain,
     x: sp.Symbol,
@@ -61,25 +96,25 @@ def turn(
     """``a sin x + b cos x = c``: both solutions.  x is free where ``a = b = c = 0``."""
     p, tag = chain.program, name or label(x)
     sigma = chain.sign(tag, choice)
+    a, b, c = (
+        chain.coefficient(f"{n}_turn{tag}", e) for n, e in zip("abc", (a, b, c), strict=True)
+    )
     h = p.let(f"h{tag}", sp.sqrt(a**2 + b**2), nonnegative=True)
     half = chain.size / 2  # what is clamped stays well within the round trip that is promised
     below = p.bound(f"below{tag}", h - c, half, "the amplitude is not smaller than c")
     above = p.bound(f"above{tag}", h + c, half, "the amplitude is not smaller than -c")
-    flag = p.vanishes(f"free{tag}", h, chain.size, f"the axis of {x.name} is met", free=(x,))
+    flag: Any = sp.false
+    if not any(differs_from_zero(chain, e, chain.size) for e in (a, b, c)):
+        flag = p.vanishes(f"free{tag}", h, chain.size, f"the axis of {x.name} is met", free=(x,))
     root = p.let(f"root{tag}", sp.sqrt(below) * sp.sqrt(above), nonnegative=True)
     width = p.let(f"width{tag}", below + above, nonnegative=True)
     away = Pair(2 * sigma * root / width, (above - below) / width)
     both = Pair(a / h, b / h) + away
     pair, means = named(chain, x, Pair(choose(flag, 0, both.s), choose(flag, 1, both.c)))
-    coefficients = sorted({s for e in (a, b, c) for s in e.free_symbols}, key=str)
     lemma = amplitude_lemma(x, a, b, c, pair)
-    free = Degenerate(
-        (flag,),
-        dict.fromkeys(coefficients, sp.S.Zero),
-        x,
-        f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned.",
-    )
-    return Applied(lemma, pair, means, {}, (free,))
+    meaning = f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned."
+    cases = degenerate(flag, [vanishing(a, b, c)], x, meaning)
+    return Applied(lemma, pair, means, {}, cases)
 
 
 def two_links(
@@ -106,15 +141,30 @@ def two_links(
     """
     p, scale = chain.program, chain.size if scale is None else scale
     sigma = chain.sign(name, choice)
+    for length in (l1, l2):
+        if length.is_negative:
+            raise ShapeError(
+                f"{chain.d.name}: the two-link arm for {first} and {second} has the length "
+                f"{length}; give it as positive, and add pi to the angle of that link"
+            )
+    apart = [l1 - l2, x, y]
+    x, y = (e if e.is_Symbol else chain.named(f"{n}_{name}", e) for n, e in (("x", x), ("y", y)))
+    l1, l2 = (
+        chain.coefficient(f"l{i}_{name}", e, nonnegative=True) for i, e in enumerate((l1, l2), 1)
+    )
     r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
     half = scale / 2  # what is clamped stays well within the round trip that is promised
     S, A, B, C = heron_factors(p, l1, l2, r, half, suffix=f"_{name}")
-    no_link = p.vanishes(
-        f"no_link_{name}", l1 * l2, (l1 + l2) ** 2, "a link has no length", free=(second,)
-    )
-    folded = p.vanishes(
-        f"folded_{name}", r, scale, f"the arm ends on the axis of {first}", free=(first,)
-    )
+    no_link: Any = sp.false
+    if not differs_from_zero(chain, l1 * l2, (l1 + l2) ** 2):
+        no_link = p.vanishes(
+            f"no_link_{name}", l1 * l2, (l1 + l2) ** 2, "a link has no length", free=(second,)
+        )
+    folded: Any = sp.false
+    if not any(differs_from_zero(chain, e, scale) for e in apart):
+        folded = p.vanishes(
+            f"folded_{name}", r, scale, f"the arm ends on the axis of {first}", free=(first,)
+        )
     root = p.let(
         f"area_{name}", 2 * sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C), nonnegative=True
     )
@@ -148,25 +198,35 @@ def two_links(
         {first: lift.angle, second: bend.angle},
         2,
     )
-    cases = []
-    if x.is_Symbol and y.is_Symbol:
-        toward = real("beta")
-        if l2.is_Symbol and l1 != l2:
-            cases.append(
-                Degenerate(
-                    (folded,),
-                    {x: sp.S.Zero, y: sp.S.Zero, l2: l1},
-                    first,
-                    f"equal links folded onto the axis of {first}, which is free; 0 is returned.",
-                )
-            )
-            reached = {x: l1 * sp.cos(toward), y: l1 * sp.sin(toward), l2: sp.S.Zero}
-            cases.append(
-                Degenerate(
-                    (no_link,), reached, second, f"a link without length: {second} is free; 0."
-                )
-            )
-    return Applied(lemma, (lift, bend), means | more, {}, tuple(cases))
+    meaning = f"equal links folded onto the axis of {first}, which is free; 0 is returned."
+    cases = degenerate(folded, [_folded(x, y, l1, l2)], first, meaning)
+    meaning = f"a link without length: {second} is free; 0."
+    cases += degenerate(no_link, _stretched(x, y, l1, l2), second, meaning)
+    return Applied(lemma, (lift, bend), means | more, {}, cases)
+
+
+def _folded(
+    x: sp.Symbol, y: sp.Symbol, l1: sp.Expr, l2: sp.Expr
+) -> dict[sp.Symbol, sp.Expr] | None:
+    """Equal links that end where they begin; None where numbers make them unequal."""
+    end = {x: sp.S.Zero, y: sp.S.Zero}
+    if l1 == l2:
+        return end
+    if l2.is_Symbol:
+        return end | {l2: l1}
+    return end | {l1: l2} if l1.is_Symbol else None
+
+
+def _stretched(
+    x: sp.Symbol, y: sp.Symbol, l1: sp.Expr, l2: sp.Expr
+) -> list[dict[sp.Symbol, sp.Expr]]:
+    """Either link without length, and the other in any direction."""
+    u = real("beta")
+    return [
+        {x: (l1 + l2 - gone) * sp.cos(u), y: (l1 + l2 - gone) * sp.sin(u), gone: sp.S.Zero}
+        for gone in dict.fromkeys((l1, l2))
+        if gone.is_Symbol and l1 != l2
+    ]
 
 
 def polar(
@@ -185,8 +245,11 @@ def polar(
     """
     p = chain.program
     sigma = chain.sign(name, choice) if choice else sp.S.One
+    x, y = (chain.coefficient(f"{n}_{name}", e) for n, e in (("x", x), ("y", y)))
     r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
-    flag = p.vanishes(f"on_axis_{name}", r, chain.size, f"the axis of {angle} is met", (angle,))
+    flag: Any = sp.false
+    if not any(differs_from_zero(chain, e, chain.size) for e in (x, y)):
+        flag = p.vanishes(f"on_axis_{name}", r, chain.size, f"the axis of {angle} is met", (angle,))
     pair, means = named(
         chain, angle, Pair(choose(flag, 0, sigma * y / r), choose(flag, 1, sigma * x / r))
     )
@@ -200,13 +263,9 @@ def polar(
         2 if choice else 1,
         excluded=0 if choice else 1,
     )
-    free = Degenerate(
-        (flag,),
-        {s: sp.S.Zero for e in (x, y) for s in e.free_symbols},
-        angle,
-        f"the axis of {angle} is met; {angle} is free, 0 is returned.",
-    )
-    return Applied(lemma, (pair, value), means | {value: length}, {}, (free,))
+    meaning = f"the axis of {angle} is met; {angle} is free, 0 is returned."
+    cases = degenerate(flag, [vanishing(x, y)], angle, meaning)
+    return Applied(lemma, (pair, value), means | {value: length}, {}, cases)
 
 
 def slide(chain: Chain, joint: sp.Symbol, value: sp.Expr) -> Applied:
@@ -224,8 +283,8 @@ def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
     pair = chain.pair_of(total)
     if pair is None:
         raise ShapeError(
-            f"{chain.d.name}: {joint} = {total} must be a sum of solved angles and angles of the "
-            f"target, each once"
+            f"{chain.d.name}: the lemma 'remaining angle' cannot read {joint} from {total}: it "
+            f"needs a sum of solved angles and angles of the target, each of them once"
         )
     lemma = Lemma(
         "remaining angle",

@@ -8,15 +8,19 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from closedform.arm import RowError, Serial, from_dh, from_screws
 from closedform.derivation import Derivation, Paper
 from closedform.formulas import number
+from closedform.mobility import SingularEverywhereError
 from closedform.names import check_robot, check_text
-from closedform.propose import NoChainError, propose, source
+from closedform.propose import NoChainError, propose
+from closedform.python_source import source
 from closedform.tables import (
     CHAIN,
     IMPORTED,
@@ -31,6 +35,18 @@ IMPORTS = frozenset({"numpy", "sympy", "flint", "jinja2"})
 """Modules that a script beside them, of the same name, would hide."""
 
 
+@dataclass(frozen=True)
+class Script:
+    """The source of a derivation, and a clause on the inverse that it proposes or lacks.
+
+    The ``notes`` say what of the table was read otherwise than it is written.
+    """
+
+    text: str
+    inverse: str
+    notes: tuple[str, ...] = ()
+
+
 def check_name(name: str) -> None:
     """Raise ``ValueError`` unless a script may have this name."""
     check_robot(name)
@@ -38,19 +54,11 @@ def check_name(name: str) -> None:
         raise ValueError(f"{name} is a module of Python; choose another name, such as {name}_arm")
 
 
-def new(
-    name: str,
-    kind: str,
-    path: Path,
-    *,
-    modified: bool = False,
-    report: Callable[[str], None] = lambda note: None,
-) -> str:
-    """The source of a derivation called ``name``, from a table of the given kind.
+def new(name: str, kind: str, path: Path, *, modified: bool = False) -> Script:
+    """A derivation called ``name``, from a table of the given kind.
 
-    ``kind`` is ``"dh"`` (then ``modified`` rows are Craig's) or ``"screws"``.  ``report`` is called
-    with each note on what was read otherwise than it is written.  Raises ``ValueError`` where the
-    name or the table cannot be used, with the place and the remedy.
+    ``kind`` is ``"dh"`` (then ``modified`` rows are Craig's) or ``"screws"``.  Raises
+    ``ValueError`` where the name or the table cannot be used, with the place and the remedy.
     """
     check_name(name)
     table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
@@ -58,12 +66,9 @@ def new(
     for symbol, given in table.parameters.items():
         check_text(f"{path.name}: {symbol}", given.get("meaning", ""), given.get("unit", ""))
     try:
-        script = skeleton(name, table, path.name)
-    except RowError as error:
+        return skeleton(name, table, path.name)
+    except (RowError, SingularEverywhereError) as error:
         raise TableError(f"{path.name}: {str(error).removeprefix(f'{name}: ')}") from error
-    for note in table.notes:
-        report(note)
-    return script
 
 
 def _literal(text: str) -> str:
@@ -77,7 +82,7 @@ def _comment(text: str) -> str:
     return "# " + "".join(c if c.isprintable() else "?" for c in line)
 
 
-def skeleton(name: str, table: Table, origin: str) -> str:
+def skeleton(name: str, table: Table, origin: str) -> Script:
     """The script, with the inverse that is proposed or a place for it."""
     origin = re.sub(r"[^\w .()-]", "_", origin)
     d = Derivation(name, name, Paper("own", "own", ()), "")
@@ -92,6 +97,7 @@ def skeleton(name: str, table: Table, origin: str) -> str:
         d.joint(joint, kind)  # type: ignore[arg-type]
     known = {s.name: s for s in (*(p.symbol for p in d.parameters), *d.actuated)}
     arm = _arm(d, table, known)
+    arm.require_regular(name)
     title = name.replace("_", " ").capitalize()
     lines = [
         f'"""{title}: a derivation from {origin}."""',
@@ -122,9 +128,9 @@ def skeleton(name: str, table: Table, origin: str) -> str:
         argument = ', "prismatic"' if kind == "prismatic" else ""
         lines.append(f'{joint} = d.joint("{joint}"{argument})')
     lines += ["", *_table_lines(table), "forward = arm.export(d)", ""]
-    lines += _inverse_lines(arm)
-    text = "\n".join(lines) + "\n"
-    return text.replace("IMPORTS", _imports(text))
+    inverse, outcome = _inverse_lines(arm)
+    text = "\n".join([*lines, *inverse]) + "\n"
+    return Script(text.replace("IMPORTS", _imports(text)), outcome, tuple(table.notes))
 
 
 def _arm(d: Derivation, table: Table, known: Mapping[str, Any]) -> Serial:
@@ -159,27 +165,33 @@ def _table_lines(table: Table) -> list[str]:
     ]
 
 
-def _inverse_lines(arm: Serial) -> list[str]:
+def _inverse_lines(arm: Serial) -> tuple[list[str], str]:
+    """The lines for the inverse, and what there is of it."""
     task = arm.coordinates()
     angles = ', angles=["yaw"]' if task and "yaw" in task.names else ""
     chain = f"ik = Chain(d, forward{angles})"
     try:
         found = propose(arm)
     except NoChainError as error:
+        outcome = f"no inverse, because {error.found}"
+        reason = f"No inverse is proposed, because {error.found}.  {error.needed}"
         return [
-            _comment(f"Inverse: {error}."),
-            "# Put it here, lemma by lemma; docs/adding-a-mechanism.md says how:",
+            *map(_comment, textwrap.wrap(reason, 98)),
+            "# Write it here, lemma by lemma, in the place of the last line of this file;",
+            "# docs/adding-a-mechanism.md says how:",
             f"# {chain}",
             "# ik.solve(turn, theta1, a, b, c, {+1: 'left', -1: 'right'})",
             '# ik.finish("All solutions.")',
-        ]
+            f"d.no_inverse({_literal(error.found)})",
+        ], outcome
+    count = f"{found.branches} branch{'es' if found.branches > 1 else ''}"
     return [
         _comment(f"Inverse, as proposed for: {found.structure}."),
         "# Edit it as you like, and name the branches; the proof decides.",
         chain,
         *found.lines,
         'ik.finish("All solutions of the inverse kinematics.")',
-    ]
+    ], f"an inverse with {count} is proposed ({found.structure})"
 
 
 def _imports(text: str) -> str:

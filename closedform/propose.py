@@ -13,28 +13,34 @@ the engineer accepts or edits them, and the proof decides.  Known are
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import sympy as sp
-from sympy.printing.str import StrPrinter
 
 from closedform import linklemmas
 from closedform.arm import Group, Serial
+from closedform.axes import met
 from closedform.frames import rotation
 from closedform.pairs import Pair
+from closedform.python_source import source
 
 Z = sp.Matrix([0, 0, 1])
 NAMES = ("Abs", "Matrix", "Rational", "atan", "atan2", "cos", "pi", "sin", "sqrt")
 """What the lines use of SymPy."""
-NAME = re.compile(r"[A-Za-z_]\w*(\[\d\]|\.[cs])?", re.ASCII)
-"""Of a symbol, of an entry of a vector, or of the sine or the cosine of a pair."""
 
 
 class NoChainError(ValueError):
-    """No chain of lemmas is known for an arm, and why."""
+    """No chain of lemmas is known for an arm.
+
+    ``found`` is a clause, the property of this arm that stands in the way; ``needed`` is a sentence
+    on what the known chains need, and what can be done.
+    """
+
+    def __init__(self, found: str, needed: str):
+        super().__init__(f"no chain of lemmas is known for this arm, because {found}.  {needed}")
+        self.found, self.needed = found, needed
 
 
 @dataclass(frozen=True)
@@ -44,6 +50,7 @@ class Proposal:
     structure: str
     lines: tuple[str, ...]
     lemmas: tuple[str, ...]
+    branches: int
 
     @property
     def source(self) -> str:
@@ -66,32 +73,12 @@ class Proposal:
         exec(compile(self.source, "proposal", "exec"), names)
 
 
-class _Source(StrPrinter):  # type: ignore[misc]
-    """Expressions as Python; a fraction of integers stays exact."""
-
-    def _print_Symbol(self, expr: Any) -> str:
-        if not NAME.fullmatch(expr.name):
-            raise ValueError(f"{expr.name!r} is not a name that can stand in a line of Python")
-        return str(expr.name)
-
-    def _print_Rational(self, expr: Any) -> str:
-        return f"Rational({expr.p}, {expr.q})"
-
-    def _print_MatrixBase(self, expr: Any) -> str:
-        rows = [[self._print(e) for e in expr.row(i)] for i in range(expr.rows)]
-        return "Matrix([" + ", ".join(f"[{', '.join(row)}]" for row in rows) + "])"
-
-
-def source(e: Any) -> str:
-    text: str = _Source().doprint(sp.sympify(e, strict=True))
-    return text
-
-
 def propose(arm: Serial) -> Proposal:
     """The chain for an arm; raises :class:`NoChainError` where none is known."""
     maker = _Maker(arm)
     structure = maker.whole()
-    return Proposal(structure, tuple(maker.lines), tuple(dict.fromkeys(maker.used)))
+    lemmas = tuple(dict.fromkeys(maker.used))
+    return Proposal(structure, tuple(maker.lines), lemmas, maker.branches)
 
 
 @dataclass
@@ -102,22 +89,34 @@ class _Maker:
     lines: list[str] = field(default_factory=list)
     used: list[str] = field(default_factory=list)
     count: int = 0
+    branches: int = 1
 
     def whole(self) -> str:
         groups, task = [_plain(group) for group in self.arm.groups], self.arm.coordinates()
         if task is None and len(self.arm.joints) == 6:
             return self._pose(groups)
         if task is None:
+            joints = len(self.arm.joints)
             raise NoChainError(
-                f"no chain is known for {len(self.arm.joints)} joints whose task is the pose"
+                f"its joints, {joints} in number, fit no task",
+                "An inverse needs as many coordinates as joints: a pose needs 6 joints, and fewer "
+                "joints must move nothing of the tool but x, y, z or its turn about z.",
             )
         if "yaw" in task.names:
             return self._level(groups, task.names)
         if task.names == ("x", "y"):
-            self._require(len(groups) == 1, "the axes of a planar arm are parallel")
+            self._require(
+                len(groups) == 1,
+                "its axes are not parallel",
+                "The axes of an arm with the task x, y must be.",
+            )
             return self._planar(groups[0], task.names)
         if task.names != ("x", "y", "z"):
-            raise NoChainError(f"no chain is known for the task {', '.join(task.names)}")
+            raise NoChainError(
+                f"it moves the tool in {' and '.join(task.names)}",
+                "The known tasks are x, y and x, y, z, both with or without the turn about z, and "
+                "the pose; a planar arm must have its axes along z.",
+            )
         self.add("p = Matrix(ik.x)")
         self._lead_away("p")
         tool = groups[-1].end * self.arm.last[:3, 3]
@@ -130,13 +129,15 @@ class _Maker:
     def add(self, line: str) -> None:
         self.lines.append(line)
 
-    def solve(self, lemma: str, arguments: str, result: str = "") -> None:
+    def solve(self, lemma: str, arguments: str, result: str = "", branches: int = 1) -> None:
         self.used.append(lemma)
+        self.branches *= branches
         self.add(f"{result + ' = ' if result else ''}ik.solve({lemma}, {arguments})")
 
-    def _require(self, condition: bool, what: str) -> None:
+    def _require(self, condition: Any, found: str, needed: str) -> None:
+        """What was ``found`` where the condition does not hold, and what is ``needed``."""
         if not condition:
-            raise NoChainError(f"no chain is known for this arm: {what}")
+            raise NoChainError(found, needed)
 
     def _lead_away(self, vector: str) -> None:
         R, p = self.arm.lead[:3, :3], self.arm.lead[:3, 3]
@@ -165,7 +166,13 @@ class _Maker:
         """
         (first, second), (u, v) = joints, vectors
         lengths = [_length(w) for w in (u, v)]
-        self._require(0 not in lengths, "a link of the plane arm has no length")
+        self._require(
+            0 not in lengths,
+            f"the link {lengths.index(0) + 1 if 0 in lengths else 0} of its planar two-link part "
+            "has no length",
+            "Both need one.  If the last is missing, say where the tool is: by the last row of the "
+            "table, or for a modified table by tool= of from_dh.",
+        )
         at = [sp.atan2(w[1], w[0]) for w in (u, v)]
         a = self.angle(first + at[0])
         b = self.angle(second + at[1] - at[0])
@@ -176,7 +183,7 @@ class _Maker:
                 self.add(f"link{i} = ik.program.let('link{i}', {source(value)}, nonnegative=True)")
             names.append(source(value) if value.is_Symbol else f"link{i}")
         arguments = f"{a}, {b}, {x}, {y}, {', '.join(names)}"
-        self.solve("two_links", f"{arguments}, {{+1: 'up', -1: 'down'}}{more}", f"{a}_, {b}_")
+        self.solve("two_links", f"{arguments}, {{+1: 'up', -1: 'down'}}{more}", f"{a}_, {b}_", 2)
         self.pairs = (f"{a}_", f"{b}_")
 
     def angle(self, value: Any) -> str:
@@ -191,8 +198,12 @@ class _Maker:
 
     def _planar(self, group: Group, names: Sequence[str]) -> str:
         turns = [i for i, row in enumerate(group.rows) if not row.slides]
-        self._require(len(turns) == 2, "two revolute joints")
-        self._require(turns[0] == 0 and self._plain_lead(), "the first axis is that of z")
+        self._require(
+            len(turns) == 2 == len(group.rows),
+            f"{len(turns)} of its joints turn and {len(group.rows) - len(turns)} slide",
+            "A planar arm with the task x, y needs two that turn.",
+        )
+        self._require_z("its first axis is not the z axis of the base")
         vectors = self._links(group, turns)
         self._tool(group, vectors)
         self.add("x, y = ik.x[0], ik.x[1]")
@@ -200,8 +211,9 @@ class _Maker:
         self._two_links([group.rows[i].turn for i in turns], vectors, x, y, alone=True)
         return "planar arm of two links"
 
-    def _plain_lead(self) -> bool:
-        return bool(self.arm.lead[:3, :3] == sp.eye(3))
+    def _require_z(self, found: str) -> None:
+        needed = "Choose the base frame so that its z axis is parallel to the first axis."
+        self._require(sp.eye(3) == self.arm.lead[:3, :3], found, needed)
 
     def _less_by(self, offset: sp.Matrix) -> tuple[str, str]:
         """The names of x and y, less what lies between them and the two links."""
@@ -217,13 +229,21 @@ class _Maker:
 
     def _level(self, groups: Sequence[Group], names: Sequence[str]) -> str:
         """Arms that turn about one axis: two links and a yaw, with or without a slide."""
-        self._require(len(groups) == 1, "all axes are parallel")
-        self._require(self._plain_lead(), "the axes are along z")
+        self._require(
+            len(groups) == 1,
+            "its axes are not parallel",
+            "The axes of an arm with the task x, y (and z) and yaw must be.",
+        )
+        self._require_z("its first axis is not parallel to the z axis of the base")
         (group,) = groups
         rows = group.rows
         turns = [i for i, row in enumerate(rows) if not row.slides]
         slides = [i for i, row in enumerate(rows) if row.slides]
-        self._require(len(turns) == 3 and len(slides) < 2, "three turns and at most one slide")
+        self._require(
+            len(turns) == 3 and len(slides) < 2,
+            f"{len(turns)} of its joints turn and {len(slides)} slide",
+            "An arm with a yaw in its task needs three that turn, and may have one that slides.",
+        )
         vectors = self._links(group, turns)
         self._tool(group, vectors)
         self.add(f"{', '.join(names)} = ik.x")
@@ -256,8 +276,9 @@ class _Maker:
         if kinds in (["RP", "P"], ["PR", "P"]):
             return self._cylinder(groups)
         raise NoChainError(
-            f"no chain is known for the axes {' | '.join(kinds)} (R turns, P slides, | where the "
-            "direction changes) in this geometry"
+            f"the joints that carry its tool or wrist are {' | '.join(kinds)} (R turns, P slides, "
+            "| where the direction changes)",
+            "Known are R | RR, R | R | P, RP | P, PR | P and P | P | P.",
         )
 
     def _gantry(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
@@ -267,7 +288,9 @@ class _Maker:
             at, R = at + R * sp.Matrix(group.rows[0].shift), R * group.end
         solved = sp.solve(list(at - _at("p")), joints, dict=True)
         self._require(
-            len(solved) == 1 and set(solved[0]) == set(joints), "the three slides are independent"
+            len(solved) == 1 and set(solved[0]) == set(joints),
+            "the directions of its three slides lie in a plane",
+            "They must not.",
         )
         for joint in joints:
             self.solve("slide", f"{joint}, {source(solved[0][joint])}")
@@ -280,16 +303,25 @@ class _Maker:
         direction = base.end * Z
         offset = sum((sp.Matrix(row.shift) for row in base.rows), sp.zeros(3, 1))
         offset += base.end * sp.Matrix(arm.rows[0].shift)
-        self._require(direction[2] == 0, "the second slide is normal to the axis")
+        self._require(
+            direction[2] == 0,
+            "its last slide is not at right angles to its first axis",
+            "In a cylindrical arm it must be.",
+        )
         along, across, up = direction.dot(offset), Z.cross(direction).dot(offset), offset[2]
-        self._require(sp.simplify(across) == 0, "the second slide meets the axis")
+        self._require(
+            sp.simplify(across) == 0,
+            "the line of its last slide through the tool does not meet the first axis",
+            "In a cylindrical arm it must.",
+        )
         lift, reach = (
             _symbol(self.arm, base.rows, slide),
             _only(along.free_symbols & set(self.arm.joints)),
         )
         a = self.angle(turn.turn + sp.atan2(direction[1], direction[0]))
         length = self.length(along, reach)
-        self.solve("polar", f"{a}, {length}, p[0], p[1], {{+1: 'front', -1: 'back'}}", f"{a}_, _")
+        sides = "{+1: 'front', -1: 'back'}"
+        self.solve("polar", f"{a}, {length}, p[0], p[1], {sides}", f"{a}_, _", 2)
         self._length_back(length, along, reach)
         (value,) = sp.solve(up - _at("p")[2], lift)
         self.solve("slide", f"{lift}, {source(value)}")
@@ -321,11 +353,15 @@ class _Maker:
     def _turret(self, groups: Sequence[Group], kinds: Sequence[str]) -> tuple[str, list[str]]:
         base, second = groups[0], groups[1]
         normal = base.end * Z
-        self._require(normal[2] == 0, "the second axis is normal to the first")
+        self._require_normal(normal[2], 1, 2)
         beside = sum((row.shift[2] for row in second.rows), sp.S.Zero)
         if kinds[1:] == ["R", "P"]:
             along = second.end * sp.Matrix(groups[2].rows[0].shift)
-            self._require((second.end * Z)[2] == 0, "the slide is normal to the second axis")
+            self._require(
+                (second.end * Z)[2] == 0,
+                "its slide is not at right angles to axis 2",
+                "In a polar arm it must be.",
+            )
             beside += along[2]
         pair1 = self._turn_base(base, beside)
         if kinds[1:] == ["RR"]:
@@ -340,7 +376,11 @@ class _Maker:
         direction = second.end * Z
         length = sp.Matrix(direction[:2]).dot(out)
         sideways = sp.simplify(direction[0] * out[1] - direction[1] * out[0])
-        self._require(sideways == 0, "the slide meets the second axis")
+        self._require(
+            sideways == 0,
+            "the line of its slide through the tool or wrist does not meet axis 2",
+            "In a polar arm it must.",
+        )
         slide = self.arm.joints[2]
         offset = sp.atan2(direction[1], direction[0])
         a = self.angle(second.rows[0].turn + offset)
@@ -349,6 +389,7 @@ class _Maker:
             "polar",
             f"{a}, {name}, q[0], q[1], {{+1: 'front', -1: 'back'}}, name='slide'",
             f"{a}_, _",
+            2,
         )
         self._length_back(name, length, slide)
         return "turret, a joint and a slide (polar arm)", [
@@ -368,6 +409,7 @@ class _Maker:
             "turn",
             f"{joint}, {a}, {b}, {source(c)}, {{+1: 'left', -1: 'right'}}",
             "turn1",
+            2,
         )
         inside = f"(turned(turn1).T * p - {source(sp.Matrix(row.shift))})"
         self.add(f"q = ik.vector('q', {_times(base.end.T, inside)})")
@@ -375,15 +417,35 @@ class _Maker:
 
     # Arms of six joints
 
+    def _require_normal(self, along: Any, first: int, second: int) -> None:
+        self._require(
+            along == 0,
+            f"axes {first} and {second} are not at right angles",
+            "In the known chains they must be.",
+        )
+
     def _pose(self, groups: list[Group]) -> str:
+        for k, group in ((6, groups[-1]), (5, groups[-2])):
+            self._require(
+                len(group.rows) == 1,
+                f"axes {k - 1} and {k} are parallel",
+                "The last three axes must change direction.",
+            )
+            self._require(
+                not group.rows[0].slides, f"joint {k} slides", "The last two joints must turn."
+            )
         third = groups[-3]
         if [row.slides for row in third.rows] == [True, False]:  # a slide along the axis 4
             slide, turn = third.rows
             groups[-3:-2] = [_plain(Group((slide,), sp.eye(3))), Group((turn,), third.end)]
-        for group in groups[-2:]:
-            self._require(len(group.rows) == 1 and not group.rows[0].slides, "two last axes turn")
+        for k in (-2, -1):
+            groups[k - 1 : len(groups) + k + 1] = met(groups[k - 1], groups[k])
         wrist = groups[-2:]
-        self._require(wrist[0].rows[0].shift[:2] == (0, 0), "the axis 6 passes by the axis 5")
+        self._require(
+            wrist[0].rows[0].shift[:2] == (0, 0),
+            "axes 5 and 6 do not intersect",
+            "In the known chains they do.",
+        )
         offset = self._tool_behind(wrist[1])
         self.add(f"p = ik.vector('w', ik.p - ik.R * {source(offset)})")
         self._lead_away("p")
@@ -393,11 +455,16 @@ class _Maker:
             and not any(row.slides for row in groups[-3].rows)
         ):
             return self._three_parallel(groups)
-        self._require(len(groups[-3].rows) == 1, "the axes 4, 5 and 6 change direction")
+        self._require(
+            len(groups[-3].rows) == 1,
+            "axes 3 and 4 are parallel",
+            "They may be only where axes 2, 3 and 4 are parallel and turn, as in a UR arm.",
+        )
         first = groups[-3]
         self._require(
             first.rows[0].shift[:2] == (0, 0) and wrist[0].rows[0].shift == (0, 0, 0),
-            "the last three axes meet in a point",
+            "axes 4, 5 and 6 do not meet in a point",
+            "The known chains have a spherical wrist, or parallel axes 2, 3 and 4 (UR).",
         )
         carried = groups[:-3]
         last = carried[-1].rows[-1]
@@ -425,12 +492,12 @@ class _Maker:
     ) -> tuple[str, Any]:
         """ZYZ angles of ``lift``, of the fifth and the sixth joint, with their offsets."""
         e, sense = first.end * Z, 1
-        self._require(e[2] == 0, "the axis 5 is normal to the axis 4")
+        self._require_normal(e[2], 4, 5)
         if e[1].is_negative:  # a turn about -y is one about y, backwards
             e, sense = -e, -1
         epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
         W = rotation("z", -epsilon) * first.end * wrist[0].end
-        self._require(sp.simplify(W[1, 2]) == 0, "the axis 6 is normal to the axis 5")
+        self._require_normal(sp.simplify(W[1, 2]), 5, 6)
         tau = sp.atan2(W[0, 2], W[2, 2])
         rest = sp.simplify(rotation("y", -tau) * W)
         omega = sp.atan2(rest[1, 0], rest[0, 0])
@@ -443,16 +510,15 @@ class _Maker:
             self.angle(sense * turns[0] + tau),
             self.angle(turns[1] + omega),
         )
-        self.solve(
-            "zyz", f"{M}, {', '.join(names)}, {{+1: 'noflip', -1: 'flip'}}{more}", f"{names[0]}_"
-        )
+        arguments = f"{M}, {', '.join(names)}, {{+1: 'noflip', -1: 'flip'}}{more}"
+        self.solve("zyz", arguments, f"{names[0]}_", 2)
         return f"{names[0]}_", epsilon
 
     def _three_parallel(self, groups: Sequence[Group]) -> str:
         base, parallel, fifth, _ = groups
         end = parallel.end * sp.Matrix(fifth.rows[0].shift)
         normal = base.end * Z
-        self._require(normal[2] == 0, "the parallel axes are normal to the first")
+        self._require_normal(normal[2], 1, 2)
         beside = sum((row.shift[2] for row in parallel.rows), end[2])
         pair1 = self._turn_base(base, beside)
         u, v, w = self._links(parallel, [0, 1, 2])
@@ -464,7 +530,7 @@ class _Maker:
         epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
         if e[1].is_negative:
             epsilon = sp.atan2(-e[1], -e[0]) - sp.pi / 2
-        ahead = sp.atan2(w[1], w[0]) - epsilon
+        ahead = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - epsilon
         lengths = f"{source(_length(u))}, {source(_length(v))}"
         self.add(
             f"reaching = Reaching(ik, q[0], q[1], {source(length)}, {lengths}, "
@@ -487,7 +553,10 @@ def _plain(group: Group) -> Group:
     (row, *others) = group.rows
     if others or not row.slides:
         if any(row.slides and row.turn != 0 for row in group.rows[1:]):
-            raise NoChainError("no chain is known: a slide is turned against its neighbours")
+            raise NoChainError(
+                "the row of a slide has a constant angle theta",
+                "Put this angle into the row before or after it, whose axis is parallel.",
+            )
         return group
     R = rotation("z", row.turn)
     shift = tuple(R * sp.Matrix(row.shift))

@@ -27,6 +27,8 @@ from closedform.witness import uncovered
 
 Progress = Callable[[str], None]
 
+MISSED = "the answer, put into the forward map, does not give the target"
+
 
 @dataclass(frozen=True)
 class ClaimResult:
@@ -63,6 +65,7 @@ class Proof:
     identities: int
     inverses: tuple[InverseResult, ...]
     claims: tuple[ClaimResult, ...] = field(default=())
+    without_inverse: str = ""
 
     def verdicts(self) -> dict[str, int]:
         """How many claims got each verdict, in the order of :data:`VERDICTS`."""
@@ -76,8 +79,21 @@ class Proof:
             for i in self.inverses
         )
         claims = ", ".join(f"{n} {kind}" for kind, n in self.verdicts().items())
-        parts = [f"{len(self.steps)} steps ({self.identities} identities)", inverses]
+        parts = [f"{len(self.steps)} steps ({self.identities} identities)"]
+        parts.append(inverses or self.outcome())
         return "; ".join(p for p in [*parts, f"claims: {claims}" if claims else ""] if p)
+
+    def outcome(self) -> str:
+        """How many branches were proved, or why there is no inverse."""
+        if not self.inverses:
+            return f"no inverse, because {self.without_inverse or 'the script has none'}"
+        alone = len(self.inverses) == 1
+        counts = (
+            f"{i.branches} branch{'es' if i.branches > 1 else ''}"
+            + ("" if alone else f" of {i.function}")
+            for i in self.inverses
+        )
+        return f"{', '.join(counts)} proved"
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -96,16 +112,23 @@ class Proof:
                 for i in data["inverses"]
             ),
             tuple(ClaimResult(**c) for c in data["claims"]),
+            data["without_inverse"],
         )
 
 
 def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
     """Prove every step and inverse of a derivation, and judge its claims."""
+    if derivation.inverses and derivation.without_inverse:
+        raise ProofError(
+            f"{derivation.name}: the script gives an inverse, but says that there is none, because "
+            f"{derivation.without_inverse}: remove the call of d.no_inverse"
+        )
     identities = 0
     for step in derivation.steps:
         progress(f"step: {step.title}")
         for difference in step.vanishes:
-            require(difference, step.nonnegative, f"{derivation.name}, step {step.title!r}")
+            fault = f"{derivation.name}, step {step.title!r}: the sides of an equation differ"
+            require(difference, step.nonnegative, fault)
             identities += 1
     inverses = []
     for inverse in derivation.inverses:
@@ -138,6 +161,7 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
         identities,
         tuple(inverses),
         tuple(claims),
+        derivation.without_inverse,
     )
 
 
@@ -214,9 +238,7 @@ def _prove_sound(
     used: list[sp.Expr] = []
     given = _targets(inverse)
     for label, signs in function.cases():
-        where = (
-            f"{derivation.name}.{function.name}, branch {label or 'only'}, put into the forward map"
-        )
+        where = f"{derivation.name}.{function.name}, branch {label or 'only'}"
         found = _prove_case(function, inverse, _Case(signs, {}, {}, given, where))
         used += [a for a in found if a not in used]
     return tuple(used)
@@ -258,7 +280,7 @@ def _prove_case(function: Function, inverse: Inverse, case: _Case) -> tuple[sp.E
         [substitute(substitute(e, solution), case.given) for e in inverse.equations]
     )
     bounds = tuple(substitute(b, case.given) for b in function.bounds(case.signs))
-    return require(difference, bounds, case.where, _names_of(inverse)).assumptions
+    return require(difference, bounds, f"{case.where}: {MISSED}", _names_of(inverse)).assumptions
 
 
 def _prove_case_in_stages(
@@ -272,7 +294,10 @@ def _prove_case_in_stages(
         where = f"{case.where}, stage {k + 1}"
         carried |= stage.carried
         if late := [name for name in stage.carried if name in due]:
-            raise ProofError(f"{where}: {late[0]} is carried before it is known")
+            raise ProofError(
+                f"{where}: {late[0]} is carried into it, but holds unknowns that no earlier stage "
+                f"has solved; carry it into a later one"
+            )
         given = {x: substitute(e, case.locus) for x, e in stage.given.items()} | dict(case.locus)
         unsolved = {u for later in inverse.stages[k + 1 :] for u in later.unknowns}
         ready = {n: e for n, e in due.items() if not e.free_symbols & unsolved}
@@ -290,7 +315,7 @@ def _prove_case_in_stages(
         vanishing += [value - substitute(e, solution) for value, e in handed]
         difference = sp.Matrix([substitute(e, given) for e in vanishing])
         guards = tuple(dict.fromkeys(substitute(b, given) for b in bounds))
-        assumptions += require(difference, guards, where).assumptions
+        assumptions += require(difference, guards, f"{where}: {MISSED}").assumptions
     return assumptions
 
 
@@ -316,16 +341,16 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
     for solved in derivation.solved:
         if solved.function != inverse.function:
             continue
-        where = (
+        fault = (
             f"{derivation.name}.{inverse.function}: the equation solved for {solved.unknown} by "
-            f"the lemma {solved.lemma.name!r} must follow from the forward map"
+            f"the lemma {solved.lemma.name!r} does not follow from the forward map"
         )
         try:
             require_shape(solved.lemma.name, solved.equation, solved.unknown)
         except ShapeError as error:
             raise ProofError(f"{derivation.name}.{inverse.function}: {error}") from error
         posture = graph if solved.posture is None else solved.posture
-        require(substitute(solved.equation, posture), (), where)
+        require(substitute(solved.equation, posture), (), fault)
         lemmas.append(solved.lemma.name)
     return tuple(dict.fromkeys(lemmas))
 
@@ -339,11 +364,15 @@ def _count(inverse: Inverse) -> tuple[int, str]:
         if equation.has(*inverse.unknowns):
             equations.append(equation)
         else:
-            require(equation, (), f"{inverse.function}: a target that no joint moves")
+            fault = f"{inverse.function}: an equation without unknowns does not hold"
+            require(equation, (), fault)
     squares = {u: sp.sqrt(real(f"{u}_squared")) for u in inverse.nonnegative}
     equations = [sp.expand(e).xreplace({u**2: s**2 for u, s in squares.items()}) for e in equations]
     if odd := [u for u in squares if any(e.has(u) for e in equations)]:
-        raise ProofError(f"{inverse.function}: the sign of {odd[0]} matters in the equations")
+        raise ProofError(
+            f"{inverse.function}: the equations hold {odd[0]} itself, not its square alone, so its "
+            f"sign matters; take it out of nonnegative"
+        )
     unknowns = [s**2 for s in squares.values()]
     unknowns += [u for u in inverse.unknowns if u not in squares]
     try:
@@ -359,27 +388,29 @@ def _count_in_stages(inverse: Inverse) -> int:
     used = [i for stage in inverse.stages for i in stage.equations]
     solved = [u for stage in inverse.stages for u in stage.unknowns]
     if sorted(used) != list(range(len(inverse.equations))) or set(solved) != set(inverse.unknowns):
-        raise ProofError(f"{where} must take every equation and every unknown once")
+        raise ProofError(f"{where} do not take every equation and every unknown exactly once")
     count, before = 1, 0
     for k, stage in enumerate(inverse.stages):
         if stage.mixed is not None:
             if stage.mixed.has(*(u for s in inverse.stages[k:] for u in s.unknowns)):
-                raise ProofError(f"{where}: a matrix holds an unknown of a later stage")
+                raise ProofError(f"{where}: a matrix holds an unknown of its own or a later stage")
             square = stage.mixed * stage.mixed.T
-            require(square - sp.eye(len(stage.equations)), (), f"{where}: orthonormal rows")
+            fault = f"{where}: the rows of the matrix of stage {k + 1} are not orthonormal"
+            require(square - sp.eye(len(stage.equations)), (), fault)
         equations = [substitute(e, stage.given) for e in _equations_of(inverse, stage)]
         if stage.mixed is not None:
             equations = [normal(e) for e in equations]
         depends = [s for s in inverse.stages[:k] if any(e.has(*s.unknowns) for e in equations)]
         for i in (i for s in depends for i in s.equations):
             earlier = substitute(inverse.equations[i], stage.given)
-            require(earlier, (), f"{where}: an earlier equation")
+            fault = f"{where}: what stage {k + 1} is given does not satisfy an earlier equation"
+            require(earlier, (), fault)
         before += len(stage.unknowns)
         if any(e.has(*solved[before:]) for e in equations if solved[before:]):
             raise ProofError(f"{where}: an equation holds an unknown of a later stage")
         constant = [e for e in equations if not e.has(*stage.unknowns)]
         if constant:
-            require(sp.Matrix(constant), (), f"{where}: an equation that no joint moves")
+            require(sp.Matrix(constant), (), f"{where}: an equation without unknowns does not hold")
         try:
             count *= count_solutions(
                 [e for e in equations if e.has(*stage.unknowns)], stage.unknowns

@@ -92,11 +92,16 @@ def _lemma_sound(link: Link, where: str) -> list[Expr]:
     """In every branch, and in every degenerate case."""
     lemma, found = link.lemma, list[Expr]()
     settings: list[tuple[dict[Expr, Expr], Mapping[Expr, Expr], str]] = [
-        ({}, link.given, f"{where}: the lemma {lemma.name!r} for {_names(lemma.solution)}")
+        (
+            {},
+            link.given,
+            f"{where}: what the lemma {lemma.name!r} gives for {_names(lemma.solution)} does not "
+            f"satisfy its equations",
+        )
     ]
     for case in link.degenerate:
         flags = dict.fromkeys(case.flags, sp.true)
-        settings.append((flags, case.locus, f"{settings[0][2]}, where {case.meaning}"))
+        settings.append((flags, case.locus, f"{settings[0][2]} in a case: {case.meaning[:-1]}"))
     for signs in _signs(link):
         for flags, locus, place in settings:
             known = {**signs, **flags, **(locus if flags else {})}
@@ -125,7 +130,7 @@ def _free_choices_are_units(inverse: Inverse, where: str) -> None:
             square = (sine**2 + cosine**2 - 1).xreplace(
                 {e: sp.Integer(side) for e in free if e.is_Symbol and not e.is_nonnegative}
             )
-            require(square, (), f"{where}: ({c}, {s}) must be a unit vector")
+            require(square, (), f"{where}: ({c}, {s}) is not a unit vector")
 
 
 def _names(solution: Mapping[Expr, Expr]) -> str:
@@ -149,7 +154,8 @@ def _lemma_complete(link: Link, where: str) -> None:
     if _counted[key] != lemma.branches + lemma.excluded:
         raise ProofError(
             f"{where}: the equations of the lemma {lemma.name!r} for {_names(lemma.solution)} have "
-            f"{_counted[key]} solutions, but {lemma.branches} branches are given"
+            f"{_counted[key]} solutions, but {lemma.branches} branches are given; it is applied to "
+            f"equations of another shape"
         )
 
 
@@ -197,7 +203,7 @@ def _follows(link: Link, graph: Graph, where: str) -> None:
     lemma = link.lemma
     place = (
         f"{where}: the equation solved for {_names(lemma.solution)} by the lemma {lemma.name!r} "
-        f"must follow from the forward map"
+        f"does not follow from the forward map"
     )
     require(sp.Matrix([graph(e) for e in lemma.equations]), (), place)
 
@@ -220,7 +226,8 @@ def _not_degenerate(link: Link, graph: Graph, where: str) -> None:
         if ball.contains(0):
             raise ProofError(
                 f"{where}: the lemma {link.lemma.name!r} for {_names(link.lemma.solution)} is "
-                f"applied to an equation that is degenerate at every posture: {statement.meaning}"
+                f"applied to an equation that is degenerate at every posture: "
+                f"{statement.meaning}; take an equation whose coefficients do not all vanish"
             )
 
 
@@ -252,7 +259,10 @@ def _determines_target(inverse: Inverse, graph: Graph, where: str) -> None:
     for e in equations:
         slopes = [e.diff(x) for x in columns]
         if any(slope.has(*columns) for slope in slopes):
-            raise ProofError(f"{where}: the equation {e} of a lemma is not linear in the target")
+            raise ProofError(
+                f"{where}: the equation {e} of a lemma is not linear in the target; give its roots "
+                f"and products names with ik.let"
+            )
         rows.append(slopes)
     entries = [slope for row in rows for slope in row]
     point = _random_posture(draw, sorted({s for e in entries for s in e.free_symbols}, key=str))

@@ -37,7 +37,9 @@ def prove_lemma(
         named = [a - b for a, b in zip(meant, values[len(solution) :], strict=True)]
         vanishing = sp.Matrix([*(substitute(e, solution) for e in lemma.equations), *named])
         bounds = tuple(substitute(b, given) for b in function.bounds(signs))
-        require(substitute(vanishing, given), bounds, f"the lemma {lemma.name!r}")
+        fault = f"what the lemma {lemma.name!r} gives does not satisfy its equations"
+        require(substitute(vanishing, given), bounds, fault)
     count = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given).count
     if count != lemma.branches + lemma.excluded:
-        raise ProofError(f"the lemma {lemma.name!r} has {count} solutions")
+        given_count = f"{lemma.branches + lemma.excluded} are accounted for"
+        raise ProofError(f"the lemma {lemma.name!r} has {count} solutions, but {given_count}")

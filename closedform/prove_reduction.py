@@ -33,7 +33,8 @@ def prove_reduction(
         for name, meaning in lemma.premises.items():
             stated = substitute(meaning, known)
             for missed in _cases(known[name] - stated):
-                require(missed, (), f"{where}: what {name} stands for")
+                fault = f"{where}: {name} does not stand for what the lemma {lemma.name!r} says"
+                require(missed, (), fault)
         equations += [substitute(e, known) for e in lemma.equations]
     graph = {joint: substitute(e, known) for joint, e in reduction.joints.items()}
     system = sp.Matrix([substitute(e, graph) for e in inverse.equations])
@@ -47,7 +48,9 @@ def prove_reduction(
     for joint, answer in zip(inverse.unknowns, answers, strict=True):
         difference = substitute(reduction.joints[joint], solution) - answer
         if sp.expand(difference) != 0:
-            raise ProofError(f"{where}: {joint} is not what the lemmas give: {difference}")
+            raise ProofError(
+                f"{where}: {joint} is not what the lemmas give; the difference is {difference}"
+            )
     count = math.prod(lemma.branches for lemma in reduction.lemmas)
     branches = len(function.branches) if function.branches else 1
     if count != branches * reduction.kept_of:

@@ -44,7 +44,7 @@ class Counterexample:
         """The point and the difference, such as `theta1 = 0, l1 = 1: difference = 0.2929`."""
         at = ", ".join(f"{s} = {v}" for s, v in self.point.items())
         where = f"entry {self.entry}, " if self.entry else ""
-        return f"{where}{at}: difference = {_shown(self.ball)}"
+        return f"{where}{at}{': ' if at else ''}difference = {_shown(self.ball)}"
 
 
 def _shown(ball: arb, digits: int = 10) -> str:

@@ -24,16 +24,17 @@ def _decide(difference: sp.ImmutableMatrix, nonnegative: tuple[sp.Expr, ...]) ->
 
 
 def require(
-    difference: Any, nonnegative: tuple[sp.Expr, ...], where: str, names: Sequence[str] = ()
+    difference: Any, nonnegative: tuple[sp.Expr, ...], fault: str, names: Sequence[str] = ()
 ) -> Decision:
     """Prove that a difference vanishes, or say what is left of it and at which simple point.
 
-    ``names`` say what the entries are about.
+    ``fault`` says what is wrong if it does not: a place and a clause; ``names`` say what the
+    entries are about.
     """
     try:
         decision = _decide(sp.ImmutableMatrix([difference]), nonnegative)
     except Undecided as error:
-        raise ProofError(f"{where}: {error}") from error
+        raise ProofError(f"{fault}, as far as can be decided: {error}") from error
     if not decision.holds:
         assert isinstance(decision.counterexample, Counterexample)
         entry = decision.counterexample.entry
@@ -43,7 +44,7 @@ def require(
             short = decision.proof.remainders[entry]
             residual = min((residual, short), key=sp.count_ops) if short != 0 else residual
         raise ProofError(
-            f"{where}: does not vanish. {decision.counterexample.describe()}; "
+            f"{fault}. {decision.counterexample.describe()}; "
             f"the residual{about} is {shortened(residual)}"
         )
     return decision

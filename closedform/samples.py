@@ -39,6 +39,9 @@ class Sample:
 def parameter_sets(derivation: Derivation, rng: np.random.Generator) -> Iterator[tuple[float, ...]]:
     """The example dimensions, all equal, all random, very unequal."""
     n = len(derivation.parameters)
+    if not n:
+        yield ()
+        return
     yield tuple(float(p.value) for p in derivation.parameters)
     yield (1.0,) * n
     yield tuple(rng.uniform(0.1, 3.0, n))

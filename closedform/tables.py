@@ -26,7 +26,7 @@ from closedform import exact
 from closedform.formulas import BITS, FormulaError, formula, number, shown
 from closedform.functions import real
 from closedform.names import check_symbol
-from closedform.propose import source
+from closedform.python_source import source
 
 COLUMNS = ("a", "alpha", "d", "theta")
 LARGEST = 64_000

@@ -37,9 +37,13 @@ def test_every_snippet(tmp_path: Path) -> None:
         if kind in ("csv", "toml"):
             (tmp_path / name).write_text(text, "utf-8")
         elif kind == "sh":
+            said = []
             for line in text.splitlines():
                 done = run("sh", "-c", f"{sys.executable} -m {line}", folder=tmp_path)
                 assert done.returncode == 0, f"{line}\n{done.stderr}"
+                said.append(done.stdout.splitlines()[-1])
+        elif kind == "console":
+            assert text.splitlines() == said
         elif kind == "python" and name == "run":
             done = run(sys.executable, "-c", text, folder=tmp_path)
             assert done.returncode == 0, f"{text}\n{done.stderr}"

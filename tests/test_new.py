@@ -63,8 +63,13 @@ def dh(a: float, alpha: float, d: float, theta: float) -> np.ndarray:
     )
 
 
-def test_an_elbow_arm_with_its_inverse(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_elbow_arm_with_its_inverse(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     arm = derived(tmp_path, "elbow", "dh", ELBOW, monkeypatch)
+    first, _, last = capsys.readouterr().out.splitlines()
+    assert "an inverse with 4 branches is proposed (turret and two parallel joints)" in first
+    assert last.startswith("4 branches proved; next: use ") and "elbow.py" in last
     assert arm.Parameters._fields == ("h", "L1") and arm.Parameters() == (0.4, 0.5)
     q = np.random.default_rng(0).uniform(-3, 3, (30, 3))
     for row in q:
@@ -83,17 +88,23 @@ def test_an_elbow_arm_with_its_inverse(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def test_an_arm_of_unknown_structure_has_a_place_for_the_inverse(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arm = derived(tmp_path, "skew", "dh", SKEW, monkeypatch)
+    because = "no inverse, because the joints that carry its tool or wrist are R | R | R"
+    first, summary, last = capsys.readouterr().out.splitlines()
+    assert because in first and first.endswith(f"next: closedform derive {tmp_path}/skew.py -o out")
+    assert because in summary
+    assert last.startswith(because) and "next: write the inverse in skew.py" in last
     q = np.array([0.3, -0.4, 0.9])
     T = dh(1, np.pi / 3, 0, 0.3) @ dh(1, np.pi / 3, 0, -0.4) @ dh(1, 0, 0, 0.9)
     np.testing.assert_allclose(arm.pose(q), T, atol=1e-14)
     assert not hasattr(arm, "ik")
     np.testing.assert_allclose(arm.determinant(q), np.linalg.det(arm.jacobian(q)), atol=1e-14)
     text = (tmp_path / "skew.py").read_text("utf-8")
-    assert "# Inverse: no chain is known for the axes R | R | R" in text
-    assert "# Put it here, lemma by lemma" in text
+    assert "# No inverse is proposed, because the joints that carry its tool or wrist" in text
+    assert 'd.no_inverse("the joints that carry its tool or wrist are R | R | R' in text
+    assert "# Write it here, lemma by lemma" in text
 
 
 def test_the_joint_of_a_row_may_be_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

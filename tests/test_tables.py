@@ -119,7 +119,7 @@ def axis(**given: str) -> str:
         (axis() + "rotation = [[1, 0], [0, 1, 0], [0, 0, 1]]\n", "rotation, row 1 needs 3"),
         (
             axis() + "rotation = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]\n",
-            "is not one: row 1 has the length 2;",
+            "is not a rotation: row 1 has the length 2;",
         ),
         (
             axis() + "rotation = [[1, 0, 0], [0.6, 0.8, 0], [0, 0, 1]]\n",

@@ -162,7 +162,7 @@ def _read(case: Mapping[str, Any]) -> tuple[str, str]:
         try:
             with _bounded(PATIENCE):
                 _watched = True
-                text = new(case["name"], case["kind"], path, modified=_modified(case))
+                text = new(case["name"], case["kind"], path, modified=_modified(case)).text
                 _watched = False
         except (ValueError, TypeError) as error:
             _watched = False

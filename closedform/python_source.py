@@ -1,0 +1,34 @@
+"""Exact expressions as lines of Python, for the scripts that ``closedform new`` writes."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import sympy as sp
+from sympy.printing.str import StrPrinter
+
+NAME = re.compile(r"[A-Za-z_]\w*(\[\d\]|\.[cs])?", re.ASCII)
+"""Of a symbol, of an entry of a vector, or of the sine or the cosine of a pair."""
+
+
+class _Source(StrPrinter):  # type: ignore[misc]
+    """Expressions as Python; a fraction of integers stays exact."""
+
+    def _print_Symbol(self, expr: Any) -> str:
+        if not NAME.fullmatch(expr.name):
+            raise ValueError(f"{expr.name!r} is not a name that can stand in a line of Python")
+        return str(expr.name)
+
+    def _print_Rational(self, expr: Any) -> str:
+        return f"Rational({expr.p}, {expr.q})"
+
+    def _print_MatrixBase(self, expr: Any) -> str:
+        rows = [[self._print(e) for e in expr.row(i)] for i in range(expr.rows)]
+        return "Matrix([" + ", ".join(f"[{', '.join(row)}]" for row in rows) + "])"
+
+
+def source(e: Any) -> str:
+    """An exact expression or a matrix as Python, in the names of ``sympy``."""
+    text: str = _Source().doprint(sp.sympify(e, strict=True))
+    return text

@@ -1,0 +1,164 @@
+"""Arms whose lengths are plain numbers: derived as with symbols, and checked as strictly."""
+
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import closedform.crosscheck
+from closedform import pipeline
+from closedform.crosscheck import check_forward, check_inverse, module_backend
+from closedform.derivation import Derivation
+from closedform.emit.render import pages, shared_files
+from closedform.new import new
+from closedform.prove import Proof, prove
+from closedform.report import _module
+from closedform.samples import Sample
+
+UNREACHABLE = 1
+HEADER = "a, alpha, d, theta\n"
+ELBOW = "0.05, pi/2, 0.4, theta1\n-0.5, 0, -0.1, theta2\n-0.5, 0, 0.03, theta3\n"
+PUMA = (
+    "0, -pi/2, 0.6718, theta1\n0.4318, 0, 0, theta2\n0.0203, -pi/2, 0.15005, theta3\n"
+    "0, pi/2, 0.4318, theta4\n0, -pi/2, 0, theta5\n0, 0, 0.05625, theta6\n"
+)
+SUMS = "# e = 0.03 m: offset\n" + HEADER + ELBOW.replace("-0.1", "e + 0.1").replace("0.05", "e/2")
+STANFORD = (
+    "0, -pi/2, 0.412, theta1\n0, pi/2, 0.154, theta2\n0.0203, 0, d3, -pi/2\n"
+    "0, -pi/2, 0, theta4\n0, pi/2, 0, theta5\n0, 0, 0.263, theta6\n"
+)
+LONG = "0.1015, pi/2, 0.615, theta1\n0.70523, 0, 0, theta2\n0.13571, 0, 0.0312, theta3\n"
+AXIS = '[[axes]]\njoint = "theta{}"\ndirection = {}\npoint = {}\n'
+
+
+def derivation(folder: Path, text: str, name: str = "arm", kind: str = "dh") -> Derivation:
+    table = folder / f"{name}.{'csv' if kind == 'dh' else 'toml'}"
+    table.write_text(text, "utf-8")
+    script = folder / f"{name}.py"
+    script.write_text(new(name, kind, table).text, "utf-8")
+    return pipeline.load(pipeline.find([str(script)])[0])
+
+
+def printed(folder: Path, d: Derivation) -> ModuleType:
+    """The NumPy module of a derivation, unproved."""
+    done = pages(d, Proof(d.name, "own", (), 0, ()), ["numpy"])
+    pipeline.write(folder, {**done.files, **shared_files([done.share], ["numpy"])})
+    return _module(folder, d.name)
+
+
+@pytest.mark.parametrize(
+    ("table", "branches"),
+    [
+        (HEADER + "0.4, 0, 0, theta1\n0.4, 0, 0, theta2\n", 2),
+        (HEADER + "0, -pi/2, 0.4, theta1\n0, pi/2, 0.15, theta2\n0, 0, d3, 0\n", 4),
+        (HEADER + ELBOW, 4),
+        (HEADER + PUMA, 8),
+        (SUMS, 4),
+    ],
+    ids=["equal links", "polar", "negative offsets", "Puma", "sums"],
+)
+def test_an_arm_in_numbers_is_proved(table: str, branches: int, tmp_path: Path) -> None:
+    (inverse,) = prove(derivation(tmp_path, table)).inverses
+    assert inverse.branches == branches == inverse.solutions
+
+
+def test_nearer_to_the_axis_than_an_offset_there_is_no_answer(tmp_path: Path) -> None:
+    """Where the coefficients of a sine and a cosine vanish, the number beside them does not."""
+    arm = printed(tmp_path, derivation(tmp_path, HEADER + ELBOW))
+    q, status = arm.ik([[0.0, 0.0, 0.6], [1e-13, 0.0, 0.6], [0.05, 0.0, 0.6]])
+    assert (status == UNREACHABLE).all() and np.isnan(q).all()
+
+
+def test_the_point_of_an_axis_may_be_any_on_it(tmp_path: Path) -> None:
+    """The UR5 as in a textbook: the points of axes 5 and 6 are not where they intersect."""
+    axes = [
+        ([0, 0, 1], [0, 0, 0]),
+        ([0, 1, 0], [0, 0, 0.089]),
+        ([0, 1, 0], [0.425, 0, 0.089]),
+        ([0, 1, 0], [0.817, 0, 0.089]),
+        ([0, 0, -1], [0.817, 0.109, 0]),
+        ([0, 1, 0], [0.817, 0, -0.006]),
+    ]
+    text = "".join(AXIS.format(i, w, p) for i, (w, p) in enumerate(axes, 1))
+    text += "[home]\nposition = [0.817, 0.191, -0.006]\n"
+    text += "rotation = [[-1, 0, 0], [0, 0, 1], [0, 1, 0]]\n"
+    arm = printed(tmp_path, derivation(tmp_path, text, kind="screws"))
+    q = np.random.default_rng(5).uniform(-3, 3, (40, 6))
+    found = arm.ik(arm.pose(q))
+    gaps = np.abs(np.angle(np.exp(1j * (found.q - q[:, None])))).max(-1)
+    assert np.nanmin(gaps, axis=-1).max() < 1e-9
+
+
+def findings(
+    folder: Path, table: str, functions: tuple[str, ...], printed_from: str = ""
+) -> list[str]:
+    """What the cross-check says of functions of an arm, printed from another table if wanted."""
+    d = derivation(folder, table)
+    other = folder / "other"
+    other.mkdir()
+    module = printed(other, derivation(other, printed_from) if printed_from else d)
+    backend = module_backend("numpy", module)
+    return [x for f in functions for x in check_forward(d, d[f], backend).failures]
+
+
+def test_a_determinant_in_numbers_is_right_at_denormal_angles(tmp_path: Path) -> None:
+    """A number before whole coefficients would lose a denormal sine's last bits."""
+    assert findings(tmp_path, HEADER + LONG, ("determinant", "singularities")) == []
+
+
+def test_a_number_that_is_off_by_a_little_is_found(tmp_path: Path) -> None:
+    functions = ("fk", "jacobian", "determinant", "singularities")
+    original, changed = (HEADER + ELBOW.replace("0.05", n) for n in ("0.05", "0.050000000005"))
+    failures = findings(tmp_path, original, functions, changed)
+    assert len(failures) == len(functions)
+
+
+def test_a_posture_at_two_limits_at_once_is_not_lost(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the limit of the shoulder an ulp turns it by 1e-8; near a singular wrist that turns all.
+
+    The limit is where it takes more than an ulp of the target to make a difference.
+    """
+    d = derivation(tmp_path, HEADER + STANFORD)
+    quarter, e = np.pi / 2, 1e-9
+    posture = np.array([[1e-6 - np.pi, -np.pi - e, -quarter, np.pi, e - np.pi, 0.1 - quarter]])
+    sample = Sample("two limits", posture, ())
+    monkeypatch.setattr(closedform.crosscheck, "inverse_postures", lambda *_: [sample])
+    backend = module_backend("numpy", printed(tmp_path, d))
+    (inverse,) = d.inverses
+    assert check_inverse(d, d["ik"], inverse, backend).failures == []
+    quarters = Sample("elsewhere", np.array([[0.3, 1.0, 0.7, 0.4, 0.9, 0.2]]), ())
+    monkeypatch.setattr(closedform.crosscheck, "inverse_postures", lambda *_: [quarters])
+
+    def without_half(name: str):
+        def changed(*arguments):
+            found = getattr(printed_module, name)(*arguments)
+            found.q[:, :4] = found.q[:, 4:]
+            return found
+
+        return changed
+
+    printed_module = _module(tmp_path, d.name)
+    broken = closedform.crosscheck.Backend("broken", without_half, np.float64, backend.tolerances)
+    assert "is not among" in check_inverse(d, d["ik"], inverse, broken).failures[0]
+
+
+@pytest.mark.parametrize(
+    ("rows", "joints"),
+    [
+        ("0, 0, 0.5, theta1\n0, pi/2, 0, theta2\n0.4, 0, 0, theta3\n", "theta1 and theta2"),
+        (
+            "0, pi/2, 0.5, theta1\n0.4, 0, 0, theta2\n0, pi/2, 0, theta3\n"
+            "0, -pi/2, 0, theta4\n0, pi/2, 0, theta5\n0, 0, 0.1, theta6\n",
+            "theta3, theta4, theta5 and theta6",
+        ),
+    ],
+    ids=["an axis twice", "four axes through a point"],
+)
+def test_an_arm_that_is_singular_everywhere(rows: str, joints: str, tmp_path: Path) -> None:
+    n = rows.count("\n")
+    needed = f"singular everywhere: its Jacobian has rank {n - 1}, not {n}, at every.* {joints} do "
+    with pytest.raises(ValueError, match=f"^arm.csv: the arm is {needed}.*--modified"):
+        derivation(tmp_path, HEADER + rows)

@@ -516,6 +516,14 @@ class Derivation:
             )
 
     def _check_symbols(self, function: Function) -> None:
+        own = {str(s) for s in function.symbols}
+        own |= {str(s) for _, signs in function.cases() for s in signs}
+        own |= {str(getattr(s, "symbol", "")) for s in function.body}
+        if both := sorted(own & {p.name for p in self.parameters}):
+            raise ValueError(
+                f"{self.name}.{function.name}: {both[0]} is a parameter already; call the symbol "
+                f"of the function {both[0]}_0, say"
+            )
         known: set[sp.Basic] = {p.symbol for p in self.parameters} | set(function.symbols)
         if function.branches:
             known |= {s for signs in function.branches.signs for s in signs}

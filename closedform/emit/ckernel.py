@@ -177,7 +177,8 @@ def folded(arguments: Sequence[str]) -> str:
 
 
 def _occurs(name: str, lines: Sequence[str]) -> bool:
-    return any(re.search(rf"\b{name}\b", line) for line in lines)
+    """Whether a variable occurs; the field of a structure is another name."""
+    return any(re.search(rf"(?<!->)\b{name}\b", line) for line in lines)
 
 
 def _lanes(n: int) -> int:
@@ -199,8 +200,8 @@ class Emission:
             for k, entry in enumerate(a.entries)
         }
         names = [a.name for a in (*self.inputs, *self.outputs)]
-        defaults = f"{derivation.name.upper()}_DEFAULTS"
-        self.printer = CPrinter(program, reserved={*C_LOCALS, *names, defaults})
+        own = {f"{derivation.name}_params", f"{derivation.name.upper()}_DEFAULTS"}
+        self.printer = CPrinter(program, reserved={*C_LOCALS, *names, *own})
         self.values = self.printer.run()
         read = program.used_inputs(below_angles=False)
         self.parameters = [p for p in program.parameters if p in read]

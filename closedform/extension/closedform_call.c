@@ -135,6 +135,25 @@ check_objects(const cf_function *f, const char *prefix, const char *name, PyArra
     return PyErr_Occurred() ? -1 : status;
 }
 
+/* Long doubles as doubles. NumPy's own conversion warns of those that are too large. */
+static PyArrayObject *
+narrow(PyArrayObject *array)
+{
+    PyArrayObject *wide = (PyArrayObject *)PyArray_FromArray(
+        array, PyArray_DescrFromType(NPY_LONGDOUBLE), NPY_ARRAY_CARRAY_RO);
+    if (wide == NULL) {
+        return NULL;
+    }
+    PyArrayObject *real = (PyArrayObject *)PyArray_SimpleNew(PyArray_NDIM(wide),
+                                                             PyArray_DIMS(wide), NPY_DOUBLE);
+    const npy_longdouble *from = PyArray_DATA(wide);
+    for (npy_intp k = 0; real != NULL && k < PyArray_SIZE(wide); k++) {
+        ((double *)PyArray_DATA(real))[k] = (double)from[k];
+    }
+    Py_DECREF(wide);
+    return real;
+}
+
 /* An array of native doubles, of any strides and alignment. Complex numbers and text are refused
  * here because NumPy would only warn of the former and parse the latter. */
 static PyArrayObject *
@@ -162,6 +181,11 @@ real_array(const cf_function *f, const char *prefix, const char *name, PyObject 
     if (kind == 'O' && check_objects(f, prefix, name, array) < 0) {
         Py_DECREF(array);
         return NULL;
+    }
+    if (kind == 'f' && PyArray_ITEMSIZE(array) > (npy_intp)sizeof(double)) {
+        PyArrayObject *narrowed = narrow(array);
+        Py_DECREF(array);
+        return narrowed;
     }
     PyObject *real = PyArray_FromArray(array, PyArray_DescrFromType(NPY_DOUBLE),
                                        NPY_ARRAY_FORCECAST);

@@ -143,7 +143,8 @@ def test_a_table_that_is_no_text(tmp_path: Path, capsys: pytest.CaptureFixture[s
         ("class", "the name class is taken"),
         ("closedform", "the name closedform is taken"),
         ("sympy", "sympy is a module of Python"),
-        ("math", "math is a module of Python"),
+        ("math", "math.h is a header of the system"),
+        ("json", "json is a module of Python"),
     ],
 )
 def test_names_of_robots(

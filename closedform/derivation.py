@@ -25,7 +25,17 @@ from closedform.functions import (
     real,
     reject_floats,
 )
-from closedform.names import check_robot, check_symbol, check_text
+from closedform.names import (
+    check_argument,
+    check_function,
+    check_identifier,
+    check_key,
+    check_labels,
+    check_own,
+    check_robot,
+    check_symbol,
+    check_text,
+)
 
 if TYPE_CHECKING:
     from closedform.claims import Check
@@ -40,6 +50,14 @@ class Paper:
     title: str
     authors: tuple[str, ...]
     reference: str = ""
+
+    def __post_init__(self) -> None:
+        check_key(self.key, "key of the paper")
+        check_text("title of the paper", self.title)
+        if isinstance(self.authors, str):
+            raise TypeError(f"authors of the paper: write a tuple, as in ({self.authors!r},)")
+        check_text("authors of the paper", *self.authors)
+        check_text("reference of the paper", self.reference)
 
 
 @dataclass(frozen=True)
@@ -79,7 +97,10 @@ class Joint:
 
 @dataclass(frozen=True)
 class Step:
-    """One step: why, what was derived, and what must be zero for the step to hold."""
+    """One step: why, what was derived, and what must be zero for the step to hold.
+
+    The left-hand sides in ``shown`` are LaTeX, the other texts are plain.
+    """
 
     title: str
     reason: str
@@ -109,7 +130,7 @@ class Continuum:
     """A flagged case: on ``locus`` a joint is free, and ``relation`` says what the others keep.
 
     It occurs in the named ``branches``; in all of them if none is named.  The locus may be written
-    in the unknowns of earlier stages, where there are stages.
+    in the unknowns of earlier stages, where there are stages.  The relation is LaTeX.
     """
 
     flag: sp.Symbol
@@ -119,6 +140,9 @@ class Continuum:
     branches: tuple[str, ...] = ()
     also: tuple[sp.Symbol, ...] = ()
     """Other flags that are true on the locus."""
+
+    def __post_init__(self) -> None:
+        check_text(f"relation on the continuum {self.flag}", self.relation)
 
 
 @dataclass(frozen=True)
@@ -254,15 +278,30 @@ class Table:
     values: tuple[sp.Rational, ...]
     columns: Mapping[str, sp.Expr]
 
+    def __post_init__(self) -> None:
+        check_identifier(self.name, "name of a table")
+        check_text(f"header of the table {self.name}", self.header, *self.columns)
+
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the paper, transcribed as printed, and the computation that judges it."""
+    """A statement of the paper, transcribed as printed, and the computation that judges it.
+
+    In ``printed`` formulas stand between dollar signs, as LaTeX; all else is plain text.
+    """
 
     label: str
     printed: str
     check: Check
     where: str = ""
+
+    def __post_init__(self) -> None:
+        check_text("label of a claim", self.label)
+        check_text(f"claim {self.label}", self.printed, self.where)
+
+
+RESULTS = {"Solutions": "q", "Positions": "p"}
+"""The results with a status, each with the name of its values."""
 
 
 @dataclass
@@ -328,6 +367,8 @@ class Derivation:
         ``joint("theta4", coupling=-(theta2 + theta3))``; :meth:`couple` substitutes it.
         """
         self._check_new(name)
+        if kind not in ("revolute", "prismatic"):
+            raise ValueError(f"{self.name}: {name} must be revolute or prismatic, not {kind!r}")
         symbol = real(name)
         self.joints.append(Joint(symbol, kind, passive, coupling, beside))
         return symbol
@@ -359,6 +400,10 @@ class Derivation:
         """
         for value in (*shown.values(), *(e for pair in equal for e in pair)):
             self._reject_floats(value, f"{self.name}, step {title!r}")
+        where = f"{self.name}, step {title!r}"
+        check_text(f"{self.name}, title of a step", title)
+        check_text(where, reason, lines=True)
+        check_text(where, *shown, *published, *(c for r in rows for c in r if isinstance(c, str)))
         self.steps.append(
             Step(
                 title,
@@ -386,8 +431,9 @@ class Derivation:
         boolean: bool = False,
     ) -> Function:
         """Export a function.  Inputs and outputs are named scalars, vectors, matrices or arrays."""
-        if any(f.name == name for f in self.functions):
-            raise ValueError(f"{self.name}: the function {name} is defined twice")
+        self._check_function(name, [*inputs, *outputs], result)
+        check_text(f"{self.name}.{name}", summary, source)
+        check_text(f"{self.name}.{name}", *notes, lines=True)
         function = Function(
             name,
             summary,
@@ -434,11 +480,40 @@ class Derivation:
                 for entry in part if isinstance(part, sp.MatrixBase) else [part]:
                     reject_floats(entry, where)
 
-    def __post_init__(self) -> None:
-        check_robot(self.name)
+    def __setattr__(self, attribute: str, value: Any) -> None:
+        """Check names and texts when they are given, the later ones too."""
+        where = f"{attribute} of {value if attribute == 'name' else self.name}"
+        if attribute == "name":
+            check_robot(value)
+        elif attribute == "title":
+            check_text(where, value)
+        elif attribute == "mechanism":
+            check_text(where, value, lines=True)
+        elif attribute == "singularities":
+            check_text(where, *value)
+        elif attribute in ("task", "branches", "assembly_modes"):
+            check_labels(value, where)
+        super().__setattr__(attribute, value)
+
+    def _check_function(self, name: str, arrays: Sequence[str], result: str | None) -> None:
+        known = [f.name for f in self.functions]
+        where = f"{self.name}.{name}"
+        if name in known:
+            raise ValueError(f"{self.name}: the function {name} is defined twice")
+        check_function(name, known, self.name)
+        if result is not None and result not in RESULTS:
+            raise ValueError(f"{where}: a result is one of {', '.join(RESULTS)}, not {result!r}")
+        if result is not None and arrays[-1] != RESULTS[result]:
+            raise ValueError(f"{where}: the output of {result} is called {RESULTS[result]}")
+        taken = ["status"] if result else []
+        for array_name in arrays:
+            check_argument(array_name, taken, where)
+            check_own(array_name, self.name, [*known, name], where)
+            taken.append(array_name)
 
     def _check_new(self, name: str) -> None:
         check_symbol(name, self.name)
+        check_own(name, self.name, [], self.name)
         kinds = {p.name: "parameter" for p in self.parameters}
         kinds |= {j.name: "joint" for j in self.joints}
         if name in kinds:
@@ -448,6 +523,14 @@ class Derivation:
             )
 
     def _check_symbols(self, function: Function) -> None:
+        own = {str(s) for s in function.symbols}
+        own |= {str(s) for _, signs in function.cases() for s in signs}
+        own |= {str(getattr(s, "symbol", "")) for s in function.body}
+        if both := sorted(own & {p.name for p in self.parameters}):
+            raise ValueError(
+                f"{self.name}.{function.name}: {both[0]} is a parameter already; call the symbol "
+                f"of the function {both[0]}_0, say"
+            )
         known: set[sp.Basic] = {p.symbol for p in self.parameters} | set(function.symbols)
         if function.branches:
             known |= {s for signs in function.branches.signs for s in signs}

@@ -29,6 +29,8 @@ from typing import Any, TypeAlias
 
 import sympy as sp
 
+from closedform.names import check_identifier, check_labels, check_text
+
 Number: TypeAlias = Any  # an exact SymPy expression or an int; SymPy's annotations are partial
 
 
@@ -151,6 +153,9 @@ class Branches:
     labels: tuple[str, ...]
     signs: tuple[Mapping[sp.Symbol, int], ...]
 
+    def __post_init__(self) -> None:
+        check_labels(self.labels, "branches")
+
     def __len__(self) -> int:
         return len(self.labels)
 
@@ -206,6 +211,10 @@ class Function:
                 known.add(entry)
         names = [s.symbol.name for s in self.body if isinstance(s, (Let, Bound, Vanishes))]
         names += [str(k) for k in known]
+        for name in (*names, *(str(s) for _, signs in self.cases() for s in signs)):
+            check_identifier(name, self.name)
+        for statement in self.body:
+            check_text(self.name, getattr(statement, "meaning", ""))
         repeated = sorted({n for n in names if names.count(n) > 1})
         if repeated:
             raise ValueError(f"{self.name}: the name {repeated[0]} is given twice")

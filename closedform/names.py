@@ -1,8 +1,15 @@
-"""Which names symbols and robots may have: they become identifiers of Python, NumPy code and C."""
+"""Which names and texts a derivation may have.
+
+Names become identifiers of Python and C, and names of files: one that means something else there is
+refused where it is declared.  A text may say anything that prints, because
+:mod:`closedform.emit.escape` escapes it for each language; only control characters are refused.
+"""
 
 from __future__ import annotations
 
 import keyword
+import re
+from collections.abc import Collection
 
 C_WORDS = frozenset({
     "alignas", "alignof", "asm", "auto", "bool", "break", "case", "catch", "char", "class",
@@ -12,47 +19,202 @@ C_WORDS = frozenset({
     "private", "protected", "public", "register", "restrict", "return", "short", "signed",
     "sizeof", "static", "struct", "switch", "template", "this", "throw", "true", "try",
     "typedef", "typeid", "typename", "typeof", "union", "unsigned", "using", "virtual", "void",
-    "volatile", "while", "HUGE_VAL", "INFINITY", "NAN", "NULL", "real_t", "size_t", "uint8_t",
+    "volatile", "while",
+    "FILE", "double_t", "float_t", "real_t",
+    "BIG_ENDIAN", "BUFSIZ", "BYTE_ORDER", "DECIMAL_DIG", "EDOM", "EILSEQ", "EOF", "ERANGE",
+    "FILENAME_MAX", "FOPEN_MAX", "HUGE_VALF", "HUGE_VALL", "HUGE_VAL", "I", "INFINITY",
+    "LITTLE_ENDIAN", "MATH_ERREXCEPT", "MATH_ERRNO", "MAXFLOAT", "MB_LEN_MAX", "NAN", "NULL",
+    "PDP_ENDIAN", "SNAN", "SNANF", "SNANL", "TMP_MAX", "assert", "complex", "errno", "far",
+    "i386", "imaginary", "linux", "math_errhandling", "near", "stderr", "stdin", "stdout", "unix",
 })  # fmt: skip
 """Words of C and, for those who include the headers there, of C++; types and macros of headers."""
-PRINTED = frozenset({"np"})
+C_FAMILIES = re.compile(
+    r"u?int\w*_t|(size|ptrdiff|wchar|fpos|div|max_align)_t"
+    r"|(S|U)?(CHAR|SHRT|INT|LONG|LLONG|LONG_LONG)_(BIT|MIN|MAX|WIDTH)"
+    r"|U?INT\w*_(MIN|MAX|WIDTH|C)|(PTRDIFF|S?SIZE|SIG_ATOMIC|WCHAR|WINT)_(MIN|MAX|WIDTH)"
+    r"|(FLT|L?DBL)_[A-Z0-9_]+|FP_[A-Z0-9_]+|SEEK_[A-Z]+|L_(ctermid|cuserid|tmpnam)|P_tmpdir"
+    r"|M_(E|LOG2E|LOG10E|LN2|LN10|[12]_PI|PI(_[24])?|2_SQRTPI|SQRT2|SQRT1_2)(l|f(\d+x?)?)?"
+    r"|(HUGE_VAL_|SNAN)F\d+X?|BOOL_(MAX|WIDTH)|L?ULL?ONG_(MAX|WIDTH)|RENAME_[A-Z]+"
+)
+"""Families of types and macros of the headers of C."""
+OURS = ("cf_", "CF_", "closedform_", "CLOSEDFORM_")
+"""How the names of the shared C header begin."""
+C_LOCALS = frozenset({
+    "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
+    "single", "opposite", "adjacent", "angles", "principals", "turned", "wide", "rare", "signs",
+    "k",
+})  # fmt: skip
+"""What the C functions call their own."""
+C_SUFFIXES = ("_i", "_stride", "_real", "_lanes")
+"""What the C functions append to the names of arrays."""
+PYTHON_LOCALS = frozenset({
+    "np", "params", "out", "Any", "ArrayLike", "NamedTuple", "Parameters", "Positions",
+    "Solutions", "Status", "ASSEMBLY_MODES", "BRANCHES", "JOINTS", "SINGULARITIES", "TASK",
+})  # fmt: skip
 """What the NumPy modules call their own."""
+FUNCTIONS = frozenset({"default", "fields", "params", "runtime", "values"})
+"""What, behind the name of the robot or an underscore, is a name in the printed code already."""
+FORMS = frozenset({
+    "batch", "branch", "branches", "common", "in", "kernel", "many", "one", "out", "whole",
+})  # fmt: skip
+"""What the printed code appends to the name of a function."""
 NOT_FINITE = frozenset({"nan", "inf", "infinity", "oo", "zoo"})
 FILES = frozenset({"closedform", "extension"})
 """Files beside those of the robots, in a folder of generated code."""
+HEADERS = frozenset({
+    "aio", "alloca", "assert", "complex", "conio", "cpio", "ctype", "dirent", "dlfcn", "endian",
+    "errno", "features", "fcntl", "fenv", "float", "fmtmsg", "fnmatch", "ftw", "getopt", "glob",
+    "grp", "iconv", "inttypes", "io", "iso646", "langinfo", "libgen", "limits", "locale",
+    "malloc", "math", "memory", "monetary", "mqueue", "ndbm", "net", "netdb", "nl_types", "poll",
+    "process", "pthread", "pwd", "python", "regex", "resource", "sched", "search", "semaphore",
+    "setjmp", "signal", "spawn", "stdalign", "stdarg", "stdatomic", "stdbit", "stdbool",
+    "stdckdint", "stddef", "stdint", "stdio", "stdlib", "stdnoreturn", "string", "strings",
+    "stropts", "syslog", "tar", "termios", "tgmath", "threads", "time", "trace", "uchar",
+    "ulimit", "unistd", "utime", "utmpx", "values", "wchar", "wctype", "windows", "wordexp",
+})  # fmt: skip
+"""Headers of C, POSIX and Windows, which a header of that name would hide."""
+DEVICES = re.compile(r"aux|con|nul|prn|(com|lpt)\d")
+"""Names that no file of Windows can have."""
+LONGEST = 63
+"""C promises to tell names apart by this many characters."""
+
+
+def in_c(name: str) -> bool:
+    """Whether a name has a meaning of its own in C."""
+    return name in C_WORDS or C_FAMILIES.fullmatch(name) is not None
+
+
+def in_python(name: str) -> bool:
+    """Whether a name has a meaning of its own in a NumPy module."""
+    return keyword.iskeyword(name) or name in PYTHON_LOCALS
+
+
+def check_identifier(name: str, where: str) -> None:
+    """Raise ``ValueError`` unless a name consists of ASCII letters, digits and ``_``."""
+    if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name):
+        raise ValueError(
+            f"{where}: {name!r} is not a name: use letters, digits and _, with a letter first"
+        )
+    if len(name) > LONGEST:
+        raise ValueError(f"{where}: {name} is longer than {LONGEST} characters")
+    if name.startswith(OURS):
+        raise ValueError(f"{where}: names like {name} belong to closedform.h; take another one")
 
 
 def check_symbol(name: str, where: str) -> None:
     """Raise ``ValueError`` unless a parameter or a joint may have this name."""
-    if not (name.isascii() and name.isidentifier()) or name.startswith("_"):
-        raise ValueError(
-            f"{where}: {name!r} is no name: take letters, digits and _, with a letter first"
-        )
+    check_identifier(name, where)
     if name.lower() in NOT_FINITE:
-        raise ValueError(f"{where}: {name} is no finite number, and no name either")
-    if keyword.iskeyword(name) or name in C_WORDS | PRINTED:
+        raise ValueError(f"{where}: {name} is not a finite number, and not a name either")
+    if in_python(name) or in_c(name):
         raise ValueError(
             f"{where}: {name} is a word of Python or C; take another name, such as {name}_0"
         )
 
 
-def check_text(where: str, *texts: str) -> None:
-    """Raise ``ValueError`` where a text would end the comment or the docstring it is printed in."""
+def check_argument(name: str, others: Collection[str], where: str) -> None:
+    """Raise ``ValueError`` unless an input or an output may have this name beside the others."""
+    check_symbol(name, where)
+    base = next((name.removesuffix(s) for s in C_SUFFIXES if name.endswith(s)), "")
+    taken = C_LOCALS | frozenset(others)
+    if name in taken or base in taken or re.fullmatch(r"(angle|wide)_\d+", name):
+        raise ValueError(f"{where}: the name {name} is taken; take another one, such as {name}_0")
+
+
+def check_function(name: str, others: Collection[str], where: str) -> None:
+    """Raise ``ValueError`` unless a function may have this name beside the others."""
+    check_identifier(name, where)
+    if name != name.lower():
+        raise ValueError(f"{where}: write the function {name} in lower-case letters")
+    if in_python(name) or name in FUNCTIONS:
+        raise ValueError(f"{where}: the name {name} is taken; call the function {name}_0, say")
+    for other in others:
+        short, long = sorted((name, other), key=len)
+        if long.startswith(f"{short}_") and FORMS.issuperset(long[len(short) + 1 :].split("_")):
+            raise ValueError(
+                f"{where}: the printed code of {short} uses the name {long} itself; call the "
+                f"function {name}_0, say"
+            )
+
+
+def check_own(name: str, robot: str, functions: Collection[str], where: str) -> None:
+    """Raise ``ValueError`` if a name is one that the C code of the robot declares."""
+    parts = ("params", *functions)
+    if name == f"{robot.upper()}_DEFAULTS" or (
+        name.startswith(f"{robot}_") and name[len(robot) + 1 :].startswith(parts)
+    ):
+        raise ValueError(f"{where}: the C code of {robot} uses the name {name} itself")
+
+
+def check_label(label: str, where: str) -> None:
+    """Raise ``ValueError`` unless a branch, a mode or a task coordinate may be called so."""
+    if not re.fullmatch("[A-Za-z0-9][A-Za-z0-9_]*", label):
+        raise ValueError(
+            f"{where}: {label!r} is not a name: use letters, digits and _, not with a _ first"
+        )
+
+
+def check_labels(labels: Collection[str], where: str) -> None:
+    """Raise ``ValueError`` unless these are names, each of them once."""
+    if isinstance(labels, str):
+        raise TypeError(f"{where}: give a sequence of names, not the text {labels!r}")
+    for label in labels:
+        check_label(label, where)
+    if repeated := sorted({x for x in labels if list(labels).count(x) > 1}):
+        raise ValueError(f"{where}: the name {repeated[0]} is given twice")
+
+
+def check_key(key: str, where: str) -> None:
+    """Raise ``ValueError`` unless a paper may have this key."""
+    if not re.fullmatch(r"[A-Za-z0-9_.-]*", key):
+        raise ValueError(f"{where}: {key!r} is not a key: use letters, digits, _, . and -")
+
+
+def check_text(where: str, *texts: str, lines: bool = False) -> None:
+    """Raise ``ValueError`` unless texts are printable, on one line unless ``lines`` may be several.
+
+    Refused are control characters, among them those that change the direction of writing.
+    """
     for text in texts:
-        if found := [part for part in ("*/", "/*", '"""', "\\") if part in text]:
-            raise ValueError(f"{where}: {text!r} goes into comments: leave out {found[0]}")
-        if not text.isprintable():
-            raise ValueError(f"{where}: {text!r} must be one line of text")
+        if not isinstance(text, str):
+            raise TypeError(f"{where}: {text!r} must be a text")
+        for character in text:
+            if not character.isprintable() and not (lines and character == "\n"):
+                raise ValueError(
+                    f"{where}: {text!r} must be one line of printable text, without the "
+                    f"character U+{ord(character):04X}"
+                    if not lines
+                    else f"{where}: {text!r} must be printable, without the character "
+                    f"U+{ord(character):04X}"
+                )
 
 
 def check_robot(name: str) -> None:
     """Raise ``ValueError`` unless a robot, with its module and its C files, may have this name."""
-    if not (name.isascii() and name.isidentifier()) or name.startswith("_"):
+    if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) or len(name) > LONGEST:
         raise ValueError(
-            f"{name!r} is no name of a module: take letters, digits and _, with a letter first"
+            f"{name!r} is not a name of a module: use letters, digits and _, with a letter first, "
+            f"{LONGEST} characters at most"
         )
-    if keyword.iskeyword(name) or name in FILES:
+    if name.lower() in HEADERS or DEVICES.fullmatch(name.lower()):
+        raise ValueError(
+            f"{name}.h is a header of the system; choose another name, such as {name}_0"
+        )
+    if keyword.iskeyword(name) or name.lower() in FILES or name.startswith(OURS):
         raise ValueError(f"the name {name} is taken; choose another, such as {name}_0")
 
 
-__all__ = ["C_WORDS", "check_robot", "check_symbol", "check_text"]
+__all__ = [
+    "check_argument",
+    "check_function",
+    "check_identifier",
+    "check_key",
+    "check_label",
+    "check_labels",
+    "check_own",
+    "check_robot",
+    "check_symbol",
+    "check_text",
+    "in_c",
+    "in_python",
+]

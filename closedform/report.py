@@ -12,6 +12,7 @@ from types import ModuleType
 from closedform.clibrary import CLibrary, compiler
 from closedform.crosscheck import Backend, Finding, crosscheck, float_backend, module_backend
 from closedform.derivation import Derivation
+from closedform.emit.escape import markdown_text
 from closedform.tolerances import DOUBLE
 
 _PACKAGE = "_closedform_printed"
@@ -75,7 +76,7 @@ def _page(
     for f in findings:
         rows.setdefault((f.function, f.unit), {})[f.backend] = f
     lines = [
-        f"# {derivation.title}: cross-check",
+        f"# {markdown_text(derivation.title)}: cross-check",
         "",
         "The worst error of each printed function against its symbolic source, evaluated in Arb",
         "balls, over ordinary, huge, tiny and singular inputs: in units in the last place of the",

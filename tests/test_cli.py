@@ -370,22 +370,13 @@ def test_the_c_example_of_the_readme_runs(tmp_path: Path) -> None:
     compiler = shutil.which("cc") or pytest.skip("there is no C compiler")
     (code,) = blocks("c")
     (tmp_path / "main.c").write_text(code, "utf-8")
-    c = pipeline.generated() / "c"
-    program = tmp_path / "main"
-    subprocess.run(
-        [
-            compiler,
-            "-std=c99",
-            f"-I{c}",
-            tmp_path / "main.c",
-            c / "planar_2r.c",
-            "-lm",
-            "-o",
-            program,
-        ],
-        check=True,
-    )
-    done = subprocess.run([program], capture_output=True, text=True, check=True)
+    for name in ("closedform.h", "planar_2r.h", "planar_2r.c"):
+        shutil.copy(pipeline.generated() / "c" / name, tmp_path)
+    (line,) = blocks("bash")
+    command = shlex.split(line)
+    assert command[0] == "cc" and "-lm" in command
+    subprocess.run([compiler, *command[1:]], cwd=tmp_path, check=True)
+    done = subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True)
     assert len(done.stdout.splitlines()) == 2
 
 

@@ -52,7 +52,7 @@ def kernels() -> list[tuple[str, str]]:
         module = importlib.import_module(f"closedform.generated.numpy.{source.name}")
         found += [
             (source.name, name)
-            for name in dir(module)
+            for name in vars(module)
             if getattr(getattr(module, name), "common", None) is not None
         ]
     return found

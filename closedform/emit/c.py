@@ -7,8 +7,6 @@ branches as the lanes of vectors.
 
 from __future__ import annotations
 
-import json
-import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +14,8 @@ from typing import Any
 from closedform import __version__
 from closedform.derivation import Derivation
 from closedform.emit.ckernel import CArray, CProgram, Emission
-from closedform.emit.text import WIDTH, banner, describe, interface
+from closedform.emit.docstring import comment, docstring
+from closedform.emit.text import WIDTH, banner, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
 from closedform.tolerances import DOUBLE, FLOAT
@@ -98,8 +97,8 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> C
     return CFunction(
         name=function.name,
         full=full,
-        comment="\n".join(f" * {x}" for x in _paragraphs(derivation, function, WIDTH - 3)),
-        doc_lines=tuple(json.dumps(x + "\n") for x in _paragraphs(derivation, function, 80)),
+        comment="\n".join(f" * {x}".rstrip() for x in comment(derivation, function, WIDTH - 3)),
+        doc_lines=tuple(f"{x}\n" for x in docstring(derivation, function, WIDTH - 4)),
         result=function.result or "",
         n_params=len(derivation.parameters),
         inputs=inputs,
@@ -155,14 +154,6 @@ def _branch(derivation: Derivation, function: Function, program: Lowered, full: 
             [f"{o.name}_i" for o in emission.outputs],
         ),
     )
-
-
-def _paragraphs(derivation: Derivation, function: Function, width: int) -> list[str]:
-    return [
-        line
-        for paragraph in describe(derivation, function)
-        for line in textwrap.wrap(paragraph, width, subsequent_indent="    ")
-    ]
 
 
 def _table_call(

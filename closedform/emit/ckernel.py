@@ -19,7 +19,7 @@ from closedform.functions import Function
 from closedform.lower import Lowered
 from closedform.lower.graph import Node, hardly_ever, strip_sign
 from closedform.lower.program import LEAVES
-from closedform.names import C_WORDS
+from closedform.names import C_LOCALS, in_c
 
 LANES = 8
 CALLS = {
@@ -33,12 +33,6 @@ CALLS = {
     "sign": "cf_sign",
 }
 RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
-LOCALS = frozenset({
-    "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
-    "single", "opposite", "adjacent", "angles", "principals", "turned", "wide", "rare", "signs",
-    "k",
-})  # fmt: skip
-RESERVED = LOCALS | C_WORDS
 
 
 class CPrinter(Printer):
@@ -48,6 +42,8 @@ class CPrinter(Printer):
     ``head`` come first, then ``arctangents`` (pairs of y and x), then the rest.  So one call can
     evaluate them in one vector.
     """
+
+    has_meaning = staticmethod(in_c)
 
     def __init__(self, lowered: Lowered, reserved: Iterable[str] = ()):
         super().__init__(lowered, reserved)
@@ -181,7 +177,8 @@ def folded(arguments: Sequence[str]) -> str:
 
 
 def _occurs(name: str, lines: Sequence[str]) -> bool:
-    return any(re.search(rf"\b{name}\b", line) for line in lines)
+    """Whether a variable occurs; the field of a structure is another name."""
+    return any(re.search(rf"(?<!->)\b{name}\b", line) for line in lines)
 
 
 def _lanes(n: int) -> int:
@@ -203,9 +200,8 @@ class Emission:
             for k, entry in enumerate(a.entries)
         }
         names = [a.name for a in (*self.inputs, *self.outputs)]
-        if taken := LOCALS.intersection(a.name for a in (*function.inputs, *function.outputs)):
-            raise ValueError(f"{function.name}: the C code uses the name {', '.join(taken)} itself")
-        self.printer = CPrinter(program, reserved={*RESERVED, *names})
+        own = {f"{derivation.name}_params", f"{derivation.name.upper()}_DEFAULTS"}
+        self.printer = CPrinter(program, reserved={*C_LOCALS, *names, *own})
         self.values = self.printer.run()
         read = program.used_inputs(below_angles=False)
         self.parameters = [p for p in program.parameters if p in read]

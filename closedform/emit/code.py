@@ -7,7 +7,7 @@ too long, is named first.  A language is a subclass with one method per operator
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -43,15 +43,16 @@ class Line:
 
 
 class Names:
-    """Hands out identifiers that are not taken."""
+    """Hands out identifiers that are not taken, and have no meaning in the language."""
 
-    def __init__(self, reserved: Iterable[str]):
+    def __init__(self, reserved: Iterable[str], has_meaning: Callable[[str], bool]):
         self.taken = set(reserved)
+        self.has_meaning = has_meaning
         self.counter = 0
 
     def take(self, wanted: str) -> str:
         name, n = wanted, 1
-        while name in self.taken:
+        while name in self.taken or self.has_meaning(name):
             n += 1
             name = f"{wanted}_{n}"
         self.taken.add(name)
@@ -96,10 +97,13 @@ def _inverse_power_of_two(node: Node) -> sp.Expr | None:
 class Printer:
     """Turns a lowered program into lines of code; subclasses say how each operator looks."""
 
+    has_meaning: Callable[[str], bool]
+    """Whether a name has a meaning of its own in the language."""
+
     def __init__(self, lowered: Lowered, reserved: Iterable[str] = ()):
         self.lowered = lowered
         inputs = [str(e) for a in lowered.inputs for e in a.entries]
-        self.names = Names(reserved)
+        self.names = Names(reserved, self.has_meaning)
         self.inputs = {name: self.names.take(name) for name in (*inputs, *lowered.parameters)}
         self.text: dict[int, Text] = {}
         self.lines: list[Line] = []

@@ -75,9 +75,9 @@ def markdown(text: str) -> str:
     parts = text.split("$")
     for i, part in enumerate(parts):
         if i % 2:
-            parts[i] = f"$`{part.strip()}`$"
+            parts[i] = f"$`{part.strip().replace('`', chr(39))}`$"
             continue
         for old, new in (("**", "^"), ("*", "·"), ("<=", "≤"), (">=", "≥"), (" +/- ", " ± ")):
             part = part.replace(old, new)
-        parts[i] = re.sub(r"([\\<`]|(?<!\w)_|_(?!\w))", r"\\\1", part)
+        parts[i] = re.sub(r"([\\<`]|(?<!\w)_|_(?!\w)|\](?=[(:\[])|&(?=#?\w+;))", r"\\\1", part)
     return "".join(parts)

@@ -152,8 +152,8 @@ class Page:
 
     def cell(self, value: Any) -> str:
         """A cell of a table: a sentence, an expression or an increasing chain of them."""
-        if isinstance(value, str):
-            return self.prose(value)
+        if isinstance(value, str):  # behind \\ a star or a bracket would be an argument
+            return "{}" * value.startswith(("*", "[")) + self.prose(value)
         chain = value if isinstance(value, tuple) else (value,)
         text = r" \le ".join(map(self.math, chain))
         return rf"$\displaystyle {text}$"
@@ -456,10 +456,10 @@ def formulas(texts: Sequence[str]) -> str:
 def notebook(derivation: Derivation) -> str:
     """What Jupyter shows of a derivation: the forward map and the inverse."""
     page = Page(derivation, Proof(derivation.name, derivation.paper.key, (), 0, ()))
-    rows = [rf"&\textbf{{{derivation.title}}}"]
+    rows = [rf"&\textbf{{{escape(derivation.title)}}}"]
     for function in derivation.functions:
         if function.name in ("fk", "ik"):
-            rows.append(rf"&\text{{{function.summary}}}")
+            rows.append(rf"&\text{{{escape(function.summary)}}}")
             for s in function.body:
                 if isinstance(s, Let | Bound):
                     rows += [f"{a} &= {b}" for a, b in page.equations(s.symbol, s.value)]

@@ -10,10 +10,12 @@ from typing import Any
 
 from closedform.derivation import Derivation
 from closedform.emit.code import ATOM, LOGIC, WRAPS, Printer, Text
-from closedform.emit.text import WIDTH, banner, call_signature, docstring, interface
+from closedform.emit.docstring import docstring
+from closedform.emit.text import WIDTH, banner, call_signature, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
 from closedform.lower.graph import Node
+from closedform.names import in_python
 from closedform.tolerances import DOUBLE
 
 CALLS = {
@@ -35,6 +37,8 @@ DTYPES = {"real": "np.float64", "status": "np.uint8", "bool": "np.bool_"}
 
 class NumpyPrinter(Printer):
     """NumPy code of a kernel over planes."""
+
+    has_meaning = staticmethod(in_python)
 
     def constant(self, text: str) -> Text:
         return Text(text)
@@ -98,14 +102,14 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
     kernels = [_kernel(f"_{function.name}", "", program)]
     if program.common is not None:
         kernels.append(_kernel(f"_{function.name}_common", COMMON, program.common))
-    returns = f"_runtime.{function.result}" if function.result else "Any"
+    returns = f'"{function.result}"' if function.result else "Any"
     return NumpyFunction(
         function.name,
         call_signature(function),
         tuple_code(a.name for a in function.inputs),
         returns,
-        f"_runtime.{function.result}(*result)" if function.result else "result",
-        docstring(derivation, function),
+        f"{function.result}(*result)" if function.result else "result",
+        textwrap.indent("\n".join(docstring(derivation, function, WIDTH - 4)), "    ").strip(),
         tuple(kernels),
         _arrays((a.name, a.shape, "real") for a in function.inputs),
         _arrays((r.name, r.shape, r.kind) for r in program.results),
@@ -115,7 +119,7 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
 
 
 def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:
-    printer = NumpyPrinter(program, reserved=("np",))
+    printer = NumpyPrinter(program)
     results = printer.run()
     lines = []
     needed = {(n.op, n.args[0].id) for n in program.schedule() if n.op in ("sin", "cos")}
@@ -133,7 +137,7 @@ def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:
     values = [v for result in results for v in result]
     used = program.used_inputs()
     entries = [str(e) for a in program.inputs for e in a.entries] + list(program.parameters)
-    arguments = ", ".join(e if e in used else f"_{e}" for e in entries)
+    arguments = ", ".join(printer.inputs[e] if e in used else f"_{e}" for e in entries)
     return NumpyKernel(
         name,
         comment,

@@ -37,6 +37,15 @@ UNICODE = {
     "√": r"\surd", "∞": r"\infty", "∈": r"\in", "²": "^2", "³": "^3", "−": "-",
 }  # fmt: skip
 
+IN_FORMULA = {
+    "\\": r"\backslash{}",
+    "~": r"\sim{}",
+    "^": r"\hat{}",
+    **{c: "\\" + c for c in "&%$#_{}"},
+    **{c: rf"{formula}{{}}" for c, formula in UNICODE.items()},
+}
+"""What means something to TeX, where a formula in a sentence has it as it is."""
+
 FUNCTIONS = r"(?:sqrt|sin|cos|tan|atan2|acos|asin|atan|det|max|min|Abs)"
 PAREN = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
 NAME = r"[A-Za-z][A-Za-z0-9_]*"
@@ -61,6 +70,8 @@ def symbol_name(name: str) -> str:
     """The LaTeX of a symbol: px is ``p_{x}``, theta2R ``\\theta_{2\\mathrm{R}}``."""
     if name in SYMBOL_NAMES:
         return SYMBOL_NAMES[name]
+    if not re.fullmatch(r"[A-Za-z0-9]\w*", name.replace("dot", ""), re.ASCII):
+        return rf"\text{{{escape(name)}}}"
     dotted, name = "dot" in name, name.replace("_dot", "").replace("dot", "")
     first, *subscripts = name.split("_")
     letters, rest = (re.match(r"([A-Za-z]+)(.*)", first) or re.match("(.)(.*)", first)).groups()  # type: ignore[union-attr]
@@ -198,7 +209,7 @@ class Prose:
                 short = self._is_symbol(name) or len(name) == 1 or name[1] == "_"
                 done.append(symbol_name(name) if short else rf"\mathrm{{{name}}}")
             else:
-                done.append(SIGNS.get(sign, sign) or other)
+                done.append(SIGNS.get(sign, sign) or IN_FORMULA.get(other, other))
         return "".join(done)
 
 

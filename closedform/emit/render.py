@@ -14,6 +14,7 @@ import jinja2
 from closedform.derivation import Derivation
 from closedform.emit import c, latex, numpy
 from closedform.emit.errata import Part, part, together
+from closedform.emit.escape import FILTERS
 from closedform.emit.table import csv
 from closedform.lower import lower
 from closedform.prove import Proof
@@ -23,13 +24,15 @@ BACKENDS = ("numpy", "c", "latex", "data")
 
 @cache
 def environment() -> jinja2.Environment:
-    return jinja2.Environment(
+    environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(str(files("closedform.templates"))),
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
         undefined=jinja2.StrictUndefined,
     )
+    environment.filters |= FILTERS
+    return environment
 
 
 def render(template: str, context: Mapping[str, Any]) -> str:

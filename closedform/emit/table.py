@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import io
+from csv import writer
+
 from closedform.derivation import Derivation, Table
 from closedform.functions import reject_floats
 from closedform.reference import Evaluator, to_float
@@ -14,8 +17,10 @@ def csv(derivation: Derivation, table: Table) -> str:
     for name, column in zip(table.columns, columns, strict=True):
         reject_floats(column, f"{derivation.name}, table {table.name}, column {name}")
     evaluate = Evaluator([table.variable], columns)
-    lines = [",".join([table.header, *table.columns])]
+    text = io.StringIO()
+    lines = writer(text, lineterminator="\n")
+    lines.writerow([table.header, *table.columns])
     for value in table.values:
         numbers = [float(value), *map(to_float, evaluate([value]))]
-        lines.append(",".join(repr(n + 0.0) for n in numbers))  # never -0.0
-    return "\n".join(lines) + "\n"
+        lines.writerow([n + 0.0 for n in numbers])  # never -0.0
+    return text.getvalue()

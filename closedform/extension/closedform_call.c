@@ -68,11 +68,105 @@ raise_core(const cf_function *f, const cf_array *spec, PyArrayObject *array)
     Py_XDECREF(expected);
 }
 
+/* Raises "toy.f: q holds str", with the name of the type of `object`. */
+static void
+raise_type(const cf_function *f, const char *what, PyObject *object, const char *more)
+{
+    PyObject *type = PyType_GetName(Py_TYPE(object));
+    if (type != NULL) {
+        PyErr_Format(PyExc_TypeError, "%s: %s %U%s", f->name, what, type, more);
+        Py_DECREF(type);
+    }
+}
+
+/* Whether it is a masked array, whose mask a conversion would drop; -1 with an exception. */
+static int
+is_masked(PyObject *object)
+{
+    if (!PyArray_Check(object) || PyArray_CheckExact(object)) {
+        return 0;
+    }
+    PyObject *name = PyUnicode_FromString("numpy.ma");
+    PyObject *module = name ? PyImport_GetModule(name) : NULL;
+    Py_XDECREF(name);
+    if (module == NULL) {
+        return PyErr_Occurred() ? -1 : 0;
+    }
+    PyObject *type = PyObject_GetAttrString(module, "MaskedArray");
+    int masked = type ? PyObject_IsInstance(object, type) : -1;
+    Py_XDECREF(type);
+    Py_DECREF(module);
+    return masked;
+}
+
+/* Whether an object is a real number: text is none, though float() would read it. */
+static int
+is_real(PyObject *object)
+{
+    if (PyArray_IsScalar(object, Generic)) {
+        PyArray_Descr *type = PyArray_DescrFromScalar(object);
+        int known = type != NULL && strchr("biuf", type->kind) != NULL;
+        Py_XDECREF(type);
+        return known;
+    }
+    const PyNumberMethods *number = Py_TYPE(object)->tp_as_number;
+    return number != NULL && (number->nb_float != NULL || number->nb_index != NULL) &&
+           !PyComplex_Check(object);
+}
+
+static int
+check_objects(const cf_function *f, const char *prefix, const char *name, PyArrayObject *array)
+{
+    PyObject *flat = PyArray_IterNew((PyObject *)array), *value;
+    int status = flat ? 0 : -1;
+    while (status == 0 && (value = PyIter_Next(flat)) != NULL) {
+        if (!is_real(value)) {
+            PyObject *what = PyUnicode_FromFormat("%s%s holds", prefix, name);
+            const char *text = what ? PyUnicode_AsUTF8(what) : NULL;
+            if (text != NULL) {
+                raise_type(f, text, value, ", expected real numbers");
+            }
+            Py_XDECREF(what);
+            status = -1;
+        }
+        Py_DECREF(value);
+    }
+    Py_XDECREF(flat);
+    return PyErr_Occurred() ? -1 : status;
+}
+
+/* Long doubles as doubles. NumPy's own conversion warns of those that are too large. */
+static PyArrayObject *
+narrow(PyArrayObject *array)
+{
+    PyArrayObject *wide = (PyArrayObject *)PyArray_FromArray(
+        array, PyArray_DescrFromType(NPY_LONGDOUBLE), NPY_ARRAY_CARRAY_RO);
+    if (wide == NULL) {
+        return NULL;
+    }
+    PyArrayObject *real = (PyArrayObject *)PyArray_SimpleNew(PyArray_NDIM(wide),
+                                                             PyArray_DIMS(wide), NPY_DOUBLE);
+    const npy_longdouble *from = PyArray_DATA(wide);
+    for (npy_intp k = 0; real != NULL && k < PyArray_SIZE(wide); k++) {
+        ((double *)PyArray_DATA(real))[k] = (double)from[k];
+    }
+    Py_DECREF(wide);
+    return real;
+}
+
 /* An array of native doubles, of any strides and alignment. Complex numbers and text are refused
  * here because NumPy would only warn of the former and parse the latter. */
 static PyArrayObject *
 real_array(const cf_function *f, const char *prefix, const char *name, PyObject *object)
 {
+    int masked = is_masked(object);
+    if (masked != 0) {
+        if (masked > 0) {
+            PyErr_Format(PyExc_TypeError, "%s: %s%s is a masked array, expected real numbers",
+                         f->name, prefix, name);
+        }
+        return NULL;
+    }
     PyArrayObject *array = (PyArrayObject *)PyArray_FROM_O(object);
     if (array == NULL || cf_has_kind(array, CF_REAL)) {
         return array;
@@ -83,6 +177,15 @@ real_array(const cf_function *f, const char *prefix, const char *name, PyObject 
                      prefix, name, (PyObject *)PyArray_DESCR(array));
         Py_DECREF(array);
         return NULL;
+    }
+    if (kind == 'O' && check_objects(f, prefix, name, array) < 0) {
+        Py_DECREF(array);
+        return NULL;
+    }
+    if (kind == 'f' && PyArray_ITEMSIZE(array) > (npy_intp)sizeof(double)) {
+        PyArrayObject *narrowed = narrow(array);
+        Py_DECREF(array);
+        return narrowed;
     }
     PyObject *real = PyArray_FromArray(array, PyArray_DescrFromType(NPY_DOUBLE),
                                        NPY_ARRAY_FORCECAST);
@@ -143,8 +246,21 @@ take_params(operands *o)
         }
         return 0;
     }
+    PyObject *params = o->call->params;
+    if (!PyTuple_Check(params) && !PyList_Check(params) &&
+        !(PyArray_Check(params) && PyArray_NDIM((PyArrayObject *)params) > 0)) {
+        PyObject *what = PyUnicode_FromFormat(
+            "params must be Parameters or a sequence of its %zu fields, not", f->n_params);
+        const char *text = what ? PyUnicode_AsUTF8(what) : NULL;
+        if (text != NULL) {
+            raise_type(f, text, params,
+                       PyDict_Check(params) ? "; write Parameters(**params)" : "");
+        }
+        Py_XDECREF(what);
+        return -1;
+    }
     /* A tuple of our own, since converting a field may run code that changes a list. */
-    PyObject *fields = PySequence_Tuple(o->call->params);
+    PyObject *fields = PySequence_Tuple(params);
     if (fields == NULL) {
         return -1;
     }
@@ -267,9 +383,15 @@ given_output(const cf_call *call, size_t k)
         }
         array = PyTuple_GET_ITEM(call->out, (Py_ssize_t)k);
     }
-    if (!PyArray_Check(array)) {
-        PyErr_Format(PyExc_TypeError, "%s: out for %s must be an array, not %s", f->name,
-                     f->out[k].name, Py_TYPE(array)->tp_name);
+    int masked = is_masked(array);
+    if (!PyArray_Check(array) || masked != 0) {
+        PyObject *what =
+            masked < 0 ? NULL : PyUnicode_FromFormat("out for %s must be an array, not", f->out[k].name);
+        const char *text = what ? PyUnicode_AsUTF8(what) : NULL;
+        if (text != NULL) {
+            raise_type(f, text, array, "");
+        }
+        Py_XDECREF(what);
         return NULL;
     }
     return (PyArrayObject *)array;

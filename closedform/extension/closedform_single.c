@@ -99,7 +99,7 @@ plain_numbers(PyObject *sequence, size_t n, double *values)
 static const double *
 core_values(const cf_array *spec, PyObject *object, double *spare)
 {
-    if (PyArray_Check(object)) {
+    if (PyArray_CheckExact(object)) {
         PyArrayObject *array = (PyArrayObject *)object;
         return is_core(array, spec, NPY_ARRAY_CARRAY_RO) ? PyArray_DATA(array) : NULL;
     }
@@ -133,7 +133,7 @@ single_into(const cf_call *call, const double *params, const double **in, double
     for (size_t k = 0; k < f->n_out; k++) {
         PyObject *object = f->n_out > 1 ? PyTuple_GET_ITEM(call->out, (Py_ssize_t)k) : call->out;
         PyArrayObject *array = (PyArrayObject *)object;
-        if (!PyArray_Check(object) || !is_core(array, &f->out[k], NPY_ARRAY_CARRAY)) {
+        if (!PyArray_CheckExact(object) || !is_core(array, &f->out[k], NPY_ARRAY_CARRAY)) {
             return 0;
         }
         out[k] = PyArray_DATA(array);

@@ -54,10 +54,22 @@ typedef struct {
 
 /*
  * Position of the tip, and yaw, roll and pitch.
+ *
  * Source: eqs. (1) to (9).
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns x: shape (..., 6).
- * NaN where the tips are farther apart than the wrist links can span.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * x : real_t[6]
+ *     x, y, z in the unit of the parameters; psi, phi, theta in rad, in (-pi, pi].
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span.
  */
 void h6ar_fk(const h6ar_params *params, const real_t q[6],
     real_t x[6]);
@@ -67,10 +79,22 @@ void h6ar_fk_batch(size_t n, const h6ar_params *params,
 
 /*
  * Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
+ *
  * Source: eq. (9) and its frames.
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns T: shape (..., 4, 4).
- * NaN where the tips are farther apart than the wrist links can span.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform.
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span.
  */
 void h6ar_pose(const h6ar_params *params, const real_t q[6],
     real_t T[16]);
@@ -80,9 +104,17 @@ void h6ar_pose_batch(size_t n, const h6ar_params *params,
 
 /*
  * Tips of the right and of the left fore-arm.
+ *
  * Source: eqs. (1) and (2).
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns tips: shape (..., 2, 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * tips : real_t[6], shape (2, 3)
  */
 void h6ar_arm_tips(const h6ar_params *params, const real_t q[6],
     real_t tips[6]);
@@ -92,9 +124,17 @@ void h6ar_arm_tips_batch(size_t n, const h6ar_params *params,
 
 /*
  * The invariant point, by the averages of the angles.
+ *
  * Source: eq. (7).
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns p: shape (..., 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * p : real_t[3]
  */
 void h6ar_invariant_point(const h6ar_params *params, const real_t q[6],
     real_t p[3]);
@@ -104,11 +144,23 @@ void h6ar_invariant_point_batch(size_t n, const h6ar_params *params,
 
 /*
  * Derivative of the task by the joints.
+ *
  * Source: derivative of eqs. (1) to (9).
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns J: shape (..., 6, 6).
- * NaN where the tips are farther apart than the wrist links can span.
- * Unbounded where the wrist links are stretched: there l_W turns over.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1, theta2R, theta3R, theta2L, theta3L, theta.
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span.
+ * - Unbounded where the wrist links are stretched: there l_W turns over.
  */
 void h6ar_jacobian(const h6ar_params *params, const real_t q[6],
     real_t J[36]);
@@ -118,9 +170,19 @@ void h6ar_jacobian_batch(size_t n, const h6ar_params *params,
 
 /*
  * Determinant of the Jacobian.
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns det: shape (...).
- * NaN where the tips are farther apart than the wrist links can span.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[1]
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span.
  */
 void h6ar_determinant(const h6ar_params *params, const real_t q[6],
     real_t det[1]);
@@ -130,9 +192,22 @@ void h6ar_determinant_batch(size_t n, const h6ar_params *params,
 
 /*
  * The factors of the determinant, and the length of the wrist.
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns factors: shape (..., 6).
- * NaN where the tips are farther apart than the wrist links can span.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[6]
+ *     One factor for each singular set: the tip is above or below the waist axis; virtual arm
+ *     with the wrist straight or folded; virtual arm straight or folded; upper arms half a turn
+ *     apart; fore-arms half a turn apart; wrist links stretched along the base line.
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span.
  */
 void h6ar_singularities(const h6ar_params *params, const real_t q[6],
     real_t factors[6]);
@@ -142,18 +217,35 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
 
 /*
  * All postures of the published model that reach a tip.
+ *
  * Source: eqs. (11), (13) and (14), with the exact half differences.
- * x: shape (..., 6): x, y, z, psi, phi, pitch.
- * Returns q: shape (..., 4, 6).
- * Branches: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.
- * UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist axis
- *     than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.
- * SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm
- *     with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm
- *     straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),
- *     or their difference where it is folded, is determined by yaw and roll, alpha and beta
- *     being half the differences of the arms' angles; sines of equal size are returned.
- * INVALID: d, L1, or both L2 and a3 are zero.
+ *
+ * Inputs
+ * ------
+ * x : const real_t[6]
+ *     x, y, z in the unit of the parameters; psi, phi, theta in rad.
+ *
+ * Outputs
+ * -------
+ * q : real_t[24], shape (4, 6)
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].
+ * status : uint8_t[4]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.
+ * - UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist axis
+ *   than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.
+ * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm
+ *   with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm
+ *   straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),
+ *   or their difference where it is folded, is determined by yaw and roll, alpha and beta being
+ *   half the differences of the arms' angles; sines of equal size are returned.
+ * - INVALID: d, L1, or both L2 and a3 are zero.
  */
 void h6ar_ik(const h6ar_params *params, const real_t x[6],
     real_t q[24], uint8_t status[4]);
@@ -164,10 +256,19 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params,
 
 /*
  * The variable length l_W of the wrist; NaN where the links are too short.
+ *
  * Source: eq. (8).
- * psi: shape (...): psi.
- * phi: shape (...): phi.
- * Returns l_W: shape (...).
+ *
+ * Inputs
+ * ------
+ * psi : const real_t[1]
+ *     Angle in rad.
+ * phi : const real_t[1]
+ *     Angle in rad.
+ *
+ * Outputs
+ * -------
+ * l_W : real_t[1]
  */
 void h6ar_wrist_length(const h6ar_params *params, const real_t psi[1],
     const real_t phi[1], real_t l_W[1]);
@@ -178,11 +279,20 @@ void h6ar_wrist_length_batch(size_t n, const h6ar_params *params,
 
 /*
  * The shortest wrist links that keep the separation angle up to the given yaw and roll.
+ *
  * Source: eq. (10).
- * psi_max: shape (...): psi_max.
- * phi_max: shape (...): phi_max.
- * beta_min: shape (...): beta_min.
- * Returns al: shape (...).
+ *
+ * Inputs
+ * ------
+ * psi_max : const real_t[1]
+ *     Angle in rad.
+ * phi_max : const real_t[1]
+ * beta_min : const real_t[1]
+ *     Angle in rad.
+ *
+ * Outputs
+ * -------
+ * al : real_t[1]
  */
 void h6ar_minimum_link_length(const h6ar_params *params, const real_t psi_max[1],
     const real_t phi_max[1], const real_t beta_min[1],
@@ -195,9 +305,18 @@ void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params,
 
 /*
  * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
- * phi: shape (...): phi.
- * beta_min: shape (...): beta_min.
- * Returns psi: shape (...).
+ *
+ * Inputs
+ * ------
+ * phi : const real_t[1]
+ *     Angle in rad.
+ * beta_min : const real_t[1]
+ *     Angle in rad.
+ *
+ * Outputs
+ * -------
+ * psi : real_t[1]
+ *     Angle in rad, in (-pi, pi].
  */
 void h6ar_largest_yaw(const h6ar_params *params, const real_t phi[1],
     const real_t beta_min[1], real_t psi[1]);
@@ -208,8 +327,16 @@ void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params,
 
 /*
  * The largest angle that yaw and roll may both have; NaN where there is none.
- * beta_min: shape (...): beta_min.
- * Returns angle: shape (...).
+ *
+ * Inputs
+ * ------
+ * beta_min : const real_t[1]
+ *     Angle in rad.
+ *
+ * Outputs
+ * -------
+ * angle : real_t[1]
+ *     Angle in rad, in (-pi, pi].
  */
 void h6ar_largest_angle(const h6ar_params *params, const real_t beta_min[1],
     real_t angle[1]);

@@ -54,13 +54,25 @@ typedef struct {
 
 /*
  * Position of the tip, and yaw, roll and pitch.
+ *
  * Source: eqs. (1), (2), (6) and (9), with the closed loop.
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns x: shape (..., 6).
- * NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
- *     cannot reach their middle.
- * Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *     yaw and roll.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * x : real_t[6]
+ *     x, y, z in the unit of the parameters; psi, phi, theta in rad, in (-pi, pi].
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+ *   arm cannot reach their middle.
+ * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+ *   yaw and roll.
  */
 void h6ar_loop_closed_fk(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t x[6]);
@@ -70,13 +82,25 @@ void h6ar_loop_closed_fk_batch(size_t n, const h6ar_loop_closed_params *params,
 
 /*
  * Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
+ *
  * Source: eq. (9) and its frames.
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns T: shape (..., 4, 4).
- * NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
- *     cannot reach their middle.
- * Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *     yaw and roll.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform.
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+ *   arm cannot reach their middle.
+ * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+ *   yaw and roll.
  */
 void h6ar_loop_closed_pose(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t T[16]);
@@ -86,9 +110,17 @@ void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params
 
 /*
  * Tips of the right and of the left fore-arm.
+ *
  * Source: eqs. (1) and (2).
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns tips: shape (..., 2, 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * tips : real_t[6], shape (2, 3)
  */
 void h6ar_loop_closed_arm_tips(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t tips[6]);
@@ -98,9 +130,17 @@ void h6ar_loop_closed_arm_tips_batch(size_t n, const h6ar_loop_closed_params *pa
 
 /*
  * The invariant point, the middle of the tips.
+ *
  * Source: eq. (6).
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns p: shape (..., 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * p : real_t[3]
  */
 void h6ar_loop_closed_invariant_point(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t p[3]);
@@ -110,14 +150,26 @@ void h6ar_loop_closed_invariant_point_batch(size_t n, const h6ar_loop_closed_par
 
 /*
  * Derivative of the task by the joints.
+ *
  * Source: derivative of the forward map.
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns J: shape (..., 6, 6).
- * NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
- *     cannot reach their middle.
- * Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *     yaw and roll.
- * Unbounded where the wrist links are stretched: there l_W turns over.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1, theta2R, theta3R, theta2L, theta3L, theta.
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+ *   arm cannot reach their middle.
+ * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+ *   yaw and roll.
+ * - Unbounded where the wrist links are stretched: there l_W turns over.
  */
 void h6ar_loop_closed_jacobian(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t J[36]);
@@ -127,12 +179,22 @@ void h6ar_loop_closed_jacobian_batch(size_t n, const h6ar_loop_closed_params *pa
 
 /*
  * Determinant of the Jacobian; it has a pole where the virtual arm is straight.
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns det: shape (...).
- * NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
- *     cannot reach their middle.
- * Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *     yaw and roll.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[1]
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+ *   arm cannot reach their middle.
+ * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+ *   yaw and roll.
  */
 void h6ar_loop_closed_determinant(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t det[1]);
@@ -142,12 +204,26 @@ void h6ar_loop_closed_determinant_batch(size_t n, const h6ar_loop_closed_params 
 
 /*
  * The factors of the determinant, its pole, and the length of the wrist.
- * q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
- * Returns factors: shape (..., 6).
- * NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
- *     cannot reach their middle.
- * Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *     yaw and roll.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[6]
+ *     One factor for each singular set: the tip is above or below the waist axis; virtual arm
+ *     with the wrist straight or folded; right arm straight or folded; left arm straight or
+ *     folded; virtual arm straight or folded (a pole of the determinant); wrist links stretched
+ *     along the base line.
+ *
+ * Notes
+ * -----
+ * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+ *   arm cannot reach their middle.
+ * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+ *   yaw and roll.
  */
 void h6ar_loop_closed_singularities(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t factors[6]);
@@ -157,22 +233,39 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
 
 /*
  * All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other
- *     side.
+ * side.
+ *
  * Source: eqs. (11), (13) and (14), then each arm by itself.
- * x: shape (..., 6): x, y, z, psi, phi, pitch.
- * Returns q: shape (..., 8, 6).
- * Branches: front_elbow_up_alike, front_elbow_up_mixed, front_elbow_down_alike,
- *     front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed, rear_elbow_down_alike,
- *     rear_elbow_down_mixed.
- * UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
- *     axis than L_theta, or an arm is out of reach.
- * SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
- *     upper arm is returned beside that of the virtual arm), or a virtual arm that is folded or
- *     without length, up to what the joints can tell: they then hold the tip, yaw and roll to
- *     fewer digits.
- * INVALID: d, L1, or both L2 and a3 are zero.
- * A straight right arm is returned bent by a few units in the last place, so that fk can read
- *     the side.
+ *
+ * Inputs
+ * ------
+ * x : const real_t[6]
+ *     x, y, z in the unit of the parameters; psi, phi, theta in rad.
+ *
+ * Outputs
+ * -------
+ * q : real_t[48], shape (8, 6)
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].
+ * status : uint8_t[8]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: front_elbow_up_alike, front_elbow_up_mixed, front_elbow_down_alike,
+ *   front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed, rear_elbow_down_alike,
+ *   rear_elbow_down_mixed.
+ * - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
+ *   axis than L_theta, or an arm is out of reach.
+ * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
+ *   upper arm is returned beside that of the virtual arm), or a virtual arm that is folded or
+ *   without length, up to what the joints can tell: they then hold the tip, yaw and roll to
+ *   fewer digits.
+ * - INVALID: d, L1, or both L2 and a3 are zero.
+ * - A straight right arm is returned bent by a few units in the last place, so that fk can read
+ *   the side.
  */
 void h6ar_loop_closed_ik(const h6ar_loop_closed_params *params,
     const real_t x[6], real_t q[48], uint8_t status[8]);
@@ -183,10 +276,19 @@ void h6ar_loop_closed_ik_batch(size_t n, const h6ar_loop_closed_params *params,
 
 /*
  * The variable length l_W of the wrist; NaN where the links are too short.
+ *
  * Source: eq. (8).
- * psi: shape (...): psi.
- * phi: shape (...): phi.
- * Returns l_W: shape (...).
+ *
+ * Inputs
+ * ------
+ * psi : const real_t[1]
+ *     Angle in rad.
+ * phi : const real_t[1]
+ *     Angle in rad.
+ *
+ * Outputs
+ * -------
+ * l_W : real_t[1]
  */
 void h6ar_loop_closed_wrist_length(const h6ar_loop_closed_params *params,
     const real_t psi[1], const real_t phi[1],
@@ -198,11 +300,21 @@ void h6ar_loop_closed_wrist_length_batch(size_t n, const h6ar_loop_closed_params
 
 /*
  * The shortest wrist links that keep the separation angle up to the given yaw and roll.
+ *
  * Source: eq. (10), with yaw and roll combined.
- * psi_max: shape (...): psi_max.
- * phi_max: shape (...): phi_max.
- * beta_min: shape (...): beta_min.
- * Returns al: shape (...).
+ *
+ * Inputs
+ * ------
+ * psi_max : const real_t[1]
+ *     Angle in rad.
+ * phi_max : const real_t[1]
+ *     Angle in rad.
+ * beta_min : const real_t[1]
+ *     Angle in rad.
+ *
+ * Outputs
+ * -------
+ * al : real_t[1]
  */
 void h6ar_loop_closed_minimum_link_length(const h6ar_loop_closed_params *params,
     const real_t psi_max[1], const real_t phi_max[1],
@@ -215,9 +327,18 @@ void h6ar_loop_closed_minimum_link_length_batch(size_t n, const h6ar_loop_closed
 
 /*
  * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
- * phi: shape (...): phi.
- * beta_min: shape (...): beta_min.
- * Returns psi: shape (...).
+ *
+ * Inputs
+ * ------
+ * phi : const real_t[1]
+ *     Angle in rad.
+ * beta_min : const real_t[1]
+ *     Angle in rad.
+ *
+ * Outputs
+ * -------
+ * psi : real_t[1]
+ *     Angle in rad, in (-pi, pi].
  */
 void h6ar_loop_closed_largest_yaw(const h6ar_loop_closed_params *params,
     const real_t phi[1], const real_t beta_min[1],
@@ -229,8 +350,16 @@ void h6ar_loop_closed_largest_yaw_batch(size_t n, const h6ar_loop_closed_params 
 
 /*
  * The largest angle that yaw and roll may both have; NaN where there is none.
- * beta_min: shape (...): beta_min.
- * Returns angle: shape (...).
+ *
+ * Inputs
+ * ------
+ * beta_min : const real_t[1]
+ *     Angle in rad.
+ *
+ * Outputs
+ * -------
+ * angle : real_t[1]
+ *     Angle in rad, in (-pi, pi].
  */
 void h6ar_loop_closed_largest_angle(const h6ar_loop_closed_params *params,
     const real_t beta_min[1], real_t angle[1]);

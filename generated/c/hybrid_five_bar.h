@@ -44,14 +44,31 @@ typedef struct {
 
 /*
  * Position of P in both assembly modes.
+ *
  * Source: the loop closure of section 2.3.
- * q: shape (..., 3): theta1, theta2, theta3.
- * Returns p: shape (..., 2, 3).
- * Branches: left_of_CD, right_of_CD.
- * UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.
- * SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point at
- *     theta4 = theta5 = +90 or -90 degrees is returned.
- * Ill-conditioned near the parallel singularities, where both modes meet or P is free.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * p : real_t[6], shape (2, 3)
+ *     x, y, z in the unit of the parameters.
+ * status : uint8_t[2]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where p is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where p is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. p is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_of_CD, right_of_CD.
+ * - UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.
+ * - SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
+ *   at theta4 = theta5 = +90 or -90 degrees is returned.
+ * - Ill-conditioned near the parallel singularities, where both modes meet or P is free.
  */
 void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
     const real_t q[3], real_t p[6], uint8_t status[2]);
@@ -62,11 +79,22 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
 
 /*
  * Angles theta4 and theta5 of CP and DP in both assembly modes.
- * q: shape (..., 3): theta1, theta2, theta3.
- * Returns theta: shape (..., 2, 2).
- * Branches: left_of_CD, right_of_CD.
- * NaN for an assembly mode that does not exist.
- * Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * theta : real_t[4], shape (2, 2)
+ *     Angles in rad, in (-pi, pi].
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_of_CD, right_of_CD.
+ * - NaN for an assembly mode that does not exist.
+ * - Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
  */
 void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params,
     const real_t q[3], real_t theta[4]);
@@ -76,10 +104,21 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
 
 /*
  * A of A*dp = B*dq; its rows are L2*k, p - c and p - d.
- * q: shape (..., 3): theta1, theta2, theta3.
- * Returns A: shape (..., 2, 3, 3).
- * Branches: left_of_CD, right_of_CD.
- * NaN for an assembly mode that does not exist.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * A : real_t[18], shape (2, 3, 3)
+ *     One column for each of theta1, theta2, theta3.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_of_CD, right_of_CD.
+ * - NaN for an assembly mode that does not exist.
  */
 void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params,
     const real_t q[3], real_t A[18]);
@@ -89,12 +128,22 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
 
 /*
  * The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 -
- *     theta3).
- * q: shape (..., 3): theta1, theta2, theta3.
- * Returns B: shape (..., 2, 3).
- * Branches: left_of_CD, right_of_CD.
- * NaN for an assembly mode that does not exist.
- * Its signs tell the working modes apart, in the order of BRANCHES.
+ * theta3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * B : real_t[6], shape (2, 3)
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_of_CD, right_of_CD.
+ * - NaN for an assembly mode that does not exist.
+ * - Its signs tell the working modes apart, in the order of BRANCHES.
  */
 void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params,
     const real_t q[3], real_t B[6]);
@@ -104,11 +153,22 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
 
 /*
  * Derivative of p with respect to q: A^-1*B.
- * q: shape (..., 3): theta1, theta2, theta3.
- * Returns J: shape (..., 2, 3, 3).
- * Branches: left_of_CD, right_of_CD.
- * NaN for an assembly mode that does not exist.
- * Not finite at a parallel singularity.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[18], shape (2, 3, 3)
+ *     One column for each of theta1, theta2, theta3.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_of_CD, right_of_CD.
+ * - NaN for an assembly mode that does not exist.
+ * - Not finite at a parallel singularity.
  */
 void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params,
     const real_t q[3], real_t J[18]);
@@ -118,11 +178,21 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
 
 /*
  * Determinant of the Jacobian.
- * q: shape (..., 3): theta1, theta2, theta3.
- * Returns det: shape (..., 2).
- * Branches: left_of_CD, right_of_CD.
- * NaN for an assembly mode that does not exist.
- * Not finite at a parallel singularity.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[2]
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_of_CD, right_of_CD.
+ * - NaN for an assembly mode that does not exist.
+ * - Not finite at a parallel singularity.
  */
 void hybrid_five_bar_determinant(const hybrid_five_bar_params *params,
     const real_t q[3], real_t det[2]);
@@ -132,11 +202,23 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
 
 /*
  * Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and
- *     L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.
- * q: shape (..., 3): theta1, theta2, theta3.
- * Returns factors: shape (..., 2, 4).
- * Branches: left_of_CD, right_of_CD.
- * NaN for an assembly mode that does not exist.
+ * L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[8], shape (2, 4)
+ *     One factor for each singular set: P on AB; A, C, P in line; B, D, P in line; C, D, P in
+ *     line.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_of_CD, right_of_CD.
+ * - NaN for an assembly mode that does not exist.
  */
 void hybrid_five_bar_singularities(const hybrid_five_bar_params *params,
     const real_t q[3], real_t factors[8]);
@@ -146,12 +228,22 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
 
 /*
  * Ratio of the largest to the smallest singular value of A.
- * q: shape (..., 3): theta1, theta2, theta3.
- * Returns kappa: shape (..., 2).
- * Branches: left_of_CD, right_of_CD.
- * NaN for an assembly mode that does not exist.
- * Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
- *     same.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * kappa : real_t[2]
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_of_CD, right_of_CD.
+ * - NaN for an assembly mode that does not exist.
+ * - Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
+ *   same.
  */
 void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params,
     const real_t q[3], real_t kappa[2]);
@@ -161,19 +253,36 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
 
 /*
  * The driven angles of all eight working modes.
+ *
  * Source: the working modes of section 2.4.
- * x: shape (..., 3): x, y, z.
- * Returns q: shape (..., 8, 3).
- * Branches: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
- *     minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
- * BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
- *     modes.
- * UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.
- * SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is
- *     free; L1 = 0, both are.  0 is returned for theta1, and for the others unless L1 = 0.
- * Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
- *     the loop still closes.  fk loses them again near a parallel singularity.
- * If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.
+ *
+ * Inputs
+ * ------
+ * x : const real_t[3]
+ *     x, y, z in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * q : real_t[24], shape (8, 3)
+ *     theta1, theta2, theta3 in rad, in (-pi, pi].
+ * status : uint8_t[8]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
+ *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
+ * - BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
+ *   modes.
+ * - UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.
+ * - SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is
+ *   free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.
+ * - Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
+ *   the loop still closes. fk loses them again near a parallel singularity.
+ * - If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.
  */
 void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
     const real_t x[3], real_t q[24], uint8_t status[8]);
@@ -184,9 +293,17 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
 
 /*
  * Whether P can be reached: it lies in both hollow spheres.
+ *
  * Source: section 3.1.
- * p: shape (..., 3): x, y, z.
- * Returns inside: shape (...).
+ *
+ * Inputs
+ * ------
+ * p : const real_t[3]
+ *     x, y, z in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * inside : uint8_t[1]
  */
 void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params,
     const real_t p[3], uint8_t inside[1]);
@@ -196,9 +313,16 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
 
 /*
  * Volume of the workspace.
+ *
  * Source: section 3.1, in closed form.
- * Returns volume: shape (...).
- * NaN for a length that is negative or not finite.
+ *
+ * Outputs
+ * -------
+ * volume : real_t[1]
+ *
+ * Notes
+ * -----
+ * - NaN for a length that is negative or not finite.
  */
 void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params,
     real_t volume[1]);

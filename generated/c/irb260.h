@@ -51,9 +51,18 @@ typedef struct {
 
 /*
  * Angle theta4 of the virtual joint, which keeps the wrist bracket level.
+ *
  * Source: the virtual constraint, section III.
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns theta4: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * theta4 : real_t[1]
+ *     Angle in rad, in (-pi, pi].
  */
 void irb260_joint4(const irb260_params *params, const real_t q[4],
     real_t theta4[1]);
@@ -63,9 +72,20 @@ void irb260_joint4_batch(size_t n, const irb260_params *params,
 
 /*
  * Joint angles of motor angles: theta3 = m3 - m2.
- * motors: shape (..., 4): m1, m2, m3, m5.
- * Returns q: shape (..., 4).
- * The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+ *
+ * Inputs
+ * ------
+ * motors : const real_t[4]
+ *     m1, m2, m3, m5.
+ *
+ * Outputs
+ * -------
+ * q : real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
+ *
+ * Notes
+ * -----
+ * - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
  */
 void irb260_joints_from_motors(const irb260_params *params, const real_t motors[4],
     real_t q[4]);
@@ -75,9 +95,19 @@ void irb260_joints_from_motors_batch(size_t n, const irb260_params *params,
 
 /*
  * Motor angles of joint angles: m3 = theta2 + theta3.
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns motors: shape (..., 4).
- * The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * motors : real_t[4]
+ *
+ * Notes
+ * -----
+ * - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
  */
 void irb260_motors_from_joints(const irb260_params *params, const real_t q[4],
     real_t motors[4]);
@@ -87,10 +117,22 @@ void irb260_motors_from_joints_batch(size_t n, const irb260_params *params,
 
 /*
  * Position of the hand and its angle about z.
+ *
  * Source: eq. (13).
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns x: shape (..., 4).
- * The yaw theta1 + theta5 is reduced to (-pi, pi].
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * x : real_t[4]
+ *     x, y, z in the unit of the parameters; yaw in rad, in (-pi, pi].
+ *
+ * Notes
+ * -----
+ * - The yaw theta1 + theta5 is reduced to (-pi, pi].
  */
 void irb260_fk(const irb260_params *params, const real_t q[4],
     real_t x[4]);
@@ -100,9 +142,18 @@ void irb260_fk_batch(size_t n, const irb260_params *params,
 
 /*
  * Pose of the hand in the base frame.
+ *
  * Source: eq. (13).
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform.
  */
 void irb260_pose(const irb260_params *params, const real_t q[4],
     real_t T[16]);
@@ -112,9 +163,18 @@ void irb260_pose_batch(size_t n, const irb260_params *params,
 
 /*
  * Derivative of (x, y, z, yaw) with respect to the joint angles.
+ *
  * Source: derivative of eq. (13).
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns J: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[16], shape (4, 4)
+ *     One column for each of theta1, theta2, theta3, theta5.
  */
 void irb260_jacobian(const irb260_params *params, const real_t q[4],
     real_t J[16]);
@@ -124,9 +184,18 @@ void irb260_jacobian_batch(size_t n, const irb260_params *params,
 
 /*
  * Twist (v; omega) of the hand in the base frame per joint rate.
+ *
  * Source: eq. (18).
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns J: shape (..., 6, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[24], shape (6, 4)
+ *     One column for each of theta1, theta2, theta3, theta5.
  */
 void irb260_jacobian_space(const irb260_params *params, const real_t q[4],
     real_t J[24]);
@@ -136,8 +205,16 @@ void irb260_jacobian_space_batch(size_t n, const irb260_params *params,
 
 /*
  * Twist (v; omega) of the hand in its own frame per joint rate.
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns J: shape (..., 6, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[24], shape (6, 4)
+ *     One column for each of theta1, theta2, theta3, theta5.
  */
 void irb260_jacobian_body(const irb260_params *params, const real_t q[4],
     real_t J[24]);
@@ -147,8 +224,16 @@ void irb260_jacobian_body_batch(size_t n, const irb260_params *params,
 
 /*
  * Derivative of (x, y, z, yaw) with respect to the motor angles, at joint angles.
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns J: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[16], shape (4, 4)
+ *     One column for each of theta1, theta2, theta3, theta5.
  */
 void irb260_jacobian_motors(const irb260_params *params, const real_t q[4],
     real_t J[16]);
@@ -158,8 +243,15 @@ void irb260_jacobian_motors_batch(size_t n, const irb260_params *params,
 
 /*
  * Determinant of the task Jacobian.
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns det: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[1]
  */
 void irb260_determinant(const irb260_params *params, const real_t q[4],
     real_t det[1]);
@@ -169,8 +261,16 @@ void irb260_determinant_batch(size_t n, const irb260_params *params,
 
 /*
  * The factors rho (hand on the base axis) and cos(theta3) (arm straight or folded).
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * Returns factors: shape (..., 2).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[2]
+ *     One factor for each singular set: base axis; elbow.
  */
 void irb260_singularities(const irb260_params *params, const real_t q[4],
     real_t factors[2]);
@@ -180,10 +280,19 @@ void irb260_singularities_batch(size_t n, const irb260_params *params,
 
 /*
  * Velocity of the origin of the hand, in the base frame.
+ *
  * Source: eq. (23).
- * q: shape (..., 4): theta1, theta2, theta3, theta5.
- * qdot: shape (..., 4): theta1_dot, theta2_dot, theta3_dot, theta5_dot.
- * Returns v: shape (..., 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ * qdot : const real_t[4]
+ *     theta1_dot, theta2_dot, theta3_dot, theta5_dot.
+ *
+ * Outputs
+ * -------
+ * v : real_t[3]
  */
 void irb260_point_velocity(const irb260_params *params, const real_t q[4],
     const real_t qdot[4], real_t v[3]);
@@ -194,18 +303,35 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params,
 
 /*
  * All four configurations of a position and a yaw.
+ *
  * Source: solved from eq. (13); the paper leaves the inverse out.
- * x: shape (..., 4): px, py, pz, psi.
- * Returns q: shape (..., 4, 4).
- * Branches: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.
- * front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0, where
- *     rho = y*cos(theta1) - x*sin(theta1).  elbow_up: cos(theta3) >= 0, as at home; elbow_down:
- *     cos(theta3) <= 0.
- * SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0 is
- *     returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
- *     returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.
- * Ill-conditioned where the arm is straight or folded: the angles lose half the digits there,
- *     the position does not.
+ *
+ * Inputs
+ * ------
+ * x : const real_t[4]
+ *     x, y, z in the unit of the parameters; yaw in rad.
+ *
+ * Outputs
+ * -------
+ * q : real_t[16], shape (4, 4)
+ *     theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
+ * status : uint8_t[4]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.
+ * - front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
+ *   where rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
+ *   elbow_down: cos(theta3) <= 0.
+ * - SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0
+ *   is returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
+ *   returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.
+ * - Ill-conditioned where the arm is straight or folded: the angles lose half the digits there,
+ *   the position does not.
  */
 void irb260_ik(const irb260_params *params, const real_t x[4],
     real_t q[16], uint8_t status[4]);
@@ -216,8 +342,14 @@ void irb260_ik_batch(size_t n, const irb260_params *params,
 
 /*
  * The annulus that the hand can reach in the plane of the arm.
- * Returns section: shape (..., 4).
- * Radius and height of the centre, inner and outer radius.
+ *
+ * Outputs
+ * -------
+ * section : real_t[4]
+ *
+ * Notes
+ * -----
+ * - Radius and height of the centre, inner and outer radius.
  */
 void irb260_workspace_section(const irb260_params *params, real_t section[4]);
 void irb260_workspace_section_batch(size_t n, const irb260_params *params,
@@ -225,8 +357,15 @@ void irb260_workspace_section_batch(size_t n, const irb260_params *params,
 
 /*
  * How far a position is inside the workspace, in the plane of the arm; negative outside.
- * p: shape (..., 3): px, py, pz.
- * Returns margin: shape (...).
+ *
+ * Inputs
+ * ------
+ * p : const real_t[3]
+ *     px, py, pz.
+ *
+ * Outputs
+ * -------
+ * margin : real_t[1]
  */
 void irb260_workspace_margin(const irb260_params *params, const real_t p[3],
     real_t margin[1]);
@@ -236,9 +375,19 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params,
 
 /*
  * Whether some configuration reaches a position, whatever the yaw.
- * p: shape (..., 3): px, py, pz.
- * Returns inside: shape (...).
- * True exactly where ik has a branch that is OK or SINGULAR.
+ *
+ * Inputs
+ * ------
+ * p : const real_t[3]
+ *     px, py, pz.
+ *
+ * Outputs
+ * -------
+ * inside : uint8_t[1]
+ *
+ * Notes
+ * -----
+ * - True exactly where ik has a branch that is OK or SINGULAR.
  */
 void irb260_workspace_contains(const irb260_params *params, const real_t p[3],
     uint8_t inside[1]);

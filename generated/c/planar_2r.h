@@ -41,9 +41,18 @@ typedef struct {
 
 /*
  * Position of the hand.
+ *
  * Source: eqs. (1) and (2).
- * q: shape (..., 2): theta1, theta2.
- * Returns x: shape (..., 2).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     theta1, theta2 in rad.
+ *
+ * Outputs
+ * -------
+ * x : real_t[2]
+ *     x, y in the unit of the parameters.
  */
 void planar_2r_fk(const planar_2r_params *params, const real_t q[2],
     real_t x[2]);
@@ -53,9 +62,18 @@ void planar_2r_fk_batch(size_t n, const planar_2r_params *params,
 
 /*
  * Pose of the hand frame in the base frame.
+ *
  * Source: eq. (8).
- * q: shape (..., 2): theta1, theta2.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     theta1, theta2 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
  */
 void planar_2r_pose(const planar_2r_params *params, const real_t q[2],
     real_t T[16]);
@@ -65,9 +83,18 @@ void planar_2r_pose_batch(size_t n, const planar_2r_params *params,
 
 /*
  * Angle phi of the last link against the x axis: the sum of the joint angles, in (-pi, pi].
+ *
  * Source: eq. (5).
- * q: shape (..., 2): theta1, theta2.
- * Returns phi: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     theta1, theta2 in rad.
+ *
+ * Outputs
+ * -------
+ * phi : real_t[1]
+ *     Angle in rad, in (-pi, pi].
  */
 void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
     real_t phi[1]);
@@ -77,9 +104,18 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params,
 
 /*
  * Derivative of (x, y, phi) with respect to (theta1, theta2).
+ *
  * Source: derivative of eqs. (1), (2) and (5).
- * q: shape (..., 2): theta1, theta2.
- * Returns J: shape (..., 3, 2).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     theta1, theta2 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[6], shape (3, 2)
+ *     One column for each of theta1, theta2.
  */
 void planar_2r_jacobian(const planar_2r_params *params, const real_t q[2],
     real_t J[6]);
@@ -89,8 +125,15 @@ void planar_2r_jacobian_batch(size_t n, const planar_2r_params *params,
 
 /*
  * Determinant of the rows of x and y of the Jacobian.
- * q: shape (..., 2): theta1, theta2.
- * Returns det: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     theta1, theta2 in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[1]
  */
 void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
     real_t det[1]);
@@ -100,8 +143,15 @@ void planar_2r_determinant_batch(size_t n, const planar_2r_params *params,
 
 /*
  * Yoshikawa's manipulability of the position, the modulus of the determinant.
- * q: shape (..., 2): theta1, theta2.
- * Returns w: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     theta1, theta2 in rad.
+ *
+ * Outputs
+ * -------
+ * w : real_t[1]
  */
 void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
     real_t w[1]);
@@ -111,8 +161,16 @@ void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params,
 
 /*
  * The factor that vanishes exactly where the arm is stretched or folded.
- * q: shape (..., 2): theta1, theta2.
- * Returns factors: shape (..., 1).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     theta1, theta2 in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[1]
+ *     One factor for each singular set: elbow.
  */
 void planar_2r_singularities(const planar_2r_params *params, const real_t q[2],
     real_t factors[1]);
@@ -122,14 +180,31 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
 
 /*
  * Both elbow configurations that reach a position.
+ *
  * Source: eqs. (3) and (4), by arctangents.
- * x: shape (..., 2): px, py.
- * Returns q: shape (..., 2, 2).
- * Branches: elbow_down, elbow_up.
- * SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a link
- *     without length, whose angle is free.
- * Ill-conditioned near full stretch and full fold: the angles lose half the digits there, the
- *     position does not.
+ *
+ * Inputs
+ * ------
+ * x : const real_t[2]
+ *     x, y in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * q : real_t[4], shape (2, 2)
+ *     theta1, theta2 in rad, in (-pi, pi].
+ * status : uint8_t[2]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: elbow_down, elbow_up.
+ * - SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a
+ *   link without length, whose angle is free.
+ * - Ill-conditioned near full stretch and full fold: the angles lose half the digits there, the
+ *   position does not.
  */
 void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
     real_t q[4], uint8_t status[2]);
@@ -140,11 +215,27 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
 
 /*
  * The joint angles of a full pose; there is at most one.
+ *
  * Source: eq. (10).
- * T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42,
- *     T43, T44.
- * Returns q: shape (..., 1, 2).
- * UNREACHABLE where the pose is not one of the arm, be it ever so little.
+ *
+ * Inputs
+ * ------
+ * T : const real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
+ *
+ * Outputs
+ * -------
+ * q : real_t[2], shape (1, 2)
+ *     theta1, theta2 in rad, in (-pi, pi].
+ * status : uint8_t[1]
+ *     A CLOSEDFORM_ status: OK (0) where q is a solution, UNREACHABLE (1) where there is none,
+ *     SINGULAR (2) where q is one of infinitely many or hardly determined (see the notes), and
+ *     INVALID (3) where an input is not finite or impossible. q is NaN where the status is
+ *     UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - UNREACHABLE where the pose is not one of the arm, be it ever so little.
  */
 void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
     real_t q[2], uint8_t status[1]);
@@ -155,7 +246,10 @@ void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params,
 
 /*
  * Inner and outer radius of the annulus that the hand can reach.
- * Returns radii: shape (..., 2).
+ *
+ * Outputs
+ * -------
+ * radii : real_t[2]
  */
 void planar_2r_workspace_radii(const planar_2r_params *params, real_t radii[2]);
 void planar_2r_workspace_radii_batch(size_t n, const planar_2r_params *params,

@@ -41,8 +41,16 @@ typedef struct {
 
 /*
  * Pose of the hand in the base frame.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
  */
 void puma560_fk(const puma560_params *params, const real_t q[6],
     real_t T[16]);
@@ -52,8 +60,16 @@ void puma560_fk_batch(size_t n, const puma560_params *params,
 
 /*
  * The same as fk.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
  */
 void puma560_pose(const puma560_params *params, const real_t q[6],
     real_t T[16]);
@@ -63,9 +79,20 @@ void puma560_pose_batch(size_t n, const puma560_params *params,
 
 /*
  * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
- * The geometric Jacobian, in the order (v; omega).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1 to theta6.
+ *
+ * Notes
+ * -----
+ * - The geometric Jacobian, in the order (v; omega).
  */
 void puma560_jacobian(const puma560_params *params, const real_t q[6],
     real_t J[36]);
@@ -75,8 +102,16 @@ void puma560_jacobian_batch(size_t n, const puma560_params *params,
 
 /*
  * Twist (v; omega) of the hand in the base frame per joint rate.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1 to theta6.
  */
 void puma560_jacobian_space(const puma560_params *params, const real_t q[6],
     real_t J[36]);
@@ -86,8 +121,16 @@ void puma560_jacobian_space_batch(size_t n, const puma560_params *params,
 
 /*
  * Twist (v; omega) of the hand in its own frame per joint rate.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1 to theta6.
  */
 void puma560_jacobian_body(const puma560_params *params, const real_t q[6],
     real_t J[36]);
@@ -97,8 +140,15 @@ void puma560_jacobian_body_batch(size_t n, const puma560_params *params,
 
 /*
  * Determinant of the Jacobian.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns det: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[1]
  */
 void puma560_determinant(const puma560_params *params, const real_t q[6],
     real_t det[1]);
@@ -108,8 +158,16 @@ void puma560_determinant_batch(size_t n, const puma560_params *params,
 
 /*
  * The factors whose zeros are the singular set: shoulder, elbow, wrist.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns factors: shape (..., 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[3]
+ *     One factor for each singular set: shoulder; elbow; wrist.
  */
 void puma560_singularities(const puma560_params *params, const real_t q[6],
     real_t factors[3]);
@@ -119,21 +177,36 @@ void puma560_singularities_batch(size_t n, const puma560_params *params,
 
 /*
  * All 8 configurations of a pose.
- * T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42,
- *     T43, T44.
- * Returns q: shape (..., 8, 6).
- * Branches: right_up_noflip, right_up_flip, right_down_noflip, right_down_flip, left_up_noflip,
- *     left_up_flip, left_down_noflip, left_down_flip.
- * right: X >= 0, the arm faces the wrist; left: X <= 0.  up: the elbow is above the line from
- *     the shoulder to the wrist; down: below.
- * SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
- *     links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
- *     length, theta3 is free.
- * Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
- *     digits, the pose does not.
- * noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
- * SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
- * INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+ *
+ * Inputs
+ * ------
+ * T : const real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
+ *
+ * Outputs
+ * -------
+ * q : real_t[48], shape (8, 6)
+ *     theta1 to theta6 in rad, in (-pi, pi].
+ * status : uint8_t[8]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: right_up_noflip, right_up_flip, right_down_noflip, right_down_flip,
+ *   left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
+ * - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
+ *   the shoulder to the wrist; down: below.
+ * - SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
+ *   links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
+ *   length, theta3 is free.
+ * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
+ *   digits, the pose does not.
+ * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+ * - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
+ * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  */
 void puma560_ik(const puma560_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8]);

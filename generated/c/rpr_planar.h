@@ -35,12 +35,28 @@ typedef struct {
 
 /*
  * Position of P in both assembly modes.
- * q: shape (..., 2): rho1, rho2.
- * Returns p: shape (..., 2, 2).
- * Branches: above, below.
- * UNREACHABLE: the legs do not meet, or a length is negative.
- * SINGULAR: the pivots coincide (b = 0); P is free on a circle, the point on the x axis is
- *     returned.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     rho1, rho2 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * p : real_t[4], shape (2, 2)
+ *     x, y in the unit of the parameters.
+ * status : uint8_t[2]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where p is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where p is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. p is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: above, below.
+ * - UNREACHABLE: the legs do not meet, or a length is negative.
+ * - SINGULAR: the pivots coincide (b = 0); P is free on a circle, the point on the x axis is
+ *   returned.
  */
 void rpr_planar_fk(const rpr_planar_params *params, const real_t q[2],
     real_t p[4], uint8_t status[2]);
@@ -51,9 +67,20 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
 
 /*
  * Angles of the legs in both assembly modes.
- * q: shape (..., 2): rho1, rho2.
- * Returns theta: shape (..., 2, 2).
- * Branches: above, below.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     rho1, rho2 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * theta : real_t[4], shape (2, 2)
+ *     Angles in rad, in (-pi, pi].
+ *
+ * Notes
+ * -----
+ * - Branches in this order: above, below.
  */
 void rpr_planar_passive_angles(const rpr_planar_params *params, const real_t q[2],
     real_t theta[4]);
@@ -63,9 +90,20 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
 
 /*
  * Derivative of p with respect to q, A^-1 B.
- * q: shape (..., 2): rho1, rho2.
- * Returns J: shape (..., 2, 2, 2).
- * Branches: above, below.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     rho1, rho2 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * J : real_t[8], shape (2, 2, 2)
+ *     One column for each of rho1, rho2.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: above, below.
  */
 void rpr_planar_jacobian(const rpr_planar_params *params, const real_t q[2],
     real_t J[8]);
@@ -75,9 +113,19 @@ void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params,
 
 /*
  * Determinant of the Jacobian.
- * q: shape (..., 2): rho1, rho2.
- * Returns det: shape (..., 2).
- * Branches: above, below.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     rho1, rho2 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * det : real_t[2]
+ *
+ * Notes
+ * -----
+ * - Branches in this order: above, below.
  */
 void rpr_planar_determinant(const rpr_planar_params *params, const real_t q[2],
     real_t det[2]);
@@ -87,9 +135,20 @@ void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params,
 
 /*
  * rho1 and rho2 (serial) and y (parallel).
- * q: shape (..., 2): rho1, rho2.
- * Returns factors: shape (..., 2, 3).
- * Branches: above, below.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     rho1, rho2 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[6], shape (2, 3)
+ *     One factor for each singular set: leg 1; leg 2; flat.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: above, below.
  */
 void rpr_planar_singularities(const rpr_planar_params *params, const real_t q[2],
     real_t factors[6]);
@@ -99,9 +158,25 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
 
 /*
  * The lengths of the legs.
- * x: shape (..., 2): x, y.
- * Returns q: shape (..., 1, 2).
- * Every position can be reached, in one way: lengths are not negative.
+ *
+ * Inputs
+ * ------
+ * x : const real_t[2]
+ *     x, y in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * q : real_t[2], shape (1, 2)
+ *     rho1, rho2 in the unit of the parameters.
+ * status : uint8_t[1]
+ *     A CLOSEDFORM_ status: OK (0) where q is a solution, UNREACHABLE (1) where there is none,
+ *     SINGULAR (2) where q is one of infinitely many or hardly determined (see the notes), and
+ *     INVALID (3) where an input is not finite or impossible. q is NaN where the status is
+ *     UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Every position can be reached, in one way: lengths are not negative.
  */
 void rpr_planar_ik(const rpr_planar_params *params, const real_t x[2],
     real_t q[2], uint8_t status[1]);

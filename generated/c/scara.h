@@ -39,8 +39,16 @@ typedef struct {
 
 /*
  * Pose of the tool in the base frame.
- * q: shape (..., 4): theta1, theta2, d3, theta4.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform.
  */
 void scara_pose(const scara_params *params, const real_t q[4],
     real_t T[16]);
@@ -50,9 +58,20 @@ void scara_pose_batch(size_t n, const scara_params *params,
 
 /*
  * Task coordinates (x, y, z, yaw).
- * q: shape (..., 4): theta1, theta2, d3, theta4.
- * Returns x: shape (..., 4).
- * The yaw is reduced to (-pi, pi].
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+ *
+ * Outputs
+ * -------
+ * x : real_t[4]
+ *     x, y, z in the unit of the parameters; yaw in rad, in (-pi, pi].
+ *
+ * Notes
+ * -----
+ * - The yaw is reduced to (-pi, pi].
  */
 void scara_fk(const scara_params *params, const real_t q[4],
     real_t x[4]);
@@ -62,8 +81,16 @@ void scara_fk_batch(size_t n, const scara_params *params,
 
 /*
  * Derivative of (x, y, z, yaw) by the joints.
- * q: shape (..., 4): theta1, theta2, d3, theta4.
- * Returns J: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[16], shape (4, 4)
+ *     One column for each of theta1, theta2, d3, theta4.
  */
 void scara_jacobian(const scara_params *params, const real_t q[4],
     real_t J[16]);
@@ -73,8 +100,15 @@ void scara_jacobian_batch(size_t n, const scara_params *params,
 
 /*
  * Determinant of the Jacobian.
- * q: shape (..., 4): theta1, theta2, d3, theta4.
- * Returns det: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[1]
  */
 void scara_determinant(const scara_params *params, const real_t q[4],
     real_t det[1]);
@@ -84,8 +118,16 @@ void scara_determinant_batch(size_t n, const scara_params *params,
 
 /*
  * The factors of the determinant that hold a joint.
- * q: shape (..., 4): theta1, theta2, d3, theta4.
- * Returns factors: shape (..., 1).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[1]
+ *     One factor for each singular set: sin(theta2) = 0.
  */
 void scara_singularities(const scara_params *params, const real_t q[4],
     real_t factors[1]);
@@ -95,8 +137,16 @@ void scara_singularities_batch(size_t n, const scara_params *params,
 
 /*
  * Twist (v; omega) of the tool in the base frame per joint rate.
- * q: shape (..., 4): theta1, theta2, d3, theta4.
- * Returns J: shape (..., 6, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[24], shape (6, 4)
+ *     One column for each of theta1, theta2, d3, theta4.
  */
 void scara_jacobian_space(const scara_params *params, const real_t q[4],
     real_t J[24]);
@@ -106,8 +156,16 @@ void scara_jacobian_space_batch(size_t n, const scara_params *params,
 
 /*
  * Twist (v; omega) of the tool in its own frame per joint rate.
- * q: shape (..., 4): theta1, theta2, d3, theta4.
- * Returns J: shape (..., 6, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[24], shape (6, 4)
+ *     One column for each of theta1, theta2, d3, theta4.
  */
 void scara_jacobian_body(const scara_params *params, const real_t q[4],
     real_t J[24]);
@@ -117,11 +175,28 @@ void scara_jacobian_body_batch(size_t n, const scara_params *params,
 
 /*
  * Both elbows of a position and a yaw.
- * x: shape (..., 4): x_x, x_y, x_z, x_yaw.
- * Returns q: shape (..., 2, 4).
- * Branches: left, right.
- * SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
- * SINGULAR: a link without length: theta2 is free; 0.
+ *
+ * Inputs
+ * ------
+ * x : const real_t[4]
+ *     x, y, z in the unit of the parameters; yaw in rad.
+ *
+ * Outputs
+ * -------
+ * q : real_t[8], shape (2, 4)
+ *     theta1, theta2 in rad, in (-pi, pi]; d3 in the unit of the parameters; theta4 in rad, in
+ *     (-pi, pi].
+ * status : uint8_t[2]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left, right.
+ * - SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
+ * - SINGULAR: a link without length: theta2 is free; 0.
  */
 void scara_ik(const scara_params *params, const real_t x[4],
     real_t q[8], uint8_t status[2]);

@@ -37,9 +37,18 @@ typedef struct {
 
 /*
  * Rotation of the hand.
+ *
  * Source: eqs. (12) and (15).
- * q: shape (..., 3): theta4, theta5, theta6.
- * Returns R: shape (..., 3, 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * R : real_t[9], shape (3, 3)
+ *     A proper rotation.
  */
 void spherical_wrist_fk(const spherical_wrist_params *params,
     const real_t q[3], real_t R[9]);
@@ -49,9 +58,18 @@ void spherical_wrist_fk_batch(size_t n, const spherical_wrist_params *params,
 
 /*
  * Pose of the hand, with its offset d6.
+ *
  * Source: eq. (14).
- * q: shape (..., 3): theta4, theta5, theta6.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform.
  */
 void spherical_wrist_pose(const spherical_wrist_params *params,
     const real_t q[3], real_t T[16]);
@@ -61,8 +79,16 @@ void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
 
 /*
  * Angular velocity in the base frame per joint rate.
- * q: shape (..., 3): theta4, theta5, theta6.
- * Returns J: shape (..., 3, 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[9], shape (3, 3)
+ *     A proper rotation.
  */
 void spherical_wrist_jacobian_space(const spherical_wrist_params *params,
     const real_t q[3], real_t J[9]);
@@ -72,8 +98,16 @@ void spherical_wrist_jacobian_space_batch(size_t n, const spherical_wrist_params
 
 /*
  * Angular velocity in the hand frame per joint rate.
- * q: shape (..., 3): theta4, theta5, theta6.
- * Returns J: shape (..., 3, 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[9], shape (3, 3)
+ *     A proper rotation.
  */
 void spherical_wrist_jacobian_body(const spherical_wrist_params *params,
     const real_t q[3], real_t J[9]);
@@ -83,8 +117,15 @@ void spherical_wrist_jacobian_body_batch(size_t n, const spherical_wrist_params 
 
 /*
  * Determinant of either angular Jacobian.
- * q: shape (..., 3): theta4, theta5, theta6.
- * Returns det: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[1]
  */
 void spherical_wrist_determinant(const spherical_wrist_params *params,
     const real_t q[3], real_t det[1]);
@@ -94,8 +135,16 @@ void spherical_wrist_determinant_batch(size_t n, const spherical_wrist_params *p
 
 /*
  * The factor that vanishes exactly where the axes 4 and 6 coincide.
- * q: shape (..., 3): theta4, theta5, theta6.
- * Returns factors: shape (..., 1).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[1]
+ *     One factor for each singular set: axes 4 and 6 coincide.
  */
 void spherical_wrist_singularities(const spherical_wrist_params *params,
     const real_t q[3], real_t factors[1]);
@@ -105,15 +154,32 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
 
 /*
  * Both wrist configurations of a rotation.
+ *
  * Source: eqs. (13) and (16), with theta6 from the remaining rotation.
- * R: shape (..., 3, 3): R11, R12, R13, R21, R22, R23, R31, R32, R33.
- * Returns q: shape (..., 2, 3).
- * Branches: theta5_positive, theta5_negative.
- * SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, theta4 = 0
- *     is returned.
- * INVALID: a matrix that is no proper rotation, a mirrored one included.
- * Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or
- *     difference.
+ *
+ * Inputs
+ * ------
+ * R : const real_t[9], shape (3, 3)
+ *     A proper rotation.
+ *
+ * Outputs
+ * -------
+ * q : real_t[6], shape (2, 3)
+ *     theta4, theta5, theta6 in rad, in (-pi, pi].
+ * status : uint8_t[2]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: theta5_positive, theta5_negative.
+ * - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, theta4 =
+ *   0 is returned.
+ * - INVALID: a matrix that is no proper rotation, a mirrored one included.
+ * - Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or
+ *   difference.
  */
 void spherical_wrist_ik(const spherical_wrist_params *params,
     const real_t R[9], real_t q[6], uint8_t status[2]);

@@ -40,8 +40,16 @@ typedef struct {
 
 /*
  * Pose of the hand in the base frame.
- * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
  */
 void stanford_arm_fk(const stanford_arm_params *params,
     const real_t q[6], real_t T[16]);
@@ -51,8 +59,16 @@ void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params,
 
 /*
  * The same as fk.
- * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
  */
 void stanford_arm_pose(const stanford_arm_params *params,
     const real_t q[6], real_t T[16]);
@@ -62,9 +78,20 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
 
 /*
  * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
- * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
- * The geometric Jacobian, in the order (v; omega).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1, theta2, d3, theta4, theta5, theta6.
+ *
+ * Notes
+ * -----
+ * - The geometric Jacobian, in the order (v; omega).
  */
 void stanford_arm_jacobian(const stanford_arm_params *params,
     const real_t q[6], real_t J[36]);
@@ -74,8 +101,16 @@ void stanford_arm_jacobian_batch(size_t n, const stanford_arm_params *params,
 
 /*
  * Twist (v; omega) of the hand in the base frame per joint rate.
- * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1, theta2, d3, theta4, theta5, theta6.
  */
 void stanford_arm_jacobian_space(const stanford_arm_params *params,
     const real_t q[6], real_t J[36]);
@@ -85,8 +120,16 @@ void stanford_arm_jacobian_space_batch(size_t n, const stanford_arm_params *para
 
 /*
  * Twist (v; omega) of the hand in its own frame per joint rate.
- * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1, theta2, d3, theta4, theta5, theta6.
  */
 void stanford_arm_jacobian_body(const stanford_arm_params *params,
     const real_t q[6], real_t J[36]);
@@ -96,8 +139,15 @@ void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *param
 
 /*
  * Determinant of the Jacobian.
- * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
- * Returns det: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[1]
  */
 void stanford_arm_determinant(const stanford_arm_params *params,
     const real_t q[6], real_t det[1]);
@@ -107,8 +157,16 @@ void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
 
 /*
  * The factors whose zeros are the singular set: shoulder, boom, wrist.
- * q: shape (..., 6): theta1, theta2, d3, theta4, theta5, theta6.
- * Returns factors: shape (..., 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[3]
+ *     One factor for each singular set: shoulder; boom; wrist.
  */
 void stanford_arm_singularities(const stanford_arm_params *params,
     const real_t q[6], real_t factors[3]);
@@ -118,17 +176,33 @@ void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *param
 
 /*
  * All 8 configurations of a pose.
- * T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42,
- *     T43, T44.
- * Returns q: shape (..., 8, 6).
- * Branches: right_out_noflip, right_out_flip, right_back_noflip, right_back_flip,
- *     left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.
- * right: X >= 0, the arm faces the wrist; left: X <= 0.  out: d3 >= 0; back: d3 <= 0.
- * SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the boom
- *     drawn in, d3 = 0, theta2 = 0 is returned.
- * noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
- * SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
- * INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+ *
+ * Inputs
+ * ------
+ * T : const real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
+ *
+ * Outputs
+ * -------
+ * q : real_t[48], shape (8, 6)
+ *     theta1, theta2 in rad, in (-pi, pi]; d3 in the unit of the parameters; theta4, theta5,
+ *     theta6 in rad, in (-pi, pi].
+ * status : uint8_t[8]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: right_out_noflip, right_out_flip, right_back_noflip,
+ *   right_back_flip, left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.
+ * - right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.
+ * - SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the
+ *   boom drawn in, d3 = 0, theta2 = 0 is returned.
+ * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+ * - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
+ * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  */
 void stanford_arm_ik(const stanford_arm_params *params,
     const real_t T[16], real_t q[48], uint8_t status[8]);

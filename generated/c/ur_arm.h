@@ -44,8 +44,16 @@ typedef struct {
 
 /*
  * Pose of the tool in the base frame.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
  */
 void ur_arm_pose(const ur_arm_params *params, const real_t q[6],
     real_t T[16]);
@@ -55,8 +63,16 @@ void ur_arm_pose_batch(size_t n, const ur_arm_params *params,
 
 /*
  * Pose of the tool in the base frame.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns T: shape (..., 4, 4).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
  */
 void ur_arm_fk(const ur_arm_params *params, const real_t q[6],
     real_t T[16]);
@@ -66,9 +82,20 @@ void ur_arm_fk_batch(size_t n, const ur_arm_params *params,
 
 /*
  * Velocity of the tool over its angular velocity, in base axes, per joint rate.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
- * The geometric Jacobian: rows (v; omega), v of the origin of the tool.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1 to theta6.
+ *
+ * Notes
+ * -----
+ * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  */
 void ur_arm_jacobian(const ur_arm_params *params, const real_t q[6],
     real_t J[36]);
@@ -78,8 +105,15 @@ void ur_arm_jacobian_batch(size_t n, const ur_arm_params *params,
 
 /*
  * Determinant of the Jacobian.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns det: shape (...).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * det : real_t[1]
  */
 void ur_arm_determinant(const ur_arm_params *params, const real_t q[6],
     real_t det[1]);
@@ -89,8 +123,16 @@ void ur_arm_determinant_batch(size_t n, const ur_arm_params *params,
 
 /*
  * The factors of the determinant that hold a joint.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns factors: shape (..., 3).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[3]
+ *     One factor for each singular set: shoulder; elbow; wrist.
  */
 void ur_arm_singularities(const ur_arm_params *params, const real_t q[6],
     real_t factors[3]);
@@ -100,8 +142,16 @@ void ur_arm_singularities_batch(size_t n, const ur_arm_params *params,
 
 /*
  * Twist (v; omega) of the tool in the base frame per joint rate.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1 to theta6.
  */
 void ur_arm_jacobian_space(const ur_arm_params *params, const real_t q[6],
     real_t J[36]);
@@ -111,8 +161,16 @@ void ur_arm_jacobian_space_batch(size_t n, const ur_arm_params *params,
 
 /*
  * Twist (v; omega) of the tool in its own frame per joint rate.
- * q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
- * Returns J: shape (..., 6, 6).
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1 to theta6.
  */
 void ur_arm_jacobian_body(const ur_arm_params *params, const real_t q[6],
     real_t J[36]);
@@ -122,15 +180,31 @@ void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params,
 
 /*
  * The joint angles of a pose, all eight postures.
- * T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42,
- *     T43, T44.
- * Returns q: shape (..., 8, 6).
- * Branches: left_noflip_up, left_noflip_down, left_flip_up, left_flip_down, right_noflip_up,
- *     right_noflip_down, right_flip_up, right_flip_down.
- * SINGULAR: all coefficients of the equation for theta1 vanish; theta1 is free, 0 is returned.
- * SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.
- * SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is returned.
- * SINGULAR: a link without length: theta3 is free; 0.
+ *
+ * Inputs
+ * ------
+ * T : const real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
+ *
+ * Outputs
+ * -------
+ * q : real_t[48], shape (8, 6)
+ *     theta1 to theta6 in rad, in (-pi, pi].
+ * status : uint8_t[8]
+ *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
+ *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
+ *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
+ *     the status is UNREACHABLE or INVALID.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_noflip_up, left_noflip_down, left_flip_up, left_flip_down,
+ *   right_noflip_up, right_noflip_down, right_flip_up, right_flip_down.
+ * - SINGULAR: all coefficients of the equation for theta1 vanish; theta1 is free, 0 is
+ *   returned.
+ * - SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.
+ * - SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is returned.
+ * - SINGULAR: a link without length: theta3 is free; 0.
  */
 void ur_arm_ik(const ur_arm_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8]);

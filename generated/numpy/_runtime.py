@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from enum import IntEnum
 from functools import cache
@@ -168,7 +169,7 @@ def evaluate(kernel: Kernel, args: Sequence[ArrayLike], params: Sequence[ArrayLi
 
 def _core(kernel: Kernel, spec: Array, arg: ArrayLike) -> NDArray[np.float64]:
     """The argument with its core axes flattened to one."""
-    array = np.asarray(arg, dtype=np.float64)
+    array = arg if _is_plain(arg) else _converted(kernel, spec.name, arg)
     split = array.ndim - len(spec.shape)
     if split < 0 or array.shape[split:] != spec.shape:
         expected = ", ".join(["...", *map(str, spec.shape)])
@@ -179,12 +180,63 @@ def _core(kernel: Kernel, spec: Array, arg: ArrayLike) -> NDArray[np.float64]:
 
 
 def _parameters(kernel: Kernel, params: Sequence[ArrayLike]) -> list[NDArray[np.float64]]:
+    if not isinstance(params, (tuple, list)) and not (isinstance(params, np.ndarray) and params.ndim):
+        advice = "; write Parameters(**params)" if isinstance(params, dict) else ""
+        raise TypeError(
+            f"{kernel.name}: params must be Parameters or a sequence of its {len(kernel.fields)} "
+            f"fields, not {type(params).__name__}{advice}"
+        )
     if len(params) != len(kernel.fields):
         raise ValueError(
-            f"{kernel.name}: params has {len(params)} fields, expected {len(kernel.fields)}"
+            f"{kernel.name}: params has {len(params)} fields, expected {len(kernel.fields)} "
+            f"({', '.join(kernel.fields)})"
         )
-    given = dict(zip(kernel.fields, params, strict=True))
-    return [np.asarray(given[name], dtype=np.float64) for name in kernel.fields]
+    return [
+        np.asarray(value)
+        if type(value) is float or _is_plain(value)
+        else _converted(kernel, f"params.{name}", value)
+        for name, value in zip(kernel.fields, params)
+    ]
+
+
+_DOUBLE = np.dtype(np.float64)
+
+
+def _is_plain(arg: Any) -> bool:
+    return type(arg) is np.ndarray and arg.dtype is _DOUBLE
+
+
+def _converted(kernel: Kernel, name: str, arg: ArrayLike) -> NDArray[np.float64]:
+    """An array of doubles, if the argument holds real numbers."""
+    if _is_masked(arg):
+        raise TypeError(f"{kernel.name}: {name} is a masked array, expected real numbers")
+    array = np.asarray(arg)
+    if array.dtype is _DOUBLE:
+        return array
+    if array.dtype.kind not in "biufO":
+        raise TypeError(f"{kernel.name}: {name} has dtype {array.dtype}, expected real numbers")
+    if array.dtype.kind == "O":
+        for value in array.flat:
+            if not _is_real(value):
+                raise TypeError(
+                    f"{kernel.name}: {name} holds {type(value).__name__}, expected real numbers"
+                )
+    with np.errstate(all="ignore"):
+        return array.astype(np.float64)
+
+
+def _is_masked(arg: Any) -> bool:
+    """Whether it is a masked array, whose mask a conversion would drop."""
+    masked = sys.modules.get("numpy.ma")
+    return masked is not None and isinstance(arg, masked.MaskedArray)
+
+
+def _is_real(value: Any) -> bool:
+    """Whether an object is a real number: text is none, though ``float`` would read it."""
+    if isinstance(value, np.generic):
+        return value.dtype.kind in "biuf"
+    known = hasattr(type(value), "__float__") or hasattr(type(value), "__index__")
+    return known and not isinstance(value, complex)
 
 
 def _leading_axes(
@@ -211,7 +263,7 @@ def _results(kernel: Kernel, lead: tuple[int, ...], out: Any) -> list[NDArray[An
     given = list(out) if n > 1 else [out]
     for spec, array in zip(kernel.outputs, given, strict=True):
         expected = (*lead, *spec.shape)
-        if not isinstance(array, np.ndarray):
+        if not isinstance(array, np.ndarray) or _is_masked(array):
             raise TypeError(
                 f"{kernel.name}: out for {spec.name} must be an array, not {type(array).__name__}"
             )

@@ -31,8 +31,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel manipulator.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,28 +70,33 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     L1: Any = 0.4
-    """length of the upper arms, in m (example; the paper gives no dimensions)"""
     L2: Any = 0.4
-    """length of the fore-arms, in m (example; the paper gives no dimensions)"""
     a3: Any = 0.05
-    """offset of the fore-arms at the elbow, in m (example; the paper gives no dimensions)"""
     d1: Any = 0.5
-    """height of the shoulders, in m (example; the paper gives no dimensions)"""
     d: Any = 0.1
-    """distance of each arm from the mid-plane, in m (example; the paper gives no dimensions)"""
     gs: Any = 0.02
-    """half the distance of the gears of the wrist, g_s, in m (example; the paper gives no dimensions)"""
     al: Any = 0.12
-    """length of the links of the wrist, which the paper writes as alpha l, in m (example; the paper gives no dimensions)"""
     loff: Any = 0.05
-    """distance from the gears to the pitch joint, in m (example; the paper gives no dimensions)"""
     lp: Any = 0.1
-    """distance from the pitch joint to the tip, in m (example; the paper gives no dimensions)"""
 
+
+Parameters.L1.__doc__ = 'length of the upper arms, in m; default 0.4 (example; the paper gives no dimensions)'
+Parameters.L2.__doc__ = 'length of the fore-arms, in m; default 0.4 (example; the paper gives no dimensions)'
+Parameters.a3.__doc__ = 'offset of the fore-arms at the elbow, in m; default 0.05 (example; the paper gives no dimensions)'
+Parameters.d1.__doc__ = 'height of the shoulders, in m; default 0.5 (example; the paper gives no dimensions)'
+Parameters.d.__doc__ = 'distance of each arm from the mid-plane, in m; default 0.1 (example; the paper gives no dimensions)'
+Parameters.gs.__doc__ = 'half the distance of the gears of the wrist, g_s, in m; default 0.02 (example; the paper gives no dimensions)'
+Parameters.al.__doc__ = 'length of the links of the wrist, which the paper writes as alpha l, in m; default 0.12 (example; the paper gives no dimensions)'
+Parameters.loff.__doc__ = 'distance from the gears to the pitch joint, in m; default 0.05 (example; the paper gives no dimensions)'
+Parameters.lp.__doc__ = 'distance from the pitch joint to the tip, in m; default 0.1 (example; the paper gives no dimensions)'
 
 _DEFAULT = Parameters()
 
@@ -207,13 +210,35 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Position of the tip, and yaw, roll and pitch.
 
     Source: eqs. (1) to (9).
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns x: shape (..., 6).
-    NaN where the tips are farther apart than the wrist links can span.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    x : ndarray of float64, shape (..., 6)
+        x, y, z in the unit of the parameters; psi, phi, theta in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -365,13 +390,35 @@ _POSE = _runtime.Kernel(
 )
 
 
-def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
 
     Source: eq. (9) and its frames.
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns T: shape (..., 4, 4).
-    NaN where the tips are farther apart than the wrist links can span.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -415,12 +462,30 @@ _ARM_TIPS = _runtime.Kernel(
 )
 
 
-def arm_tips(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def arm_tips(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Tips of the right and of the left fore-arm.
 
     Source: eqs. (1) and (2).
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns tips: shape (..., 2, 3).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    tips : ndarray of float64, shape (..., 2, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_ARM_TIPS, (q,), params, out)
     return result
@@ -478,12 +543,30 @@ _INVARIANT_POINT = _runtime.Kernel(
 )
 
 
-def invariant_point(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def invariant_point(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The invariant point, by the averages of the angles.
 
     Source: eq. (7).
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns p: shape (..., 3).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    p : ndarray of float64, shape (..., 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_INVARIANT_POINT, (q,), params, out)
     return result
@@ -738,14 +821,36 @@ _JACOBIAN = _runtime.Kernel(
 )
 
 
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Derivative of the task by the joints.
 
     Source: derivative of eqs. (1) to (9).
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns J: shape (..., 6, 6).
-    NaN where the tips are farther apart than the wrist links can span.
-    Unbounded where the wrist links are stretched: there l_W turns over.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 6)
+        One column for each of theta1, theta2R, theta3R, theta2L, theta3L, theta.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span.
+    - Unbounded where the wrist links are stretched: there l_W turns over.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -858,12 +963,32 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of the Jacobian.
 
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns det: shape (...).
-    NaN where the tips are farther apart than the wrist links can span.
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -974,12 +1099,35 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The factors of the determinant, and the length of the wrist.
 
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns factors: shape (..., 6).
-    NaN where the tips are farther apart than the wrist links can span.
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 6)
+        One factor for each singular set: the tip is above or below the waist axis; virtual arm
+        with the wrist straight or folded; virtual arm straight or folded; upper arms half a
+        turn apart; fore-arms half a turn apart; wrist links stretched along the base line.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -2311,25 +2459,52 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """All postures of the published model that reach a tip.
 
     Source: eqs. (11), (13) and (14), with the exact half differences.
-    x: shape (..., 6): x, y, z, psi, phi, pitch.
-    Returns q: shape (..., 4, 6).
-    Branches: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.
-    UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist axis
-        than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.
-    SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm
-        with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual
-        arm straight or folded without the wrist: then only the sum of L1 sin(alpha) and f
-        sin(beta), or their difference where it is folded, is determined by yaw and roll, alpha
-        and beta being half the differences of the arms' angles; sines of equal size are
-        returned.
-    INVALID: d, L1, or both L2 and a3 are zero.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 6)
+        x, y, z in the unit of the parameters; psi, phi, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 4, 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].
+    status : ndarray of uint8, shape (..., 4)
+        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, rear_elbow_up,
+      rear_elbow_down.
+    - UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist
+      axis than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.
+    - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm
+      with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm
+      straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),
+      or their difference where it is folded, is determined by yaw and roll, alpha and beta
+      being half the differences of the arms' angles; sines of equal size are returned.
+    - INVALID: d, L1, or both L2 and a3 are zero.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)
 
 
 def _wrist_length(psi, phi, d, gs, al):
@@ -2361,13 +2536,32 @@ _WRIST_LENGTH = _runtime.Kernel(
 )
 
 
-def wrist_length(psi: ArrayLike, phi: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def wrist_length(psi: "ArrayLike", phi: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The variable length l_W of the wrist; NaN where the links are too short.
 
     Source: eq. (8).
-    psi: shape (...): psi.
-    phi: shape (...): phi.
-    Returns l_W: shape (...).
+
+    Parameters
+    ----------
+    psi : array_like, shape (...)
+        Angle in rad.
+    phi : array_like, shape (...)
+        Angle in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    l_W : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_WRIST_LENGTH, (psi, phi), params, out)
     return result
@@ -2391,14 +2585,33 @@ _MINIMUM_LINK_LENGTH = _runtime.Kernel(
 )
 
 
-def minimum_link_length(psi_max: ArrayLike, phi_max: ArrayLike, beta_min: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def minimum_link_length(psi_max: "ArrayLike", phi_max: "ArrayLike", beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The shortest wrist links that keep the separation angle up to the given yaw and roll.
 
     Source: eq. (10).
-    psi_max: shape (...): psi_max.
-    phi_max: shape (...): phi_max.
-    beta_min: shape (...): beta_min.
-    Returns al: shape (...).
+
+    Parameters
+    ----------
+    psi_max : array_like, shape (...)
+        Angle in rad.
+    phi_max : array_like, shape (...)
+    beta_min : array_like, shape (...)
+        Angle in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    al : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_MINIMUM_LINK_LENGTH, (psi_max, phi_max, beta_min), params, out)
     return result
@@ -2433,12 +2646,31 @@ _LARGEST_YAW = _runtime.Kernel(
 )
 
 
-def largest_yaw(phi: ArrayLike, beta_min: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def largest_yaw(phi: "ArrayLike", beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The largest yaw at a roll that keeps the separation angle; NaN where there is none.
 
-    phi: shape (...): phi.
-    beta_min: shape (...): beta_min.
-    Returns psi: shape (...).
+    Parameters
+    ----------
+    phi : array_like, shape (...)
+        Angle in rad.
+    beta_min : array_like, shape (...)
+        Angle in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    psi : ndarray of float64, shape (...)
+        Angle in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_LARGEST_YAW, (phi, beta_min), params, out)
     return result
@@ -2473,11 +2705,29 @@ _LARGEST_ANGLE = _runtime.Kernel(
 )
 
 
-def largest_angle(beta_min: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def largest_angle(beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The largest angle that yaw and roll may both have; NaN where there is none.
 
-    beta_min: shape (...): beta_min.
-    Returns angle: shape (...).
+    Parameters
+    ----------
+    beta_min : array_like, shape (...)
+        Angle in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    angle : ndarray of float64, shape (...)
+        Angle in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_LARGEST_ANGLE, (beta_min,), params, out)
     return result

@@ -32,8 +32,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel manipulator.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -73,28 +71,33 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     L1: Any = 0.4
-    """length of the upper arms, in m (example; the paper gives no dimensions)"""
     L2: Any = 0.4
-    """length of the fore-arms, in m (example; the paper gives no dimensions)"""
     a3: Any = 0.05
-    """offset of the fore-arms at the elbow, in m (example; the paper gives no dimensions)"""
     d1: Any = 0.5
-    """height of the shoulders, in m (example; the paper gives no dimensions)"""
     d: Any = 0.1
-    """distance of each arm from the mid-plane, in m (example; the paper gives no dimensions)"""
     gs: Any = 0.02
-    """half the distance of the gears of the wrist, g_s, in m (example; the paper gives no dimensions)"""
     al: Any = 0.12
-    """length of the links of the wrist, which the paper writes as alpha l, in m (example; the paper gives no dimensions)"""
     loff: Any = 0.05
-    """distance from the gears to the pitch joint, in m (example; the paper gives no dimensions)"""
     lp: Any = 0.1
-    """distance from the pitch joint to the tip, in m (example; the paper gives no dimensions)"""
 
+
+Parameters.L1.__doc__ = 'length of the upper arms, in m; default 0.4 (example; the paper gives no dimensions)'
+Parameters.L2.__doc__ = 'length of the fore-arms, in m; default 0.4 (example; the paper gives no dimensions)'
+Parameters.a3.__doc__ = 'offset of the fore-arms at the elbow, in m; default 0.05 (example; the paper gives no dimensions)'
+Parameters.d1.__doc__ = 'height of the shoulders, in m; default 0.5 (example; the paper gives no dimensions)'
+Parameters.d.__doc__ = 'distance of each arm from the mid-plane, in m; default 0.1 (example; the paper gives no dimensions)'
+Parameters.gs.__doc__ = 'half the distance of the gears of the wrist, g_s, in m; default 0.02 (example; the paper gives no dimensions)'
+Parameters.al.__doc__ = 'length of the links of the wrist, which the paper writes as alpha l, in m; default 0.12 (example; the paper gives no dimensions)'
+Parameters.loff.__doc__ = 'distance from the gears to the pitch joint, in m; default 0.05 (example; the paper gives no dimensions)'
+Parameters.lp.__doc__ = 'distance from the pitch joint to the tip, in m; default 0.1 (example; the paper gives no dimensions)'
 
 _DEFAULT = Parameters()
 
@@ -293,16 +296,38 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Position of the tip, and yaw, roll and pitch.
 
     Source: eqs. (1), (2), (6) and (9), with the closed loop.
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns x: shape (..., 6).
-    NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
-        cannot reach their middle.
-    Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-        yaw and roll.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    x : ndarray of float64, shape (..., 6)
+        x, y, z in the unit of the parameters; psi, phi, theta in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+      arm cannot reach their middle.
+    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+      yaw and roll.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -544,16 +569,38 @@ _POSE = _runtime.Kernel(
 )
 
 
-def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
 
     Source: eq. (9) and its frames.
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns T: shape (..., 4, 4).
-    NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
-        cannot reach their middle.
-    Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-        yaw and roll.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+      arm cannot reach their middle.
+    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+      yaw and roll.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -597,12 +644,30 @@ _ARM_TIPS = _runtime.Kernel(
 )
 
 
-def arm_tips(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def arm_tips(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Tips of the right and of the left fore-arm.
 
     Source: eqs. (1) and (2).
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns tips: shape (..., 2, 3).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    tips : ndarray of float64, shape (..., 2, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_ARM_TIPS, (q,), params, out)
     return result
@@ -658,12 +723,30 @@ _INVARIANT_POINT = _runtime.Kernel(
 )
 
 
-def invariant_point(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def invariant_point(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The invariant point, the middle of the tips.
 
     Source: eq. (6).
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns p: shape (..., 3).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    p : ndarray of float64, shape (..., 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_INVARIANT_POINT, (q,), params, out)
     return result
@@ -1045,17 +1128,39 @@ _JACOBIAN = _runtime.Kernel(
 )
 
 
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Derivative of the task by the joints.
 
     Source: derivative of the forward map.
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns J: shape (..., 6, 6).
-    NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
-        cannot reach their middle.
-    Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-        yaw and roll.
-    Unbounded where the wrist links are stretched: there l_W turns over.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 6)
+        One column for each of theta1, theta2R, theta3R, theta2L, theta3L, theta.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+      arm cannot reach their middle.
+    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+      yaw and roll.
+    - Unbounded where the wrist links are stretched: there l_W turns over.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -1257,15 +1362,35 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of the Jacobian; it has a pole where the virtual arm is straight.
 
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns det: shape (...).
-    NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
-        cannot reach their middle.
-    Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-        yaw and roll.
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+      arm cannot reach their middle.
+    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+      yaw and roll.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -1470,15 +1595,39 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The factors of the determinant, its pole, and the length of the wrist.
 
-    q: shape (..., 6): theta1, theta2R, theta3R, theta2L, theta3L, theta.
-    Returns factors: shape (..., 6).
-    NaN where the tips are farther apart than the wrist links can span, or where the virtual arm
-        cannot reach their middle.
-    Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-        yaw and roll.
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 6)
+        One factor for each singular set: the tip is above or below the waist axis; virtual arm
+        with the wrist straight or folded; right arm straight or folded; left arm straight or
+        folded; virtual arm straight or folded (a pole of the determinant); wrist links
+        stretched along the base line.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
+      arm cannot reach their middle.
+    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
+      yaw and roll.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -3143,27 +3292,55 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
-    """All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other side.
+def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
+    """All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other
+    side.
 
     Source: eqs. (11), (13) and (14), then each arm by itself.
-    x: shape (..., 6): x, y, z, psi, phi, pitch.
-    Returns q: shape (..., 8, 6).
-    Branches: front_elbow_up_alike, front_elbow_up_mixed, front_elbow_down_alike,
-        front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed, rear_elbow_down_alike,
-        rear_elbow_down_mixed.
-    UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
-        axis than L_theta, or an arm is out of reach.
-    SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
-        upper arm is returned beside that of the virtual arm), or a virtual arm that is folded
-        or without length, up to what the joints can tell: they then hold the tip, yaw and roll
-        to fewer digits.
-    INVALID: d, L1, or both L2 and a3 are zero.
-    A straight right arm is returned bent by a few units in the last place, so that fk can read
-        the side.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 6)
+        x, y, z in the unit of the parameters; psi, phi, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 8, 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].
+    status : ndarray of uint8, shape (..., 8)
+        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `BRANCHES`: front_elbow_up_alike, front_elbow_up_mixed,
+      front_elbow_down_alike, front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed,
+      rear_elbow_down_alike, rear_elbow_down_mixed.
+    - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the
+      waist axis than L_theta, or an arm is out of reach.
+    - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
+      upper arm is returned beside that of the virtual arm), or a virtual arm that is folded or
+      without length, up to what the joints can tell: they then hold the tip, yaw and roll to
+      fewer digits.
+    - INVALID: d, L1, or both L2 and a3 are zero.
+    - A straight right arm is returned bent by a few units in the last place, so that fk can
+      read the side.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)
 
 
 def _wrist_length(psi, phi, d, gs, al):
@@ -3197,13 +3374,32 @@ _WRIST_LENGTH = _runtime.Kernel(
 )
 
 
-def wrist_length(psi: ArrayLike, phi: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def wrist_length(psi: "ArrayLike", phi: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The variable length l_W of the wrist; NaN where the links are too short.
 
     Source: eq. (8).
-    psi: shape (...): psi.
-    phi: shape (...): phi.
-    Returns l_W: shape (...).
+
+    Parameters
+    ----------
+    psi : array_like, shape (...)
+        Angle in rad.
+    phi : array_like, shape (...)
+        Angle in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    l_W : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_WRIST_LENGTH, (psi, phi), params, out)
     return result
@@ -3230,14 +3426,34 @@ _MINIMUM_LINK_LENGTH = _runtime.Kernel(
 )
 
 
-def minimum_link_length(psi_max: ArrayLike, phi_max: ArrayLike, beta_min: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def minimum_link_length(psi_max: "ArrayLike", phi_max: "ArrayLike", beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The shortest wrist links that keep the separation angle up to the given yaw and roll.
 
     Source: eq. (10), with yaw and roll combined.
-    psi_max: shape (...): psi_max.
-    phi_max: shape (...): phi_max.
-    beta_min: shape (...): beta_min.
-    Returns al: shape (...).
+
+    Parameters
+    ----------
+    psi_max : array_like, shape (...)
+        Angle in rad.
+    phi_max : array_like, shape (...)
+        Angle in rad.
+    beta_min : array_like, shape (...)
+        Angle in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    al : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_MINIMUM_LINK_LENGTH, (psi_max, phi_max, beta_min), params, out)
     return result
@@ -3273,12 +3489,31 @@ _LARGEST_YAW = _runtime.Kernel(
 )
 
 
-def largest_yaw(phi: ArrayLike, beta_min: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def largest_yaw(phi: "ArrayLike", beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The largest yaw at a roll that keeps the separation angle; NaN where there is none.
 
-    phi: shape (...): phi.
-    beta_min: shape (...): beta_min.
-    Returns psi: shape (...).
+    Parameters
+    ----------
+    phi : array_like, shape (...)
+        Angle in rad.
+    beta_min : array_like, shape (...)
+        Angle in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    psi : ndarray of float64, shape (...)
+        Angle in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_LARGEST_YAW, (phi, beta_min), params, out)
     return result
@@ -3313,11 +3548,29 @@ _LARGEST_ANGLE = _runtime.Kernel(
 )
 
 
-def largest_angle(beta_min: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def largest_angle(beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The largest angle that yaw and roll may both have; NaN where there is none.
 
-    beta_min: shape (...): beta_min.
-    Returns angle: shape (...).
+    Parameters
+    ----------
+    beta_min : array_like, shape (...)
+        Angle in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    angle : ndarray of float64, shape (...)
+        Angle in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_LARGEST_ANGLE, (beta_min,), params, out)
     return result

@@ -27,8 +27,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid Manipulator.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -67,16 +65,21 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     L0: Any = 7.0
-    """distance AB of the pivots, in any unit (the paper gives no value)"""
     L1: Any = 8.0
-    """length of the driven bars, in any unit (the paper gives no value)"""
     L2: Any = 5.0
-    """length of the following bars, in any unit (the paper gives no value)"""
 
+
+Parameters.L0.__doc__ = 'distance AB of the pivots, in any unit; default 7.0 (the paper gives no value)'
+Parameters.L1.__doc__ = 'length of the driven bars, in any unit; default 8.0 (the paper gives no value)'
+Parameters.L2.__doc__ = 'length of the following bars, in any unit; default 5.0 (the paper gives no value)'
 
 _DEFAULT = Parameters()
 
@@ -150,20 +153,47 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Positions:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Positions":
     """Position of P in both assembly modes.
 
     Source: the loop closure of section 2.3.
-    q: shape (..., 3): theta1, theta2, theta3.
-    Returns p: shape (..., 2, 3).
-    Branches: left_of_CD, right_of_CD.
-    UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.
-    SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
-        at theta4 = theta5 = +90 or -90 degrees is returned.
-    Ill-conditioned near the parallel singularities, where both modes meet or P is free.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    p : ndarray of float64, shape (..., 2, 3)
+        x, y, z in the unit of the parameters.
+    status : ndarray of uint8, shape (..., 2)
+        A `Status` of each branch: OK (0) where `p` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `p` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `p` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.
+    - SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
+      at theta4 = theta5 = +90 or -90 degrees is returned.
+    - Ill-conditioned near the parallel singularities, where both modes meet or P is free.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
-    return _runtime.Positions(*result)
+    return Positions(*result)
 
 
 def _passive_angles(theta1, theta2, theta3, L0, L1, L2):
@@ -231,14 +261,35 @@ _PASSIVE_ANGLES = _runtime.Kernel(
 )
 
 
-def passive_angles(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Angles theta4 and theta5 of CP and DP in both assembly modes.
 
-    q: shape (..., 3): theta1, theta2, theta3.
-    Returns theta: shape (..., 2, 2).
-    Branches: left_of_CD, right_of_CD.
-    NaN for an assembly mode that does not exist.
-    Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    theta : ndarray of float64, shape (..., 2, 2)
+        Angles in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - NaN for an assembly mode that does not exist.
+    - Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
     return result
@@ -329,13 +380,34 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
 )
 
 
-def jacobian_parallel(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """A of A*dp = B*dq; its rows are L2*k, p - c and p - d.
 
-    q: shape (..., 3): theta1, theta2, theta3.
-    Returns A: shape (..., 2, 3, 3).
-    Branches: left_of_CD, right_of_CD.
-    NaN for an assembly mode that does not exist.
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    A : ndarray of float64, shape (..., 2, 3, 3)
+        One column for each of theta1, theta2, theta3.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
     return result
@@ -408,14 +480,35 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
 )
 
 
-def jacobian_serial(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 - theta3).
+def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 -
+    theta3).
 
-    q: shape (..., 3): theta1, theta2, theta3.
-    Returns B: shape (..., 2, 3).
-    Branches: left_of_CD, right_of_CD.
-    NaN for an assembly mode that does not exist.
-    Its signs tell the working modes apart, in the order of BRANCHES.
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    B : ndarray of float64, shape (..., 2, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - NaN for an assembly mode that does not exist.
+    - Its signs tell the working modes apart, in the order of BRANCHES.
     """
     result = _runtime.evaluate(_JACOBIAN_SERIAL, (q,), params, out)
     return result
@@ -516,14 +609,35 @@ _JACOBIAN = _runtime.Kernel(
 )
 
 
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Derivative of p with respect to q: A^-1*B.
 
-    q: shape (..., 3): theta1, theta2, theta3.
-    Returns J: shape (..., 2, 3, 3).
-    Branches: left_of_CD, right_of_CD.
-    NaN for an assembly mode that does not exist.
-    Not finite at a parallel singularity.
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 2, 3, 3)
+        One column for each of theta1, theta2, theta3.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - NaN for an assembly mode that does not exist.
+    - Not finite at a parallel singularity.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -601,14 +715,34 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of the Jacobian.
 
-    q: shape (..., 3): theta1, theta2, theta3.
-    Returns det: shape (..., 2).
-    Branches: left_of_CD, right_of_CD.
-    NaN for an assembly mode that does not exist.
-    Not finite at a parallel singularity.
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (..., 2)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - NaN for an assembly mode that does not exist.
+    - Not finite at a parallel singularity.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -685,13 +819,36 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
-    """Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and
+    L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.
 
-    q: shape (..., 3): theta1, theta2, theta3.
-    Returns factors: shape (..., 2, 4).
-    Branches: left_of_CD, right_of_CD.
-    NaN for an assembly mode that does not exist.
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 2, 4)
+        One factor for each singular set: P on AB; A, C, P in line; B, D, P in line; C, D, P in
+        line.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -743,15 +900,35 @@ _CONDITION_NUMBER = _runtime.Kernel(
 )
 
 
-def condition_number(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Ratio of the largest to the smallest singular value of A.
 
-    q: shape (..., 3): theta1, theta2, theta3.
-    Returns kappa: shape (..., 2).
-    Branches: left_of_CD, right_of_CD.
-    NaN for an assembly mode that does not exist.
-    Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
-        same.
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    kappa : ndarray of float64, shape (..., 2)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - NaN for an assembly mode that does not exist.
+    - Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
+      same.
     """
     result = _runtime.evaluate(_CONDITION_NUMBER, (q,), params, out)
     return result
@@ -898,25 +1075,52 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """The driven angles of all eight working modes.
 
     Source: the working modes of section 2.4.
-    x: shape (..., 3): x, y, z.
-    Returns q: shape (..., 8, 3).
-    Branches: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
-        minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
-    BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
-        modes.
-    UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.
-    SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is
-        free; L1 = 0, both are.  0 is returned for theta1, and for the others unless L1 = 0.
-    Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
-        the loop still closes.  fk loses them again near a parallel singularity.
-    If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 3)
+        x, y, z in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 8, 3)
+        theta1, theta2, theta3 in rad, in (-pi, pi].
+    status : ndarray of uint8, shape (..., 8)
+        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
+      plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
+    - BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
+      modes.
+    - UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.
+    - SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is
+      free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.
+    - Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
+      the loop still closes. fk loses them again near a parallel singularity.
+    - If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)
 
 
 def _workspace_contains(x, y, z, L0, L1, L2):
@@ -959,12 +1163,30 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 )
 
 
-def workspace_contains(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Whether P can be reached: it lies in both hollow spheres.
 
     Source: section 3.1.
-    p: shape (..., 3): x, y, z.
-    Returns inside: shape (...).
+
+    Parameters
+    ----------
+    p : array_like, shape (..., 3)
+        x, y, z in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    inside : ndarray of bool, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_WORKSPACE_CONTAINS, (p,), params, out)
     return result
@@ -1023,12 +1245,32 @@ _WORKSPACE_VOLUME = _runtime.Kernel(
 )
 
 
-def workspace_volume(params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def workspace_volume(params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Volume of the workspace.
 
     Source: section 3.1, in closed form.
-    Returns volume: shape (...).
-    NaN for a length that is negative or not finite.
+
+    Parameters
+    ----------
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    volume : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN for a length that is negative or not finite.
     """
     result = _runtime.evaluate(_WORKSPACE_VOLUME, (), params, out)
     return result

@@ -31,8 +31,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from Jun Shi, Xiaorui Zhu, Zexiang Li: New Method for Kinematic Analysis of a Hybrid Manipulator.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -76,22 +74,27 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     l1: Any = 0.1
-    """from the base axis forward to the shoulder, in m (public models, not the paper)"""
     l2: Any = 0.615
-    """from the base up to the shoulder, in m (public models, not the paper)"""
     l3: Any = 0.705
-    """lower arm, from the shoulder to the elbow, in m (public models, not the paper)"""
     l4: Any = 0.65
-    """upper arm, from the elbow to the wrist, in m (public models, not the paper)"""
     l5: Any = 0.181
-    """from the wrist down to the hand, in m (public models, not the paper)"""
     l6: Any = 0.12
-    """from the wrist forward to the axis of the hand, in m (public models, not the paper)"""
 
+
+Parameters.l1.__doc__ = 'from the base axis forward to the shoulder, in m; default 0.1 (public models, not the paper)'
+Parameters.l2.__doc__ = 'from the base up to the shoulder, in m; default 0.615 (public models, not the paper)'
+Parameters.l3.__doc__ = 'lower arm, from the shoulder to the elbow, in m; default 0.705 (public models, not the paper)'
+Parameters.l4.__doc__ = 'upper arm, from the elbow to the wrist, in m; default 0.65 (public models, not the paper)'
+Parameters.l5.__doc__ = 'from the wrist down to the hand, in m; default 0.181 (public models, not the paper)'
+Parameters.l6.__doc__ = 'from the wrist forward to the axis of the hand, in m; default 0.12 (public models, not the paper)'
 
 _DEFAULT = Parameters()
 
@@ -114,12 +117,31 @@ _JOINT4 = _runtime.Kernel(
 )
 
 
-def joint4(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def joint4(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Angle theta4 of the virtual joint, which keeps the wrist bracket level.
 
     Source: the virtual constraint, section III.
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns theta4: shape (...).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    theta4 : ndarray of float64, shape (...)
+        Angle in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JOINT4, (q,), params, out)
     return result
@@ -144,12 +166,33 @@ _JOINTS_FROM_MOTORS = _runtime.Kernel(
 )
 
 
-def joints_from_motors(motors: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Joint angles of motor angles: theta3 = m3 - m2.
 
-    motors: shape (..., 4): m1, m2, m3, m5.
-    Returns q: shape (..., 4).
-    The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+    Parameters
+    ----------
+    motors : array_like, shape (..., 4)
+        m1, m2, m3, m5.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
     """
     result = _runtime.evaluate(_JOINTS_FROM_MOTORS, (motors,), params, out)
     return result
@@ -174,12 +217,32 @@ _MOTORS_FROM_JOINTS = _runtime.Kernel(
 )
 
 
-def motors_from_joints(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Motor angles of joint angles: m3 = theta2 + theta3.
 
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns motors: shape (..., 4).
-    The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    motors : ndarray of float64, shape (..., 4)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
     """
     result = _runtime.evaluate(_MOTORS_FROM_JOINTS, (q,), params, out)
     return result
@@ -210,13 +273,35 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Position of the hand and its angle about z.
 
     Source: eq. (13).
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns x: shape (..., 4).
-    The yaw theta1 + theta5 is reduced to (-pi, pi].
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    x : ndarray of float64, shape (..., 4)
+        x, y, z in the unit of the parameters; yaw in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The yaw theta1 + theta5 is reduced to (-pi, pi].
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -261,12 +346,31 @@ _POSE = _runtime.Kernel(
 )
 
 
-def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Pose of the hand in the base frame.
 
     Source: eq. (13).
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns T: shape (..., 4, 4).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -313,12 +417,31 @@ _JACOBIAN = _runtime.Kernel(
 )
 
 
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Derivative of (x, y, z, yaw) with respect to the joint angles.
 
     Source: derivative of eq. (13).
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns J: shape (..., 4, 4).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 4, 4)
+        One column for each of theta1, theta2, theta3, theta5.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -373,12 +496,31 @@ _JACOBIAN_SPACE = _runtime.Kernel(
 )
 
 
-def jacobian_space(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Twist (v; omega) of the hand in the base frame per joint rate.
 
     Source: eq. (18).
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns J: shape (..., 6, 4).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 4)
+        One column for each of theta1, theta2, theta3, theta5.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_SPACE, (q,), params, out)
     return result
@@ -433,11 +575,29 @@ _JACOBIAN_BODY = _runtime.Kernel(
 )
 
 
-def jacobian_body(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Twist (v; omega) of the hand in its own frame per joint rate.
 
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns J: shape (..., 6, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 4)
+        One column for each of theta1, theta2, theta3, theta5.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_BODY, (q,), params, out)
     return result
@@ -483,11 +643,29 @@ _JACOBIAN_MOTORS = _runtime.Kernel(
 )
 
 
-def jacobian_motors(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_motors(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Derivative of (x, y, z, yaw) with respect to the motor angles, at joint angles.
 
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns J: shape (..., 4, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 4, 4)
+        One column for each of theta1, theta2, theta3, theta5.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_MOTORS, (q,), params, out)
     return result
@@ -513,11 +691,28 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of the task Jacobian.
 
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns det: shape (...).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -542,11 +737,29 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The factors rho (hand on the base axis) and cos(theta3) (arm straight or folded).
 
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    Returns factors: shape (..., 2).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 2)
+        One factor for each singular set: base axis; elbow.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -586,13 +799,32 @@ _POINT_VELOCITY = _runtime.Kernel(
 )
 
 
-def point_velocity(q: ArrayLike, qdot: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def point_velocity(q: "ArrayLike", qdot: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Velocity of the origin of the hand, in the base frame.
 
     Source: eq. (23).
-    q: shape (..., 4): theta1, theta2, theta3, theta5.
-    qdot: shape (..., 4): theta1_dot, theta2_dot, theta3_dot, theta5_dot.
-    Returns v: shape (..., 3).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    qdot : array_like, shape (..., 4)
+        theta1_dot, theta2_dot, theta3_dot, theta5_dot.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    v : ndarray of float64, shape (..., 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POINT_VELOCITY, (q, qdot), params, out)
     return result
@@ -753,24 +985,52 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """All four configurations of a position and a yaw.
 
     Source: solved from eq. (13); the paper leaves the inverse out.
-    x: shape (..., 4): px, py, pz, psi.
-    Returns q: shape (..., 4, 4).
-    Branches: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.
-    front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
-        where rho = y*cos(theta1) - x*sin(theta1).  elbow_up: cos(theta3) >= 0, as at home;
-        elbow_down: cos(theta3) <= 0.
-    SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0 is
-        returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
-        returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.
-    Ill-conditioned where the arm is straight or folded: the angles lose half the digits there,
-        the position does not.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 4)
+        x, y, z in the unit of the parameters; yaw in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 4, 4)
+        theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
+    status : ndarray of uint8, shape (..., 4)
+        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,
+      back_elbow_down.
+    - front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
+      where rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
+      elbow_down: cos(theta3) <= 0.
+    - SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0
+      is returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
+      returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.
+    - Ill-conditioned where the arm is straight or folded: the angles lose half the digits
+      there, the position does not.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)
 
 
 def _workspace_section(l1, l2, l3, l4, l5, l6):
@@ -792,11 +1052,30 @@ _WORKSPACE_SECTION = _runtime.Kernel(
 )
 
 
-def workspace_section(params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def workspace_section(params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The annulus that the hand can reach in the plane of the arm.
 
-    Returns section: shape (..., 4).
-    Radius and height of the centre, inner and outer radius.
+    Parameters
+    ----------
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    section : ndarray of float64, shape (..., 4)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Radius and height of the centre, inner and outer radius.
     """
     result = _runtime.evaluate(_WORKSPACE_SECTION, (), params, out)
     return result
@@ -836,11 +1115,28 @@ _WORKSPACE_MARGIN = _runtime.Kernel(
 )
 
 
-def workspace_margin(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def workspace_margin(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """How far a position is inside the workspace, in the plane of the arm; negative outside.
 
-    p: shape (..., 3): px, py, pz.
-    Returns margin: shape (...).
+    Parameters
+    ----------
+    p : array_like, shape (..., 3)
+        px, py, pz.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    margin : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_WORKSPACE_MARGIN, (p,), params, out)
     return result
@@ -889,12 +1185,32 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 )
 
 
-def workspace_contains(p: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Whether some configuration reaches a position, whatever the yaw.
 
-    p: shape (..., 3): px, py, pz.
-    Returns inside: shape (...).
-    True exactly where ik has a branch that is OK or SINGULAR.
+    Parameters
+    ----------
+    p : array_like, shape (..., 3)
+        px, py, pz.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    inside : ndarray of bool, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - True exactly where ik has a branch that is OK or SINGULAR.
     """
     result = _runtime.evaluate(_WORKSPACE_CONTAINS, (p,), params, out)
     return result

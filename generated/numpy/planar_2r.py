@@ -22,8 +22,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from S. Baswanth Kumar Reddy, K. Rajesh Babu: Kinematic Attitudes of a Planar Robot and a Spherical Wrist.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -61,14 +59,19 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     l1: Any = 10.0
-    """length of the first link, in cm (the paper's example)"""
     l2: Any = 8.0
-    """length of the second link, in cm (the paper's example)"""
 
+
+Parameters.l1.__doc__ = "length of the first link, in cm; default 10.0 (the paper's example)"
+Parameters.l2.__doc__ = "length of the second link, in cm; default 8.0 (the paper's example)"
 
 _DEFAULT = Parameters()
 
@@ -92,12 +95,31 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Position of the hand.
 
     Source: eqs. (1) and (2).
-    q: shape (..., 2): theta1, theta2.
-    Returns x: shape (..., 2).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        theta1, theta2 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    x : ndarray of float64, shape (..., 2)
+        x, y in the unit of the parameters.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -139,12 +161,31 @@ _POSE = _runtime.Kernel(
 )
 
 
-def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Pose of the hand frame in the base frame.
 
     Source: eq. (8).
-    q: shape (..., 2): theta1, theta2.
-    Returns T: shape (..., 4, 4).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        theta1, theta2 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -168,12 +209,31 @@ _ORIENTATION = _runtime.Kernel(
 )
 
 
-def orientation(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def orientation(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Angle phi of the last link against the x axis: the sum of the joint angles, in (-pi, pi].
 
     Source: eq. (5).
-    q: shape (..., 2): theta1, theta2.
-    Returns phi: shape (...).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        theta1, theta2 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    phi : ndarray of float64, shape (...)
+        Angle in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_ORIENTATION, (q,), params, out)
     return result
@@ -205,12 +265,31 @@ _JACOBIAN = _runtime.Kernel(
 )
 
 
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Derivative of (x, y, phi) with respect to (theta1, theta2).
 
     Source: derivative of eqs. (1), (2) and (5).
-    q: shape (..., 2): theta1, theta2.
-    Returns J: shape (..., 3, 2).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        theta1, theta2 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 3, 2)
+        One column for each of theta1, theta2.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -233,11 +312,28 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of the rows of x and y of the Jacobian.
 
-    q: shape (..., 2): theta1, theta2.
-    Returns det: shape (...).
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        theta1, theta2 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -260,11 +356,28 @@ _MANIPULABILITY = _runtime.Kernel(
 )
 
 
-def manipulability(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def manipulability(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Yoshikawa's manipulability of the position, the modulus of the determinant.
 
-    q: shape (..., 2): theta1, theta2.
-    Returns w: shape (...).
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        theta1, theta2 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    w : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_MANIPULABILITY, (q,), params, out)
     return result
@@ -287,11 +400,29 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The factor that vanishes exactly where the arm is stretched or folded.
 
-    q: shape (..., 2): theta1, theta2.
-    Returns factors: shape (..., 1).
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        theta1, theta2 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 1)
+        One factor for each singular set: elbow.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -359,20 +490,47 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """Both elbow configurations that reach a position.
 
     Source: eqs. (3) and (4), by arctangents.
-    x: shape (..., 2): px, py.
-    Returns q: shape (..., 2, 2).
-    Branches: elbow_down, elbow_up.
-    SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a link
-        without length, whose angle is free.
-    Ill-conditioned near full stretch and full fold: the angles lose half the digits there, the
-        position does not.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., 2)
+        x, y in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 2, 2)
+        theta1, theta2 in rad, in (-pi, pi].
+    status : ndarray of uint8, shape (..., 2)
+        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `BRANCHES`: elbow_down, elbow_up.
+    - SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a
+      link without length, whose angle is free.
+    - Ill-conditioned near full stretch and full fold: the angles lose half the digits there,
+      the position does not.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)
 
 
 def _ik_pose(
@@ -437,17 +595,43 @@ _IK_POSE = _runtime.Kernel(
 )
 
 
-def ik_pose(T: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik_pose(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """The joint angles of a full pose; there is at most one.
 
     Source: eq. (10).
-    T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42,
-        T43, T44.
-    Returns q: shape (..., 1, 2).
-    UNREACHABLE where the pose is not one of the arm, be it ever so little.
+
+    Parameters
+    ----------
+    T : array_like, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 1, 2)
+        theta1, theta2 in rad, in (-pi, pi].
+    status : ndarray of uint8, shape (..., 1)
+        A `Status`: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none,
+        SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the notes),
+        and INVALID (3) where an input is not finite or impossible. `q` is NaN where the status
+        is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - UNREACHABLE where the pose is not one of the arm, be it ever so little.
     """
     result = _runtime.evaluate(_IK_POSE, (T,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)
 
 
 def _workspace_radii(l1, l2):
@@ -467,10 +651,26 @@ _WORKSPACE_RADII = _runtime.Kernel(
 )
 
 
-def workspace_radii(params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def workspace_radii(params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Inner and outer radius of the annulus that the hand can reach.
 
-    Returns radii: shape (..., 2).
+    Parameters
+    ----------
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    radii : ndarray of float64, shape (..., 2)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_WORKSPACE_RADII, (), params, out)
     return result

@@ -22,8 +22,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from J. J. Craig, P. I. Corke, M. W. Spong, R. P. Paul, C. S. G. Lee, M. Ziegler: The Puma 560 in the textbooks.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -59,18 +57,23 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     a2: Any = 0.4318
-    """length of the upper arm, in m (Puma 560 of the Robotics Toolbox (Corke))"""
     a3: Any = 0.0203
-    """offset of the forearm at the elbow, in m (Puma 560 of the Robotics Toolbox (Corke))"""
     d3: Any = 0.15005
-    """offset of the arm from the base axis, in m (Puma 560 of the Robotics Toolbox (Corke))"""
     d4: Any = 0.4318
-    """length of the forearm, from the elbow to the wrist, in m (Puma 560 of the Robotics Toolbox (Corke))"""
 
+
+Parameters.a2.__doc__ = 'length of the upper arm, in m; default 0.4318 (Puma 560 of the Robotics Toolbox (Corke))'
+Parameters.a3.__doc__ = 'offset of the forearm at the elbow, in m; default 0.0203 (Puma 560 of the Robotics Toolbox (Corke))'
+Parameters.d3.__doc__ = 'offset of the arm from the base axis, in m; default 0.15005 (Puma 560 of the Robotics Toolbox (Corke))'
+Parameters.d4.__doc__ = 'length of the forearm, from the elbow to the wrist, in m; default 0.4318 (Puma 560 of the Robotics Toolbox (Corke))'
 
 _DEFAULT = Parameters()
 
@@ -135,11 +138,29 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Pose of the hand in the base frame.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns T: shape (..., 4, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -205,11 +226,29 @@ _POSE = _runtime.Kernel(
 )
 
 
-def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The same as fk.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns T: shape (..., 4, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -285,12 +324,33 @@ _JACOBIAN = _runtime.Kernel(
 )
 
 
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns J: shape (..., 6, 6).
-    The geometric Jacobian, in the order (v; omega).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 6)
+        One column for each of theta1 to theta6.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The geometric Jacobian, in the order (v; omega).
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -381,11 +441,29 @@ _JACOBIAN_SPACE = _runtime.Kernel(
 )
 
 
-def jacobian_space(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Twist (v; omega) of the hand in the base frame per joint rate.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns J: shape (..., 6, 6).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 6)
+        One column for each of theta1 to theta6.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_SPACE, (q,), params, out)
     return result
@@ -479,11 +557,29 @@ _JACOBIAN_BODY = _runtime.Kernel(
 )
 
 
-def jacobian_body(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Twist (v; omega) of the hand in its own frame per joint rate.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns J: shape (..., 6, 6).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 6)
+        One column for each of theta1 to theta6.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_BODY, (q,), params, out)
     return result
@@ -520,11 +616,28 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of the Jacobian.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns det: shape (...).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -553,11 +666,29 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The factors whose zeros are the singular set: shoulder, elbow, wrist.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns factors: shape (..., 3).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 3)
+        One factor for each singular set: shoulder; elbow; wrist.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -920,24 +1051,49 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(T: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """All 8 configurations of a pose.
 
-    T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42,
-        T43, T44.
-    Returns q: shape (..., 8, 6).
-    Branches: right_up_noflip, right_up_flip, right_down_noflip, right_down_flip,
-        left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
-    right: X >= 0, the arm faces the wrist; left: X <= 0.  up: the elbow is above the line from
-        the shoulder to the wrist; down: below.
-    SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
-        links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
-        length, theta3 is free.
-    Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
-        digits, the pose does not.
-    noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
-    SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
-    INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+    Parameters
+    ----------
+    T : array_like, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 8, 6)
+        theta1 to theta6 in rad, in (-pi, pi].
+    status : ndarray of uint8, shape (..., 8)
+        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `BRANCHES`: right_up_noflip, right_up_flip, right_down_noflip,
+      right_down_flip, left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
+    - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
+      the shoulder to the wrist; down: below.
+    - SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
+      links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
+      length, theta3 is free.
+    - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
+      digits, the pose does not.
+    - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+    - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
+    - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
     """
     result = _runtime.evaluate(_IK, (T,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)

@@ -18,8 +18,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from The closedform authors: Arms of common structure, by the lemmas that solve them.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,12 +51,17 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     b: Any = 1.0
-    """distance of the pivots, in m (the unit of length)"""
 
+
+Parameters.b.__doc__ = 'distance of the pivots, in m; default 1.0 (the unit of length)'
 
 _DEFAULT = Parameters()
 
@@ -116,18 +119,44 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Positions:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Positions":
     """Position of P in both assembly modes.
 
-    q: shape (..., 2): rho1, rho2.
-    Returns p: shape (..., 2, 2).
-    Branches: above, below.
-    UNREACHABLE: the legs do not meet, or a length is negative.
-    SINGULAR: the pivots coincide (b = 0); P is free on a circle, the point on the x axis is
-        returned.
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    p : ndarray of float64, shape (..., 2, 2)
+        x, y in the unit of the parameters.
+    status : ndarray of uint8, shape (..., 2)
+        A `Status` of each branch: OK (0) where `p` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `p` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `p` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - UNREACHABLE: the legs do not meet, or a length is negative.
+    - SINGULAR: the pivots coincide (b = 0); P is free on a circle, the point on the x axis is
+      returned.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
-    return _runtime.Positions(*result)
+    return Positions(*result)
 
 
 def _passive_angles(rho1, rho2, b):
@@ -179,12 +208,33 @@ _PASSIVE_ANGLES = _runtime.Kernel(
 )
 
 
-def passive_angles(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Angles of the legs in both assembly modes.
 
-    q: shape (..., 2): rho1, rho2.
-    Returns theta: shape (..., 2, 2).
-    Branches: above, below.
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    theta : ndarray of float64, shape (..., 2, 2)
+        Angles in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
     return result
@@ -248,12 +298,33 @@ _JACOBIAN = _runtime.Kernel(
 )
 
 
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Derivative of p with respect to q, A^-1 B.
 
-    q: shape (..., 2): rho1, rho2.
-    Returns J: shape (..., 2, 2, 2).
-    Branches: above, below.
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 2, 2, 2)
+        One column for each of rho1, rho2.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -301,12 +372,32 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of the Jacobian.
 
-    q: shape (..., 2): rho1, rho2.
-    Returns det: shape (..., 2).
-    Branches: above, below.
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (..., 2)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -359,12 +450,33 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """rho1 and rho2 (serial) and y (parallel).
 
-    q: shape (..., 2): rho1, rho2.
-    Returns factors: shape (..., 2, 3).
-    Branches: above, below.
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 2, 3)
+        One factor for each singular set: leg 1; leg 2; flat.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -396,12 +508,38 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """The lengths of the legs.
 
-    x: shape (..., 2): x, y.
-    Returns q: shape (..., 1, 2).
-    Every position can be reached, in one way: lengths are not negative.
+    Parameters
+    ----------
+    x : array_like, shape (..., 2)
+        x, y in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 1, 2)
+        rho1, rho2 in the unit of the parameters.
+    status : ndarray of uint8, shape (..., 1)
+        A `Status`: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none,
+        SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the notes),
+        and INVALID (3) where an input is not finite or impossible. `q` is NaN where the status
+        is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Every position can be reached, in one way: lengths are not negative.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)

@@ -19,8 +19,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from The closedform authors: Arms of common structure, by the lemmas that solve them.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -56,16 +54,21 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     l1: Any = 0.325
-    """first link, in m (the size of a common SCARA arm)"""
     l2: Any = 0.275
-    """second link, in m (the size of a common SCARA arm)"""
     h: Any = 0.35
-    """height of the links, in m (the size of a common SCARA arm)"""
 
+
+Parameters.l1.__doc__ = 'first link, in m; default 0.325 (the size of a common SCARA arm)'
+Parameters.l2.__doc__ = 'second link, in m; default 0.275 (the size of a common SCARA arm)'
+Parameters.h.__doc__ = 'height of the links, in m; default 0.35 (the size of a common SCARA arm)'
 
 _DEFAULT = Parameters()
 
@@ -110,11 +113,29 @@ _POSE = _runtime.Kernel(
 )
 
 
-def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Pose of the tool in the base frame.
 
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns T: shape (..., 4, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -146,12 +167,33 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Task coordinates (x, y, z, yaw).
 
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns x: shape (..., 4).
-    The yaw is reduced to (-pi, pi].
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    x : ndarray of float64, shape (..., 4)
+        x, y, z in the unit of the parameters; yaw in rad, in (-pi, pi].
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The yaw is reduced to (-pi, pi].
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -193,11 +235,29 @@ _JACOBIAN = _runtime.Kernel(
 )
 
 
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Derivative of (x, y, z, yaw) by the joints.
 
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns J: shape (..., 4, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 4, 4)
+        One column for each of theta1, theta2, d3, theta4.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -220,11 +280,28 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of the Jacobian.
 
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns det: shape (...).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -247,11 +324,29 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The factors of the determinant that hold a joint.
 
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns factors: shape (..., 1).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 1)
+        One factor for each singular set: sin(theta2) = 0.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -300,11 +395,29 @@ _JACOBIAN_SPACE = _runtime.Kernel(
 )
 
 
-def jacobian_space(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Twist (v; omega) of the tool in the base frame per joint rate.
 
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns J: shape (..., 6, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 4)
+        One column for each of theta1, theta2, d3, theta4.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_SPACE, (q,), params, out)
     return result
@@ -353,11 +466,29 @@ _JACOBIAN_BODY = _runtime.Kernel(
 )
 
 
-def jacobian_body(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Twist (v; omega) of the tool in its own frame per joint rate.
 
-    q: shape (..., 4): theta1, theta2, d3, theta4.
-    Returns J: shape (..., 6, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 4)
+        One column for each of theta1, theta2, d3, theta4.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_BODY, (q,), params, out)
     return result
@@ -457,14 +588,41 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """Both elbows of a position and a yaw.
 
-    x: shape (..., 4): x_x, x_y, x_z, x_yaw.
-    Returns q: shape (..., 2, 4).
-    Branches: left, right.
-    SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
-    SINGULAR: a link without length: theta2 is free; 0.
+    Parameters
+    ----------
+    x : array_like, shape (..., 4)
+        x, y, z in the unit of the parameters; yaw in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 2, 4)
+        theta1, theta2 in rad, in (-pi, pi]; d3 in the unit of the parameters; theta4 in rad, in
+        (-pi, pi].
+    status : ndarray of uint8, shape (..., 2)
+        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `BRANCHES`: left, right.
+    - SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
+    - SINGULAR: a link without length: theta2 is free; 0.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)

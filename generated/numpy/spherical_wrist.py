@@ -19,8 +19,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from S. Baswanth Kumar Reddy, K. Rajesh Babu: Kinematic Attitudes of a Planar Robot and a Spherical Wrist.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,12 +53,17 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     d6: Any = 1.0
-    """distance of the hand from the centre of the wrist, in any length (the paper gives no value)"""
 
+
+Parameters.d6.__doc__ = 'distance of the hand from the centre of the wrist, in any length; default 1.0 (the paper gives no value)'
 
 _DEFAULT = Parameters()
 
@@ -96,12 +99,31 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Rotation of the hand.
 
     Source: eqs. (12) and (15).
-    q: shape (..., 3): theta4, theta5, theta6.
-    Returns R: shape (..., 3, 3).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    R : ndarray of float64, shape (..., 3, 3)
+        A proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -146,12 +168,31 @@ _POSE = _runtime.Kernel(
 )
 
 
-def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Pose of the hand, with its offset d6.
 
     Source: eq. (14).
-    q: shape (..., 3): theta4, theta5, theta6.
-    Returns T: shape (..., 4, 4).
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -183,11 +224,29 @@ _JACOBIAN_SPACE = _runtime.Kernel(
 )
 
 
-def jacobian_space(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Angular velocity in the base frame per joint rate.
 
-    q: shape (..., 3): theta4, theta5, theta6.
-    Returns J: shape (..., 3, 3).
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 3, 3)
+        A proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_SPACE, (q,), params, out)
     return result
@@ -219,11 +278,29 @@ _JACOBIAN_BODY = _runtime.Kernel(
 )
 
 
-def jacobian_body(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Angular velocity in the hand frame per joint rate.
 
-    q: shape (..., 3): theta4, theta5, theta6.
-    Returns J: shape (..., 3, 3).
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 3, 3)
+        A proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_BODY, (q,), params, out)
     return result
@@ -246,11 +323,28 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of either angular Jacobian.
 
-    q: shape (..., 3): theta4, theta5, theta6.
-    Returns det: shape (...).
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -273,11 +367,29 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The factor that vanishes exactly where the axes 4 and 6 coincide.
 
-    q: shape (..., 3): theta4, theta5, theta6.
-    Returns factors: shape (..., 1).
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 1)
+        One factor for each singular set: axes 4 and 6 coincide.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -331,18 +443,45 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(R: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik(R: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """Both wrist configurations of a rotation.
 
     Source: eqs. (13) and (16), with theta6 from the remaining rotation.
-    R: shape (..., 3, 3): R11, R12, R13, R21, R22, R23, R31, R32, R33.
-    Returns q: shape (..., 2, 3).
-    Branches: theta5_positive, theta5_negative.
-    SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, theta4 =
-        0 is returned.
-    INVALID: a matrix that is no proper rotation, a mirrored one included.
-    Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or
-        difference.
+
+    Parameters
+    ----------
+    R : array_like, shape (..., 3, 3)
+        A proper rotation.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 2, 3)
+        theta4, theta5, theta6 in rad, in (-pi, pi].
+    status : ndarray of uint8, shape (..., 2)
+        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `BRANCHES`: theta5_positive, theta5_negative.
+    - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, theta4
+      = 0 is returned.
+    - INVALID: a matrix that is no proper rotation, a mirrored one included.
+    - Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or
+      difference.
     """
     result = _runtime.evaluate(_IK, (R,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)

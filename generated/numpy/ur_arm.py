@@ -22,8 +22,6 @@ Angles are in radians. The last axes hold coordinates, all leading axes broadcas
 Derived from The closedform authors: Arms of common structure, by the lemmas that solve them.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -59,22 +57,27 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    return [*__all__]
+
+
 class Parameters(NamedTuple):
-    """Dimensions; each field may be an array that broadcasts."""
+    """Dimensions of the mechanism; each may be an array that broadcasts."""
 
     d1: Any = 0.089159
-    """from the base up to the shoulder, in m (the maker's table of the UR5)"""
     L2: Any = 0.425
-    """upper arm, in m (the maker's table of the UR5)"""
     L3: Any = 0.39225
-    """forearm, in m (the maker's table of the UR5)"""
     d4: Any = 0.10915
-    """from the plane of the arm across to the wrist, in m (the maker's table of the UR5)"""
     d5: Any = 0.09465
-    """along the fifth axis, in m (the maker's table of the UR5)"""
     d6: Any = 0.0823
-    """from the wrist to the tool, in m (the maker's table of the UR5)"""
 
+
+Parameters.d1.__doc__ = "from the base up to the shoulder, in m; default 0.089159 (the maker's table of the UR5)"
+Parameters.L2.__doc__ = "upper arm, in m; default 0.425 (the maker's table of the UR5)"
+Parameters.L3.__doc__ = "forearm, in m; default 0.39225 (the maker's table of the UR5)"
+Parameters.d4.__doc__ = "from the plane of the arm across to the wrist, in m; default 0.10915 (the maker's table of the UR5)"
+Parameters.d5.__doc__ = "along the fifth axis, in m; default 0.09465 (the maker's table of the UR5)"
+Parameters.d6.__doc__ = "from the wrist to the tool, in m; default 0.0823 (the maker's table of the UR5)"
 
 _DEFAULT = Parameters()
 
@@ -142,11 +145,29 @@ _POSE = _runtime.Kernel(
 )
 
 
-def pose(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Pose of the tool in the base frame.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns T: shape (..., 4, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -215,11 +236,29 @@ _FK = _runtime.Kernel(
 )
 
 
-def fk(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Pose of the tool in the base frame.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns T: shape (..., 4, 4).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -310,12 +349,33 @@ _JACOBIAN = _runtime.Kernel(
 )
 
 
-def jacobian(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Velocity of the tool over its angular velocity, in base axes, per joint rate.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns J: shape (..., 6, 6).
-    The geometric Jacobian: rows (v; omega), v of the origin of the tool.
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 6)
+        One column for each of theta1 to theta6.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -345,11 +405,28 @@ _DETERMINANT = _runtime.Kernel(
 )
 
 
-def determinant(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Determinant of the Jacobian.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns det: shape (...).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -381,11 +458,29 @@ _SINGULARITIES = _runtime.Kernel(
 )
 
 
-def singularities(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """The factors of the determinant that hold a joint.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns factors: shape (..., 3).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 3)
+        One factor for each singular set: shoulder; elbow; wrist.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -486,11 +581,29 @@ _JACOBIAN_SPACE = _runtime.Kernel(
 )
 
 
-def jacobian_space(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Twist (v; omega) of the tool in the base frame per joint rate.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns J: shape (..., 6, 6).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 6)
+        One column for each of theta1 to theta6.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_SPACE, (q,), params, out)
     return result
@@ -589,11 +702,29 @@ _JACOBIAN_BODY = _runtime.Kernel(
 )
 
 
-def jacobian_body(q: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> Any:
+def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Twist (v; omega) of the tool in its own frame per joint rate.
 
-    q: shape (..., 6): theta1, theta2, theta3, theta4, theta5, theta6.
-    Returns J: shape (..., 6, 6).
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    J : ndarray of float64, shape (..., 6, 6)
+        One column for each of theta1 to theta6.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_BODY, (q,), params, out)
     return result
@@ -1982,18 +2113,44 @@ _IK = _runtime.Kernel(
 )
 
 
-def ik(T: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runtime.Solutions:
+def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
     """The joint angles of a pose, all eight postures.
 
-    T: shape (..., 4, 4): T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42,
-        T43, T44.
-    Returns q: shape (..., 8, 6).
-    Branches: left_noflip_up, left_noflip_down, left_flip_up, left_flip_down, right_noflip_up,
-        right_noflip_down, right_flip_up, right_flip_down.
-    SINGULAR: all coefficients of the equation for theta1 vanish; theta1 is free, 0 is returned.
-    SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.
-    SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is returned.
-    SINGULAR: a link without length: theta3 is free; 0.
+    Parameters
+    ----------
+    T : array_like, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : tuple of ndarray, optional
+        Arrays to write the results to; they are returned.
+
+    Returns
+    -------
+    q : ndarray of float64, shape (..., 8, 6)
+        theta1 to theta6 in rad, in (-pi, pi].
+    status : ndarray of uint8, shape (..., 8)
+        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
+        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
+        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
+        status is UNREACHABLE or INVALID.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has another shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `BRANCHES`: left_noflip_up, left_noflip_down, left_flip_up,
+      left_flip_down, right_noflip_up, right_noflip_down, right_flip_up, right_flip_down.
+    - SINGULAR: all coefficients of the equation for theta1 vanish; theta1 is free, 0 is
+      returned.
+    - SINGULAR: the first and the last axis of the wrist are parallel; theta6 is free.
+    - SINGULAR: equal links folded onto the axis of theta2, which is free; 0 is returned.
+    - SINGULAR: a link without length: theta3 is free; 0.
     """
     result = _runtime.evaluate(_IK, (T,), params, out)
-    return _runtime.Solutions(*result)
+    return Solutions(*result)

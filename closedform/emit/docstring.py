@@ -1,0 +1,260 @@
+"""What is said of a function, after numpydoc's conventions, for Python and for C.
+
+Names, shapes and statuses follow from the function; what is special about it stands in its summary
+and its notes.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+from math import prod
+from typing import Literal
+
+import sympy as sp
+
+from closedform.derivation import Derivation
+from closedform.functions import Array, Function, Require
+from closedform.lower.turns import Turns
+
+Language = Literal["python", "c"]
+
+LENGTH = "in the unit of the parameters"
+ANGLE = "in rad"
+BOUNDED = "in rad, in (-pi, pi]"
+TYPES = {
+    "python": ("ndarray of float64", "ndarray of bool", "ndarray of uint8"),
+    "c": ("real_t", "uint8_t", "uint8_t"),
+}
+STATUS = {"python": "A `Status`", "c": "A CLOSEDFORM_ status"}
+STATUSES = (
+    ": OK (0) where {values} is a solution, UNREACHABLE (1) where there is none, SINGULAR (2) "
+    "where {values} is one of infinitely many or hardly determined (see the notes), and INVALID "
+    "(3) where an input is not finite or impossible. {values} is NaN where the status is "
+    "UNREACHABLE or INVALID."
+)
+RAISES = (
+    ("TypeError", "If an argument does not hold real numbers."),
+    ("ValueError", "If an argument has another shape, or leading axes do not broadcast."),
+)
+
+
+@dataclass(frozen=True)
+class Item:
+    """An argument or a result: its name, what it is, and a sentence or two."""
+
+    name: str
+    kind: str
+    text: str
+
+
+def docstring(derivation: Derivation, function: Function, width: int) -> list[str]:
+    """The lines of a docstring."""
+    dimensions = Item(
+        "params",
+        "Parameters, optional",
+        "The dimensions. Each may be an array that broadcasts with the leading axes.",
+    )
+    results = _results(derivation, function, "python")
+    several = len(results) > 1
+    out = Item(
+        "out",
+        "tuple of ndarray, optional" if several else "ndarray, optional",
+        "Arrays to write the results to; they are returned."
+        if several
+        else "An array to write the result to; it is returned.",
+    )
+    arguments = _inputs(derivation, function, "python")
+    raises = [Item("", name, text) for name, text in RAISES]
+    return [
+        *_opening(function, width),
+        *_section("Parameters", [*arguments, dimensions, out], width),
+        *_section("Returns", results, width),
+        *_section("Raises", raises, width),
+        *_notes(derivation, function, width, "python"),
+    ]
+
+
+def comment(derivation: Derivation, function: Function, width: int) -> list[str]:
+    """The lines of a comment in the C header."""
+    return [
+        *_opening(function, width),
+        *_section("Inputs", _inputs(derivation, function, "c"), width),
+        *_section("Outputs", _results(derivation, function, "c"), width),
+        *_notes(derivation, function, width, "c"),
+    ]
+
+
+def _opening(function: Function, width: int) -> list[str]:
+    lines = textwrap.wrap(function.summary, width)
+    if function.source:
+        lines += ["", *textwrap.wrap(f"Source: {function.source}.", width)]
+    return lines
+
+
+def _section(title: str, items: Sequence[Item], width: int) -> list[str]:
+    if not items:
+        return []
+    lines = ["", title, "-" * len(title)]
+    for item in items:
+        lines.append(f"{item.name} : {item.kind}" if item.name else item.kind)
+        lines += textwrap.wrap(item.text, width, initial_indent=4 * " ", subsequent_indent=4 * " ")
+    return lines
+
+
+def _notes(
+    derivation: Derivation, function: Function, width: int, language: Language
+) -> Iterator[str]:
+    labels = function.branches.labels if function.branches else ()
+    notes = [" ".join(n.split()) for n in function.notes]
+    if len(labels) > 1:
+        constant = _labels_name(derivation, function)
+        known = f", `{constant}`" if constant and language == "python" else ""
+        notes.insert(0, f"Branches in this order{known}: {', '.join(labels)}.")
+    if notes:
+        yield from ("", "Notes", "-----")
+    for note in notes:
+        yield from textwrap.wrap(note, width, initial_indent="- ", subsequent_indent="  ")
+
+
+def _labels_name(derivation: Derivation, function: Function) -> str:
+    """The constant of the module that names the branches of a function."""
+    labels = function.branches.labels if function.branches else ()
+    known = {"ASSEMBLY_MODES": derivation.assembly_modes, "BRANCHES": derivation.branches}
+    return next((name for name, given in known.items() if given and given == labels), "")
+
+
+# Arguments and results
+
+
+def _kind(array: Array, lead: tuple[int, ...], dtype: str, language: Language) -> str:
+    """The type and the shape of an array."""
+    shape = [*lead, *array.shape]
+    if language == "python":
+        return f"{dtype}, shape ({', '.join(['...', *map(str, shape)])})"
+    named = f"{dtype}[{prod(shape)}]"
+    return f"{named}, shape ({', '.join(map(str, shape))})" if len(shape) > 1 else named
+
+
+def _inputs(derivation: Derivation, function: Function, language: Language) -> list[Item]:
+    dtype = "array_like" if language == "python" else "const real_t"
+    return [
+        Item(a.name, _kind(a, (), dtype, language), _input_text(derivation, function, a))
+        for a in function.inputs
+    ]
+
+
+def _input_text(derivation: Derivation, function: Function, array: Array) -> str:
+    if len(array.shape) > 1:
+        return _matrix_text(derivation, array.entries, array.shape)
+    names = [str(e) for e in array.entries]
+    if function.result == "Solutions" and len(names) == len(derivation.task):
+        names = list(derivation.task)
+    return _listed(names, _units(derivation), array.shape, ANGLE)
+
+
+def _results(derivation: Derivation, function: Function, language: Language) -> list[Item]:
+    labels = function.branches.labels if function.branches else ()
+    lead = (len(labels),) if labels else ()
+    real, boolean, small = TYPES[language]
+    dtype = boolean if function.boolean else real
+    items = [
+        Item(a.name, _kind(a, lead, dtype, language), _output_text(derivation, function, a))
+        for a in function.outputs
+    ]
+    if function.result:
+        each = " of each branch" if len(labels) > 1 else ""
+        values = items[0].name if language == "c" else f"`{items[0].name}`"
+        text = f"{STATUS[language]}{each}{STATUSES.format(values=values)}"
+        kind = _kind(Array("status", (), ()), lead, small, language)
+        items.append(Item("status", kind, text))
+    return items
+
+
+def _output_text(derivation: Derivation, function: Function, array: Array) -> str:
+    if function.name == "singularities":
+        return f"One factor for each singular set: {'; '.join(derivation.singularities)}."
+    if len(array.shape) > 1:
+        return _matrix_text(derivation, array.entries, array.shape)
+    joints = [s.name for s in derivation.actuated]
+    inverse = next((i for i in derivation.inverses if i.function == function.name), None)
+    names: Sequence[str] = ()
+    if function.result == "Solutions" and inverse:
+        names = [str(s) for s in inverse.unknowns]
+    elif array.name == "q" and array.size == len(joints):
+        names = joints
+    elif function.name == "fk" and array.size == len(derivation.task):
+        names = derivation.task
+    if names:
+        return _listed(names, _units(derivation), array.shape, BOUNDED)
+    if all(angle for _, angle in Turns.of(function, derivation).entries()):
+        return f"{'Angles' if array.shape else 'Angle'} {BOUNDED}."
+    return ""
+
+
+def _matrix_text(derivation: Derivation, entries: Sequence[sp.Expr], shape: Sequence[int]) -> str:
+    """What a matrix is: what an inverse requires of one of its shape, or its columns."""
+    for function in derivation.functions:
+        for statement in function.body:
+            if isinstance(statement, Require) and any(
+                a.shape == shape
+                and {*a.entries} >= {s for v in statement.values for s in v.free_symbols}
+                for a in function.inputs
+            ):
+                return f"{statement.meaning[:1].upper()}{statement.meaning[1:]}."
+    if len(shape) == 2 and list(entries[-4:]) == [0, 0, 0, 1] and tuple(shape) == (4, 4):
+        return "A homogeneous transform."
+    joints = [s.name for s in derivation.actuated]
+    return f"One column for each of {_span(joints)}." if shape[-1] == len(joints) else ""
+
+
+def _listed(
+    names: Sequence[str], units: Mapping[str, str], shape: Sequence[int], angle: str
+) -> str:
+    """Coordinates with their units, neighbours of one unit together."""
+    parts = []
+    for unit, group in groupby(names, lambda name: units.get(name, "")):
+        shown = angle if unit == ANGLE else unit
+        parts.append(f"{_span(list(group))} {shown}".strip())
+    if not shape:
+        unit = units.get(names[0], "")
+        return (
+            f"{'Angle' if unit == ANGLE else 'Length'} {angle if unit == ANGLE else unit}."
+            if unit
+            else ""
+        )
+    return f"{'; '.join(parts)}."
+
+
+def _span(names: Sequence[str]) -> str:
+    """Names in words; theta1 to theta6 where they are numbered through."""
+    numbered = [re.fullmatch(r"(\D+)(\d+)", name) for name in names]
+    if len(names) > 3 and all(numbered):
+        found = [(m[1], int(m[2])) for m in numbered if m]
+        if all(b == (a[0], a[1] + 1) for a, b in pairwise(found)):
+            return f"{names[0]} to {names[-1]}"
+    return ", ".join(names)
+
+
+def _units(derivation: Derivation) -> dict[str, str]:
+    """The units of joints, of the task and of other angles, as far as they are known."""
+    units: dict[str, str] = {}
+    angles = {str(s) for i in derivation.inverses for s in i.angles}
+    for function in derivation.functions:
+        given = set(function.symbols)
+        values = [e for a in function.outputs for e in a.entries]
+        for statement in function.body:
+            values += [getattr(statement, "value", sp.S.Zero), *getattr(statement, "values", ())]
+        circular = {t for e in values for t in e.atoms(sp.sin, sp.cos, sp.tan)}
+        angles |= {str(s) for t in circular for s in t.free_symbols if s in given}
+    for inverse in derivation.inverses:
+        solver = derivation[inverse.function]
+        if solver.result == "Solutions" and len(solver.symbols) == len(derivation.task):
+            for symbol, name in zip(solver.symbols, derivation.task, strict=True):
+                units[name] = ANGLE if str(symbol) in angles else LENGTH
+    units |= dict.fromkeys(angles, ANGLE)
+    units |= {j.name: ANGLE if j.kind == "revolute" else LENGTH for j in derivation.joints}
+    return units

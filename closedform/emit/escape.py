@@ -1,0 +1,69 @@
+"""Text as it stands in each language: printed faithfully, and unable to end what it stands in.
+
+The templates apply these filters where text enters them.  LaTeX has its own module,
+:mod:`closedform.emit.prose`, which also makes formulas of what reads like one.
+"""
+
+from __future__ import annotations
+
+import re
+
+MARKUP = re.compile(r"([\\`*_<>\[\]|#~$&]|^(?=[-+=]))")
+"""What means something in Markdown, or would at the start of a line."""
+
+
+def c_comment(text: str) -> str:
+    """Text inside ``/* */``: a space parts what would end it, begin another or be a trigraph."""
+    return re.sub(r"(?<=\*)(?=/)|(?<=/)(?=\*)|(?<=\?)(?=\?)", " ", text)
+
+
+def c_string(text: str) -> str:
+    """A string literal with the bytes of UTF-8."""
+    return '"' + "".join(map(_c_character, text.encode())) + '"'
+
+
+def _c_character(byte: int) -> str:
+    character = chr(byte)
+    if character == "\n":
+        return r"\n"
+    if character in '"\\?':
+        return "\\" + character
+    return character if 32 <= byte < 127 else f"\\{byte:03o}"
+
+
+def python_comment(text: str) -> str:
+    """Text behind ``#``: a space parts what would declare the encoding of the file."""
+    return re.sub(r"(?<=coding)(?=[:=])", " ", text)
+
+
+def python_docstring(text: str) -> str:
+    """Text between triple double quotes."""
+    escaped = text.replace("\\", "\\\\").replace('"""', r"\"\"\"")
+    return escaped[:-1] + r"\"" if escaped.endswith('"') else escaped
+
+
+def python_string(text: str) -> str:
+    """A string literal."""
+    return repr(text)
+
+
+def markdown_text(text: str) -> str:
+    """Text on one line of Markdown."""
+    return MARKUP.sub(r"\\\1", " ".join(text.split()))
+
+
+FILTERS = {
+    f.__name__: f
+    for f in (c_comment, c_string, python_comment, python_docstring, python_string, markdown_text)
+}
+"""The filters of the templates, by name."""
+
+__all__ = [
+    "FILTERS",
+    "c_comment",
+    "c_string",
+    "markdown_text",
+    "python_comment",
+    "python_docstring",
+    "python_string",
+]

@@ -19,7 +19,7 @@ from closedform.emit.ckernel import CArray, CProgram, Emission
 from closedform.emit.text import WIDTH, banner, describe, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.tolerances import DOUBLE, FLOAT
+from closedform.tolerances import DOUBLE, FLOAT, GENERATED
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def shared(robots: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "robots": robots,
         "tolerances": [
             (name.upper(), repr(getattr(DOUBLE, name)), repr(getattr(FLOAT, name)))
-            for name in ("feasibility", "vanishing", "rotation")
+            for name in GENERATED
         ],
         "version": __version__,
     }

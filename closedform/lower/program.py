@@ -11,7 +11,16 @@ from itertools import islice
 import sympy as sp
 
 from closedform.derivation import Derivation
-from closedform.functions import Array, Bound, Function, Let, Match, Require, Vanishes
+from closedform.functions import (
+    Array,
+    Bound,
+    Determined,
+    Function,
+    Let,
+    Match,
+    Require,
+    Vanishes,
+)
 from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.common import common_case
 from closedform.lower.graph import Graph, Node, reachable
@@ -273,6 +282,11 @@ class _Branch:
                 self._name(names, build, statement.symbol, flag, label)
                 if statement.free:
                     singular.append(flag)
+            elif isinstance(statement, Determined):
+                least = limit("determined", statement.scale)
+                if statement.squares:
+                    least = graph.product([least, limit("determined", sp.S.One)])
+                singular.append(graph.node("le", build(statement.value), least))
             else:
                 sizes = [graph.even("abs", build(v)) for v in statement.values]
                 allowed = limit("rotation", statement.scale)

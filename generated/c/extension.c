@@ -2457,10 +2457,12 @@ const cf_function cf_functions[] = {
       "SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or\n"
       "    theta3 is free; L1 = 0, both are.  0 is returned for theta1, and for the\n"
       "    others unless L1 = 0.\n"
+      "SINGULAR as well near a parallel singularity, where the sine of the angle\n"
+      "    between CP and DP is less than 2^-10: the loop closes, but P moves more for\n"
+      "    an ulp of the joints than 1e-12 of the lengths.  If L0 = 0, equal signs of\n"
+      "    the last two entries put C on D.\n"
       "Ill-conditioned near the boundary of the workspace: the angles lose half the\n"
-      "    digits there, the loop still closes.  fk loses them again near a parallel\n"
-      "    singularity.\n"
-      "If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.\n"
+      "    digits there, the loop still closes.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_ik_in, 2, hybrid_five_bar_ik_out,
@@ -2861,6 +2863,10 @@ const cf_function cf_functions[] = {
       "x: shape (..., 2): x, y.\n"
       "Returns q: shape (..., 1, 2).\n"
       "Every position can be reached, in one way: lengths are not negative.\n"
+      "SINGULAR: the sine of the angle between the legs is less than 2^-10, on and near\n"
+      "    the line of the pivots, at a distance of more than some 1000 b, and\n"
+      "    everywhere if b = 0.  The lengths are right, but P moves more for an ulp of\n"
+      "    them than 1e-12 of b + rho1 + rho2.\n"
       ,
       1, rpr_planar_values, rpr_planar_fields,
       1, rpr_planar_ik_in, 2, rpr_planar_ik_out,

@@ -388,12 +388,13 @@ shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pai
 gap = p.let("gap", shift.dot(shift))
 cross = p.let("twice", 2 * point.dot(shift))
 
-# The direction of a virtual arm that is nearly folded, or ends close to the shoulder, is more than
-# joints in double precision tell: they then hold yaw and roll to less than twelve digits.
+# Joints tell the direction of a virtual arm from where the tips are, unless it is nearly folded or
+# ends close to the shoulder, and the length of the wrist from how far they are apart.
 size = p.let("size", m.L1 + second)
 square = p.let("square_mid", M + (m.L1 - second) ** 2)
-p.vanishes("pole", M * square, 10**4 * gap * size**2, "the virtual arm is folded", (psi, phi))
-p.vanishes("at_shoulder", square, 10**4 * size**2, "the virtual arm has no length", (psi, phi))
+p.determined(M * square, gap * size**2, "the virtual arm is folded", squares=True)
+p.determined(square, size**2, "the virtual arm has no length", squares=True)
+p.determined(wrist, m.al, "the wrist links are stretched")
 free = free_turn(p, m, mid.elbow, size)
 ends, rooms, slopes, turns = {}, {}, {}, []
 for name, sign in (("right", 1), ("left", -1)):

@@ -283,9 +283,9 @@ class _Branch:
                 if statement.free:
                     singular.append(flag)
             elif isinstance(statement, Determined):
-                least = limit("determined", statement.scale)
-                if statement.squares:
-                    least = graph.product([least, limit("determined", sp.S.One)])
+                tolerance = graph.node("tolerance", payload="determined")
+                powers = [tolerance] * (2 if statement.squares else 1)
+                least = graph.product([*powers, build(statement.scale)])
                 singular.append(graph.node("le", build(statement.value), least))
             else:
                 sizes = [graph.even("abs", build(v)) for v in statement.values]

@@ -12,9 +12,9 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
- *   ik: 341 compare and select, 342 add, 27 atan2, 40 divide, 455 multiply, 1 reduce to a turn, 3
+ *   ik: 346 compare and select, 342 add, 27 atan2, 40 divide, 456 multiply, 1 reduce to a turn, 3
  *     sincos, 16 sqrt
- *   ik where nothing vanishes: 253 compare and select, 250 add, 23 atan2, 27 divide, 332 multiply,
+ *   ik where nothing vanishes: 256 compare and select, 250 add, 23 atan2, 27 divide, 333 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add

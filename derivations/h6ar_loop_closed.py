@@ -453,9 +453,11 @@ d.function(
         "to the waist "
         "axis than L_theta, or an arm is out of reach.",
         "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder "
-        "(its upper arm is returned beside that of the virtual arm), or a virtual arm that is "
-        "folded or without length, up to what the joints can tell: they then hold the tip, yaw and "
-        "roll to fewer digits.",
+        "(its upper arm is returned beside that of the virtual arm).",
+        "SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a "
+        "folded virtual arm (its reach times its bend is less than 2^-10 of its size times half "
+        "the distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and "
+        "stretched wrist links (l_W is less than 2^-10 al).",
         "INVALID: d, L1, or both L2 and a3 are zero.",
         "A straight right arm is returned bent by a few units in the last place, so that "
         "fk can read "

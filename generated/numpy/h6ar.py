@@ -11,9 +11,9 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
-#   ik: 396 compare and select, 320 add, 24 atan2, 59 divide, 329 multiply, 1 reduce to a turn, 3
+#   ik: 398 compare and select, 320 add, 24 atan2, 59 divide, 330 multiply, 1 reduce to a turn, 3
 #     sincos, 16 sqrt
-#   ik where nothing vanishes: 239 compare and select, 158 add, 17 atan2, 25 divide, 137 multiply,
+#   ik where nothing vanishes: 240 compare and select, 158 add, 17 atan2, 25 divide, 138 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -1000,8 +1000,10 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t5 = d - c_psi * (gs - al)
     t6 = np.sqrt(np.maximum(t4, 0.0) * np.maximum(t5, 0.0))
     t7 = 1.0 / c_psi
-    t8 = loff + lp * c_pitch + t6 * t7
-    del c_pitch, t6
+    wrist = t6 * t7
+    del t6
+    t8 = loff + lp * c_pitch + wrist
+    del c_pitch
     t9 = s_psi * t8
     t10 = s_phi * t3 - c_phi * t9
     t11 = h + t10
@@ -1790,16 +1792,18 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
     t347 = t343 - np.arctan2(t331, 2.0 * np.sqrt(t346))
     del t331, t346
-    t348 = nowhere | folded | short
-    del folded, nowhere, short
-    t349 = _runtime.status(invalid, unreachable, t348 | parallel)
+    t348 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    del nowhere, wrist
+    t349 = t348 | folded | short
+    del folded, short, t348
+    t350 = _runtime.status(invalid, unreachable, t349 | parallel)
     del parallel, unreachable
-    t350 = _runtime.status(invalid, unreachable_2, t348 | parallel_front_elbow_down)
+    t351 = _runtime.status(invalid, unreachable_2, t349 | parallel_front_elbow_down)
     del parallel_front_elbow_down, unreachable_2
-    t351 = _runtime.status(invalid, unreachable_3, t348 | parallel_rear_elbow_up)
+    t352 = _runtime.status(invalid, unreachable_3, t349 | parallel_rear_elbow_up)
     del parallel_rear_elbow_up, unreachable_3
-    t352 = _runtime.status(invalid, unreachable_4, t348 | parallel_rear_elbow_down)
-    del invalid, parallel_rear_elbow_down, t348, unreachable_4
+    t353 = _runtime.status(invalid, unreachable_4, t349 | parallel_rear_elbow_down)
+    del invalid, parallel_rear_elbow_down, t349, unreachable_4
     return (
         t14 + t116,
         _runtime.wrap(t119 - t120) + t116,
@@ -1825,10 +1829,10 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap(t340 + t343) + t336,
         _runtime.wrap(t345 - t347) + t336,
         t128 + t336,
-        t349,
         t350,
         t351,
         t352,
+        t353,
     )
 
 
@@ -1845,8 +1849,10 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t3 = d - c_psi * (gs - al)
     t4 = np.sqrt(np.maximum(t2, 0.0) * np.maximum(t3, 0.0))
     t5 = 1.0 / c_psi
-    t6 = loff + lp * c_pitch + t4 * t5
-    del c_pitch, t4
+    wrist = t4 * t5
+    del t4
+    t6 = loff + lp * c_pitch + wrist
+    del c_pitch
     t7 = s_psi * t6
     t8 = s_phi * t1 - c_phi * t7
     t9 = h + t8
@@ -2200,14 +2206,14 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
     t168 = t166 - np.arctan2(t157, 2.0 * np.sqrt(t167))
     del t157, t167
-    t169 = _runtime.status(invalid, unreachable, np.False_)
-    del unreachable
-    t170 = _runtime.status(invalid, unreachable_2, np.False_)
+    t169 = wrist <= al * _runtime.DETERMINED
+    del wrist
+    t170 = _runtime.status(invalid, unreachable_2, t169)
     del unreachable_2
-    t171 = _runtime.status(invalid, unreachable_3, np.False_)
+    t171 = _runtime.status(invalid, unreachable_3, t169)
     del unreachable_3
-    t172 = _runtime.status(invalid, unreachable_4, np.False_)
-    del invalid, unreachable_4
+    t172 = _runtime.status(invalid, unreachable_4, t169)
+    del unreachable_4
     t173 = (h <= t22 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t28)
     del h, t22, t28
     t174 = _runtime.VANISHING * t25
@@ -2292,7 +2298,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap(t163 + t166) + t162,
         _runtime.wrap(-(t89 + t168)) + t162,
         t90 + t162,
-        t169,
+        _runtime.status(invalid, unreachable, t169),
         t170,
         t171,
         t172,
@@ -2326,6 +2332,8 @@ def ik(x: ArrayLike, params: Parameters = _DEFAULT, *, out: Any = None) -> _runt
         sin(beta), or their difference where it is folded, is determined by yaw and roll, alpha
         and beta being half the differences of the arms' angles; sines of equal size are
         returned.
+    SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al):
+        rounded joints do not hold the tip to 1e-12 there.
     INVALID: d, L1, or both L2 and a3 are zero.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)

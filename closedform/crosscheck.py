@@ -341,7 +341,9 @@ class _Truth:
         """The same for one answer, in Arb."""
         point = [*map(float, solution), *map(float, parameters)]
         balls = [forward(point) for forward in self._maps]
-        offsets = [[to_float(b - arb(float(g))) for b, g in zip(m, given, strict=True)] for m in balls]
+        offsets = [
+            [to_float(b - arb(float(g))) for b, g in zip(m, given, strict=True)] for m in balls
+        ]
         images = np.array(offsets)[:, None]
         return float(self.missed(images, solution[None], 0 * given[None], parameters)[0])
 
@@ -437,9 +439,7 @@ def _check_batch(
             _check_known(finding, truth, backend, one, solutions[row], known[row], where)
 
 
-def _check_round_trips(
-    finding: Finding, truth: _Truth, backend: Backend, postures: Sample
-) -> None:
+def _check_round_trips(finding: Finding, truth: _Truth, backend: Backend, postures: Sample) -> None:
     """The exact forward map takes every answer that is OK to the target.
 
     What seems to be off by more than half of what is allowed is evaluated in Arb, the worst first.

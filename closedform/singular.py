@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -102,10 +103,7 @@ def _on_and_near(
     aside /= np.linalg.norm(aside, axis=-1, keepdims=True)
     near = q.astype(float) + np.array(DISTANCES)[:, None, None] * aside
     ends = np.cumsum([0, *sizes])
-    return [
-        near[:, a:b][:, ended[a:b]].reshape(-1, q.shape[1])
-        for a, b in zip(ends, ends[1:], strict=False)
-    ]
+    return [near[:, a:b][:, ended[a:b]].reshape(-1, q.shape[1]) for a, b in pairwise(ends)]
 
 
 def _at(value: Callable[[Array], Array], q: Array, parameters: Array) -> Array:

@@ -410,8 +410,8 @@ d.step(
     "not find P from the joints, however they are computed.  Where the sine is less than 2^-10, "
     "the status is SINGULAR.  The inverse has the cross product of the bars, without their angles, "
     "from those of each with the line from its pivot to P: the inner product of AP and CP is half "
-    "of AP^2 - L1^2 + L2^2, and the cross product half of the root of N_a M_a, with the sign of the "
-    "leg.",
+    "of AP^2 - L1^2 + L2^2, and the cross product half of the root of N_a M_a, with the sign of "
+    "the leg.",
     {
         r"\overrightarrow{AP}": ap,
         r"\overrightarrow{BP}": bp,

@@ -71,7 +71,11 @@ def with_angle(lengths, psi: float, phi: np.ndarray) -> tuple[np.ndarray, np.nda
 @pytest.mark.parametrize("lengths", [(7, 8, 5), (1, 1, 2), (0.5, 3, 1)])
 def test_five_bar_at_all_distances(backend: str, lengths) -> None:
     """The branch of a posture is OK where its bars cross at more than the least sine."""
-    arm, rng, told = load(backend, "hybrid_five_bar"), np.random.default_rng(0), {OK: 0, SINGULAR: 0}
+    arm, rng, told = (
+        load(backend, "hybrid_five_bar"),
+        np.random.default_rng(0),
+        {OK: 0, SINGULAR: 0},
+    )
     for k, distance in enumerate((0.0, *DISTANCES)):
         for psi in (distance, -distance, np.pi - distance, np.pi + distance):
             P, angles = with_angle(lengths, psi, rng.uniform(-np.pi, np.pi, 12))

@@ -1,9 +1,10 @@
 """Compares generated code with the symbolic source, evaluated in Arb balls.
 
 A function of the joints is compared value by value; its error is counted in ulps of the natural
-scale (see :func:`closedform.samples.Magnitudes`).  An inverse is compared three ways: its answers
-are put into the exact forward map, its statuses are compared with the exact bounds, and every
-posture whose image is the target must be among the branches.
+scale (see :func:`closedform.samples.Magnitudes`).  An inverse is compared four ways: its answers
+are put into the exact equations, and those on and near the singular set into the exact forward map;
+its statuses are compared with the exact bounds, and every posture whose image is the target must be
+among the branches.
 """
 
 from __future__ import annotations
@@ -19,16 +20,21 @@ import sympy as sp
 from flint import arb
 from numpy.typing import NDArray
 
+from closedform.arrays import columns
 from closedform.chain import lengths_in_numbers
 from closedform.derivation import Derivation, Inverse
 from closedform.functions import Bound, Function, Let, Vanishes
 from closedform.lower import lower
 from closedform.reference import Evaluator, to_float
 from closedform.samples import Magnitudes, Sample, inverse_postures, joint_samples, perturbed
+from closedform.singular import singular_samples
 from closedform.tolerances import DOUBLE, FLOAT, Tolerances
 
 WELL_CONDITIONED = 3.0
 """An error of more ulps is set against how much the value moves when its inputs do."""
+
+SUSPECTS = 5
+"""So many of the worst answers on and near the singular set are evaluated in Arb."""
 
 NESTED = 64.0
 """The natural scale counts for at most so many times the largest value or parameter, or length that
@@ -257,6 +263,8 @@ def check_inverse(
         for values, known in ((images, known_postures), (perturbed(images), None)):
             posed = _round(Sample(sample.name, values, sample.parameters), backend)
             _check_batch(finding, truth, backend, posed, known, exact=known is not None)
+    for sample in singular_samples(derivation, inverse.unknowns):
+        _check_round_trips(finding, truth, backend, _round(sample, backend))
     return finding
 
 
@@ -282,7 +290,14 @@ class _Truth:
         if inverse.images:
             forward = derivation[inverse.images]
             maps = [forward.values(mode) for _, mode in forward.cases()]
-        self._maps = [Evaluator((*inverse.unknowns, *parameters), m) for m in maps]
+        self._posture = (*inverse.unknowns, *parameters)
+        self._map_exprs = maps
+        self._maps = [Evaluator(self._posture, m) for m in maps]
+        slides = {j.symbol for j in derivation.joints if j.kind == "prismatic"}
+        self._sliding = np.array([u in slides for u in inverse.unknowns])
+        self._turns = np.array([x in inverse.angles for x in function.symbols])
+        sized = {*parameters, *slides}
+        self._sized = [np.array([bool(e.free_symbols & sized) for e in m]) for m in maps]
         given = (*function.symbols, *parameters)
         self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
         factors = next((f for f in derivation.functions if f.name == "singularities"), None)
@@ -302,6 +317,44 @@ class _Truth:
                     postures.append(row)
         shape = (-1, len(self.function.symbols))
         return np.array(rows).reshape(shape), np.array(postures).reshape(-1, len(self.angular))
+
+    def wide_images(self, postures: NDArray[Any], parameters: Sequence[float]) -> NDArray[Any]:
+        """What postures are taken to in each assembly mode, NaN where it does not exist."""
+        sizes = np.broadcast_to(np.array(parameters), (len(postures), len(parameters)))
+        rows = np.concatenate([postures, sizes], axis=1)
+        return np.stack([columns(m, self._posture, rows) for m in self._map_exprs])
+
+    def missed(
+        self,
+        images: NDArray[Any],
+        solutions: NDArray[Any],
+        given: NDArray[Any],
+        parameters: Sequence[float],
+    ) -> NDArray[np.float64]:
+        """How far the image in the nearest assembly mode is from the target.
+
+        Lengths are counted in the sum of those of links and slides, angles as they are.
+        """
+        size = np.abs(parameters).sum() + np.abs(solutions * self._sliding).sum(axis=-1)
+        apart = []
+        for image, sized in zip(images, self._sized, strict=True):
+            difference = (image - given).astype(float)
+            turned = np.abs(np.angle(np.exp(1j * difference)))
+            by_size = np.abs(difference) / np.where(sized, size[:, None], 1.0)
+            apart.append(np.where(self._turns, turned, by_size).max(axis=-1))
+        return np.asarray(np.fmin.reduce([*apart, np.full(len(given), np.inf)]))
+
+    def exact_miss(
+        self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]
+    ) -> float:
+        """The same for one answer, in Arb."""
+        point = [*map(float, solution), *map(float, parameters)]
+        balls = [forward(point) for forward in self._maps]
+        offsets = [
+            [to_float(b - arb(float(g))) for b, g in zip(m, given, strict=True)] for m in balls
+        ]
+        images = np.array(offsets)[:, None]
+        return float(self.missed(images, solution[None], 0 * given[None], parameters)[0])
 
     def residual(
         self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]
@@ -393,6 +446,33 @@ def _check_batch(
         if known is not None and SINGULAR not in status[row]:
             one = Sample(sample.name, sample.values[row : row + 1], sample.parameters)
             _check_known(finding, truth, backend, one, solutions[row], known[row], where)
+
+
+def _check_round_trips(finding: Finding, truth: _Truth, backend: Backend, postures: Sample) -> None:
+    """The exact forward map takes every answer that is OK to the target.
+
+    What seems to be off by more than half of what is allowed is evaluated in Arb, the worst first.
+    """
+    allowed, parameters = backend.tolerances.forward, postures.parameters
+    images = truth.wide_images(postures.values, parameters)
+    targets = np.concatenate(list(images)).astype(float)
+    posed = _round(
+        Sample(postures.name, targets[np.isfinite(targets).all(axis=-1)], parameters), backend
+    )
+    if not len(posed.values):
+        return
+    solutions, status = _call(backend, truth.function, posed)
+    row, branch = np.nonzero(status == OK)
+    answers, given = solutions[row, branch].astype(float), posed.values[row]
+    missed = truth.missed(truth.wide_images(answers, parameters), answers, given, parameters)
+    for k in np.argsort(-missed)[:SUSPECTS]:
+        if missed[k] > allowed / 2:
+            exact = truth.exact_miss(answers[k], given[k], parameters)
+            if not exact <= allowed:
+                finding.fail(
+                    f"branch {branch[k]} is OK, and fk misses by {exact:.3g}; "
+                    f"{posed.name}: {given[k].tolist()}, parameters {parameters}"
+                )
 
 
 def _contradiction(

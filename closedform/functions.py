@@ -2,7 +2,7 @@
 
 A :class:`Function` is a list of statements and the outputs computed from them.  It is the symbolic
 truth that the proofs, the Arb reference and the lowering all read; nothing in it is approximate.
-The five statements are
+The six statements are
 
 ``Let``
     names an expression;
@@ -13,6 +13,9 @@ The five statements are
 ``Vanishes``
     a flag, true where a nonnegative quantity vanishes; may free a joint (SINGULAR); generated code
     is fastest where none holds;
+``Determined``
+    a quantity that the joints lose the posture without (a parallel singularity); where it is too
+    small for the round trip in floating-point numbers, the answer is SINGULAR;
 ``Require``
     a condition on the input itself; where it fails, the input is INVALID.
 
@@ -102,6 +105,21 @@ class Vanishes:
 
 
 @dataclass(frozen=True)
+class Determined:
+    """Rounded joints determine the posture, unless ``value`` is small against ``scale``.
+
+    Both are nonnegative, and the forward map amplifies roundings by up to ``scale / value``; or
+    they are squares of such quantities.  Where that is more than the round trip bears, the status
+    is SINGULAR; the answer stays what it is.
+    """
+
+    value: sp.Expr
+    scale: sp.Expr
+    meaning: str
+    squares: bool = False
+
+
+@dataclass(frozen=True)
 class Require:
     """Every one of ``values`` must be zero, or the input is INVALID."""
 
@@ -110,7 +128,7 @@ class Require:
     meaning: str
 
 
-Statement = Let | Bound | Match | Vanishes | Require
+Statement = Let | Bound | Match | Vanishes | Determined | Require
 
 
 @dataclass(frozen=True)
@@ -360,6 +378,11 @@ class Program:
         )
         return symbol
 
+    def determined(
+        self, value: sp.Expr, scale: Number, meaning: str, *, squares: bool = False
+    ) -> None:
+        self.body.append(Determined(value, sp.sympify(scale), meaning, squares))
+
     def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
         self.body.append(Require(tuple(values), sp.sympify(scale, strict=True), meaning))
 
@@ -404,6 +427,7 @@ __all__ = [
     "Array",
     "Bound",
     "Branches",
+    "Determined",
     "Function",
     "Let",
     "Match",

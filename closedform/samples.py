@@ -65,7 +65,7 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
     return [
         Sample(
             name,
-            values if name == "huge" else _besides(derivation, function.symbols, values),
+            values if name == "huge" else drawn_beside(derivation, function.symbols, values),
             parameters,
         )
         for parameters in parameter_sets(derivation, rng)
@@ -85,13 +85,13 @@ def inverse_postures(
         "one joint singular": _one_singular(rng, n),
     }
     return [
-        Sample(name, _besides(derivation, unknowns, values), parameters)
+        Sample(name, drawn_beside(derivation, unknowns, values), parameters)
         for parameters in parameter_sets(derivation, rng)
         for name, values in rows.items()
     ]
 
 
-def _besides(derivation: Derivation, symbols: Sequence[sp.Symbol], values: Array) -> Array:
+def drawn_beside(derivation: Derivation, symbols: Sequence[sp.Symbol], values: Array) -> Array:
     """A joint that stays beside another is drawn close to it."""
     values = values.copy()
     for joint in derivation.joints:

@@ -20,12 +20,20 @@ class Tolerances:
         A quantity below this fraction of its scale counts as zero, and its joint as free.  It is
         four units in the last place: ``sin`` of the double nearest to pi is 1.2e-16, so a smaller
         value would not recognise a wrist turned by pi; a larger one would declare 1e-12 singular.
+    determined
+        Where a closed loop amplifies roundings by more than the reciprocal of this, joints do not
+        determine the posture.  What four units in the last place become there, ``vanishing``
+        over this, is less than ``forward``.
     rotation
         A matrix whose columns miss orthonormality (and right-handedness) by less is a rotation.
         It admits matrices that went through single precision, and nothing that a person would
         call a different matrix.
     round_trip
-        ``|fk(ik(x)) - x|`` in units of the sum of the lengths.
+        By how much answers may violate the equations of the mechanism, in their natural scale; it
+        holds of targets that count as reachable without being so, too.
+    forward
+        ``|fk(ik(x)) - x|`` in units of the sum of the lengths (an angle by itself), of what is
+        reached and ``OK``, with the exact map for ``fk``.
     ulps
         The error of a function that is no inverse, in units in the last place of its natural
         scale, against the Arb reference.
@@ -35,16 +43,34 @@ class Tolerances:
 
     feasibility: float
     vanishing: float
+    determined: float
     rotation: float
     round_trip: float
+    forward: float
     ulps: float
     ulps_per_operation: float = 0.01
 
 
 DOUBLE = Tolerances(
-    feasibility=1e-12, vanishing=2.0**-50, rotation=1e-6, round_trip=1.1e-12, ulps=8.0
+    feasibility=1e-12,
+    vanishing=2.0**-50,
+    determined=2.0**-10,
+    rotation=1e-6,
+    round_trip=1.1e-12,
+    forward=1e-12,
+    ulps=8.0,
 )
-FLOAT = Tolerances(feasibility=1e-6, vanishing=2.0**-21, rotation=1e-4, round_trip=4e-6, ulps=8.0)
+FLOAT = Tolerances(
+    feasibility=1e-6,
+    vanishing=2.0**-21,
+    determined=2.0**-6,
+    rotation=1e-4,
+    round_trip=4e-6,
+    forward=4e-5,
+    ulps=8.0,
+)
+GENERATED = ("feasibility", "vanishing", "determined", "rotation")
+"""Those that generated code holds by name."""
 UNIT_LENGTH = 1e-3
 """A direction or a rotation given in decimals may miss the unit length by this: three decimals.
 

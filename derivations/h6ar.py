@@ -356,6 +356,7 @@ d.function(
 turn_step(d, m)
 p = Program()
 length, base = wrist_given(p, m, cos(psi))
+p.determined(length, m.al, "the wrist links are stretched")
 middle = solve_mid_plane(p, m, q, length, base)
 upper, elbow = middle.upper, middle.elbow
 gap = p.let("ahead", m.d * sin(psi) / cos(psi)), p.let("higher", m.d * sin(phi) / cos(phi))
@@ -423,6 +424,8 @@ d.function(
         "straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta), "
         "or their difference where it is folded, is determined by yaw and roll, alpha and beta "
         "being half the differences of the arms' angles; sines of equal size are returned.",
+        "SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al): "
+        "rounded joints do not hold the tip to 1e-12 there.",
         "INVALID: d, L1, or both L2 and a3 are zero.",
     ),
 )

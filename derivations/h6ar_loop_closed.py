@@ -388,12 +388,13 @@ shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pai
 gap = p.let("gap", shift.dot(shift))
 cross = p.let("twice", 2 * point.dot(shift))
 
-# The direction of a virtual arm that is nearly folded, or ends close to the shoulder, is more than
-# joints in double precision tell: they then hold yaw and roll to less than twelve digits.
+# Joints tell the direction of a virtual arm from where the tips are, unless it is nearly folded or
+# ends close to the shoulder, and the length of the wrist from how far they are apart.
 size = p.let("size", m.L1 + second)
 square = p.let("square_mid", M + (m.L1 - second) ** 2)
-p.vanishes("pole", M * square, 10**4 * gap * size**2, "the virtual arm is folded", (psi, phi))
-p.vanishes("at_shoulder", square, 10**4 * size**2, "the virtual arm has no length", (psi, phi))
+p.determined(M * square, gap * size**2, "the virtual arm is folded", squares=True)
+p.determined(square, size**2, "the virtual arm has no length", squares=True)
+p.determined(wrist, m.al, "the wrist links are stretched")
 free = free_turn(p, m, mid.elbow, size)
 ends, rooms, slopes, turns = {}, {}, {}, []
 for name, sign in (("right", 1), ("left", -1)):
@@ -452,9 +453,11 @@ d.function(
         "to the waist "
         "axis than L_theta, or an arm is out of reach.",
         "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder "
-        "(its upper arm is returned beside that of the virtual arm), or a virtual arm that is "
-        "folded or without length, up to what the joints can tell: they then hold the tip, yaw and "
-        "roll to fewer digits.",
+        "(its upper arm is returned beside that of the virtual arm).",
+        "SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a "
+        "folded virtual arm (its reach times its bend is less than 2^-10 of its size times half "
+        "the distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and "
+        "stretched wrist links (l_W is less than 2^-10 al).",
         "INVALID: d, L1, or both L2 and a3 are zero.",
         "A straight right arm is returned bent by a few units in the last place, so that "
         "fk can read "

@@ -344,6 +344,31 @@ bearing_c, bearing_d = (
     linear_pair(theta, tau * r * ahead - along * beyond, along * ahead + tau * r * beyond)
     for theta, along, (ahead, beyond) in ((theta2, y, arm_c), (theta3, y - L0, arm_d))
 )
+
+Products = tuple[sp.Expr, sp.Expr]
+
+
+def products(u: sp.Matrix, v: sp.Matrix) -> Products:
+    """The inner and the cross product of two vectors of the plane."""
+    return u.dot(v), sp.Matrix.hstack(u, v).det()
+
+
+def bars_at_p(pivots: Products, leg_c: Products, leg_d: Products) -> sp.Expr:
+    """CP x DP, times AP^2 and BP^2, from the products of AP and BP, AP and CP, BP and DP."""
+    along = leg_c[0] * leg_d[0] + leg_c[1] * leg_d[1]
+    return pivots[0] * (leg_c[0] * leg_d[1] - leg_c[1] * leg_d[0]) + pivots[1] * along
+
+
+legs = [
+    (w.let(f"inner_{name}", square - (L1 - L2) * (L1 + L2)), sign * (sqrt(N) * sqrt(M)))
+    for name, square, sign in (("c", square_c, sigma2), ("d", square_d, sigma3))
+    for N, M in [[real(f"{n}_{name}", nonnegative=True) for n in "NM"]]
+]
+w.determined(
+    sp.Abs(bars_at_p((y * (y - L0) + r2, tau * r * L0), *legs)),
+    4 * L2**2 * square_c * square_d,
+    "C, D and P are in line, or C and D coincide",
+)
 driven_angles = [choose(at_a, 0, bearing_c[theta2]), choose(at_b, 0, bearing_d[theta3])]
 
 
@@ -374,6 +399,38 @@ d.step(
         **spelled("b", (y - L0) ** 2 + real("r") ** 2, y - L0, sigma3),
     },
 )
+off_axis = real("rho")
+ap, bp = sp.Matrix([y, off_axis]), sp.Matrix([y - L0, off_axis])
+cp, dp = (L2 * sp.Matrix([cos(t), sin(t)]) for t in (theta4, theta5))
+d.step(
+    "Inverse: what the joints determine",
+    "Rounded joints miss the lengths of the bars by a few units in the last place of L0 + L1 + L2. "
+    "The point where the bars CP and DP meet is missed by that over the sine of the angle between "
+    "them: near a parallel singularity, where C, D and P are in line or C and D coincide, fk does "
+    "not find P from the joints, however they are computed.  Where the sine is less than 2^-10, "
+    "the status is SINGULAR.  The inverse has the cross product of the bars, without their angles, "
+    "from those of each with the line from its pivot to P: the inner product of AP and CP is half "
+    "of AP^2 - L1^2 + L2^2, and the cross product half of the root of N_a M_a, with the sign of "
+    "the leg.",
+    {
+        r"\overrightarrow{AP}": ap,
+        r"\overrightarrow{BP}": bp,
+        r"|\overrightarrow{CP}\times\overrightarrow{DP}|": L2**2 * sp.Abs(sin(theta5 - theta4)),
+    },
+    equal=[
+        (
+            bars_at_p(products(ap, bp), products(ap, cp), products(bp, dp)),
+            ap.dot(ap) * bp.dot(bp) * products(cp, dp)[1],
+        ),
+        (products(ap, bp)[0], y * (y - L0) + off_axis**2),
+        (products(ap, bp)[1], off_axis * L0),
+        (2 * products(ap, cp)[0], ap.dot(ap) + cp.dot(cp) - (ap - cp).dot(ap - cp)),
+        (
+            4 * products(ap, cp)[1] ** 2,
+            4 * ap.dot(ap) * cp.dot(cp) - (2 * products(ap, cp)[0]) ** 2,
+        ),
+    ],
+)
 d.function(
     "ik",
     "The driven angles of all eight working modes.",
@@ -389,9 +446,11 @@ d.function(
         "UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.",
         "SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is "
         "free; L1 = 0, both are.  0 is returned for theta1, and for the others unless L1 = 0.",
+        "SINGULAR as well near a parallel singularity, where the sine of the angle between CP and "
+        "DP is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than "
+        "1e-12 of the lengths.  If L0 = 0, equal signs of the last two entries put C on D.",
         "Ill-conditioned near the boundary of the workspace: the angles lose half the digits "
-        "there, the loop still closes.  fk loses them again near a parallel singularity.",
-        "If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.",
+        "there, the loop still closes.",
     ),
 )
 d.function(
@@ -428,7 +487,6 @@ d.solved += [
     Solved("ik", theta2, bearing_c, toward(theta2, y, theta4), leg_c),
     Solved("ik", theta3, bearing_d, toward(theta3, y - L0, theta5), leg_d),
 ]
-off_axis = real("rho")
 in_plane = {x: -off_axis * cos(theta1), z: off_axis * sin(theta1)}
 axis = {x: sp.S.Zero, z: sp.S.Zero}
 d.inverses.append(

@@ -103,16 +103,38 @@ for name, summary, outputs in (
 ):
     d.function(name, summary, {"q": q}, outputs, program=f, branches=modes)
 
+d.step(
+    "What the legs determine",
+    "P is where two circles meet.  Rounded radii are off by some units in the last place, and P by "
+    "that over the sine of the angle between the legs.  Near the line of the pivots, far away from "
+    "them and with b = 0 the legs do not hold P, however they are computed.  Where the sine is "
+    "less than 2^-10, the status is SINGULAR.",
+    {r"\rho_1 \rho_2 |\sin(\theta_2 - \theta_1)|": b * sp.Abs(y)},
+    equal=[
+        (
+            rho1 * rho2 * sin(theta2 - theta1),
+            legs[0][x] * legs[1][y] - (legs[1][x] - b) * legs[0][y],
+        ),
+        (sp.Matrix([[x, y], [x - b, y]]).det(), b * y),
+    ],
+)
 g = Program()
+leg1, leg2 = g.let("leg1", sqrt(x**2 + y**2)), g.let("leg2", sqrt((x - b) ** 2 + y**2))
+g.determined(b * sp.Abs(y), leg1 * leg2, "P is on the line of the pivots, far off, or b = 0")
 d.branches = SINGLE.labels
 d.function(
     "ik",
     "The lengths of the legs.",
     {"x": p},
-    {"q": [g.let("leg1", sqrt(x**2 + y**2)), g.let("leg2", sqrt((x - b) ** 2 + y**2))]},
+    {"q": [leg1, leg2]},
     program=g,
     branches=SINGLE,
     result="Solutions",
-    notes=("Every position can be reached, in one way: lengths are not negative.",),
+    notes=(
+        "Every position can be reached, in one way: lengths are not negative.",
+        "SINGULAR: the sine of the angle between the legs is less than 2^-10, on and near the line "
+        "of the pivots, at a distance of more than some 1000 b, and everywhere if b = 0.  The "
+        "lengths are right, but P moves more for an ulp of them than 1e-12 of b + rho1 + rho2.",
+    ),
 )
 d.inverses.append(Inverse("ik", q, (sp.S.Zero,) * 2, tuple(loop), images="fk", nonnegative=q))

@@ -3,6 +3,7 @@
 import math
 
 from closedform.lower import Lowered
+from closedform.tolerances import DOUBLE
 
 RULES = {
     "add": lambda a, b: a + b,
@@ -24,7 +25,6 @@ RULES = {
     "or": lambda a, b: a or b,
     "not": lambda a: not a,
     "select": lambda c, a, b: a if c else b,
-    "tolerance": lambda: 2.0**-50,
     "true": lambda: True,
     "false": lambda: False,
 }
@@ -37,6 +37,8 @@ def run(program: Lowered, values: dict[str, float]) -> list[float]:
             value[node.id] = float(node.payload)
         elif node.op == "input":
             value[node.id] = values[node.payload]
+        elif node.op == "tolerance":
+            value[node.id] = getattr(DOUBLE, node.payload)
         else:
             value[node.id] = RULES[node.op](*(value[a.id] for a in node.args))
     return [value[r.id] for r in program.roots]

@@ -103,6 +103,16 @@ def test_a_missing_branch_is_found(robot: str) -> None:
     assert broken(robot, "ik", first_branch_only)
 
 
+def never_singular(solutions):
+    return solutions._replace(status=np.where(solutions.status == 2, 0, solutions.status))
+
+
+@pytest.mark.parametrize("robot", ["h6ar", "h6ar_loop_closed", "hybrid_five_bar", "rpr_planar"])
+def test_an_answer_that_joints_do_not_determine_is_found(robot: str) -> None:
+    found = broken(robot, "ik", never_singular)
+    assert any("is OK, and fk misses by" in failure for failure in found)
+
+
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_wrong_value_is_found(robot: str) -> None:
     assert broken(robot, "fk", slightly_off)

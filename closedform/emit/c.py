@@ -18,7 +18,7 @@ from closedform.emit.docstring import comment, docstring
 from closedform.emit.text import WIDTH, banner, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.tolerances import DOUBLE, FLOAT
+from closedform.tolerances import DOUBLE, FLOAT, GENERATED
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def shared(robots: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "robots": robots,
         "tolerances": [
             (name.upper(), repr(getattr(DOUBLE, name)), repr(getattr(FLOAT, name)))
-            for name in ("feasibility", "vanishing", "rotation")
+            for name in GENERATED
         ],
         "version": __version__,
     }

@@ -20,7 +20,17 @@ from closedform.derivation import Continuum, Derivation, Inverse, Joint, Step
 from closedform.emit.prose import Prose, escape, loosen, mixed, spaced, symbol_name, upright
 from closedform.emit.text import citation
 from closedform.formulas import PRINTED, formula
-from closedform.functions import Array, Bound, Function, Let, Match, Statement, Vanishes, real
+from closedform.functions import (
+    Array,
+    Bound,
+    Determined,
+    Function,
+    Let,
+    Match,
+    Statement,
+    Vanishes,
+    real,
+)
 from closedform.prove import InverseResult, Proof
 
 __all__ = ["document", "notebook"]
@@ -239,6 +249,10 @@ class Page:
             effect = f"; then {free} is free (\\textsc{{singular}})" if free else ""
             name, meaning = flag_name(statement.symbol), self.prose(statement.meaning)
             return "flag", rf"\emph{{{name}}} if {condition}: {meaning}{effect}"
+        if isinstance(statement, Determined):
+            small = formulas([rf"{self.math(statement.value)} \ll {self.math(statement.scale)}"])
+            effect = r"rounded joints do not determine the posture (\textsc{singular})"
+            return "flag", f"If {small}, {self.prose(statement.meaning)}: {effect}"
         values = [statement.value] if isinstance(statement, Match) else statement.values
         conditions = formulas([f"{self.math(v)} = 0" for v in values])
         kind = "match" if isinstance(statement, Match) else "require"

@@ -16,7 +16,7 @@ from closedform.functions import Function
 from closedform.lower import Lowered
 from closedform.lower.graph import Node
 from closedform.names import in_python
-from closedform.tolerances import DOUBLE
+from closedform.tolerances import DOUBLE, GENERATED
 
 CALLS = {
     "sqrt": "np.sqrt",
@@ -95,7 +95,7 @@ def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, 
 
 def runtime() -> dict[str, Any]:
     """The context of ``numpy/_runtime.py.jinja``."""
-    return {name: repr(getattr(DOUBLE, name)) for name in ("feasibility", "vanishing", "rotation")}
+    return {name: repr(getattr(DOUBLE, name)) for name in GENERATED}
 
 
 def _function(derivation: Derivation, function: Function, program: Lowered) -> NumpyFunction:

@@ -13,7 +13,7 @@ from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
 from closedform.derivation import Derivation
 from closedform.emit.text import citation
-from closedform.functions import Bound, Function, Let, Match, Statement, Vanishes
+from closedform.functions import Bound, Determined, Function, Let, Match, Statement, Vanishes
 from closedform.prove import Proof
 
 WIDTH = 100
@@ -119,6 +119,9 @@ def _statement(statement: Statement) -> str:
         free = " and ".join(map(str, statement.free))
         effect = f"; then {free} is free" if free else ""
         return f"{statement.symbol} if {statement.value} = 0: {statement.meaning}{effect}"
+    if isinstance(statement, Determined):
+        small = f"{statement.value} << {statement.scale}"
+        return f"{small}: {statement.meaning}; rounded joints do not determine the posture"
     values = (statement.value,) if isinstance(statement, Match) else statement.values
     return f"{statement.meaning}: " + ", ".join(f"{v} = 0" for v in values)
 

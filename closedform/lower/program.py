@@ -11,7 +11,16 @@ from itertools import islice
 import sympy as sp
 
 from closedform.derivation import Derivation
-from closedform.functions import Array, Bound, Function, Let, Match, Require, Vanishes
+from closedform.functions import (
+    Array,
+    Bound,
+    Determined,
+    Function,
+    Let,
+    Match,
+    Require,
+    Vanishes,
+)
 from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.common import common_case
 from closedform.lower.graph import Graph, Node, reachable
@@ -275,6 +284,11 @@ class _Branch:
                 self._name(names, build, statement.symbol, flag, label)
                 if statement.free:
                     singular.append(flag)
+            elif isinstance(statement, Determined):
+                tolerance = graph.node("tolerance", payload="determined")
+                powers = [tolerance] * (2 if statement.squares else 1)
+                least = graph.product([*powers, build(statement.scale)])
+                singular.append(graph.node("le", build(statement.value), least))
             else:
                 sizes = [graph.even("abs", build(v)) for v in statement.values]
                 allowed = limit("rotation", statement.scale)

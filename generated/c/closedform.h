@@ -66,7 +66,8 @@
 enum closedform_status {
     CLOSEDFORM_OK = 0,
     CLOSEDFORM_UNREACHABLE = 1, /* no solution; the joints are NaN */
-    CLOSEDFORM_SINGULAR = 2,    /* a joint is free and has its convention value; fk(q) = x */
+    CLOSEDFORM_SINGULAR = 2,    /* a joint is free: it has its convention value, and fk(q) = x;
+                                   or rounded joints do not determine the posture */
     CLOSEDFORM_INVALID = 3      /* non-finite input or impossible parameter; the joints are NaN */
 };
 
@@ -87,10 +88,12 @@ typedef uint64_t cf_word;
 #ifdef CLOSEDFORM_FLOAT
 #define CLOSEDFORM_FEASIBILITY CLOSEDFORM_C(1e-06)
 #define CLOSEDFORM_VANISHING CLOSEDFORM_C(4.76837158203125e-07)
+#define CLOSEDFORM_DETERMINED CLOSEDFORM_C(0.015625)
 #define CLOSEDFORM_ROTATION CLOSEDFORM_C(0.0001)
 #else
 #define CLOSEDFORM_FEASIBILITY CLOSEDFORM_C(1e-12)
 #define CLOSEDFORM_VANISHING CLOSEDFORM_C(8.881784197001252e-16)
+#define CLOSEDFORM_DETERMINED CLOSEDFORM_C(0.0009765625)
 #define CLOSEDFORM_ROTATION CLOSEDFORM_C(1e-06)
 #endif
 

@@ -8,7 +8,7 @@
  *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
  *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
  *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
- *   ik: 5 add, 8 compare and select, 3 multiply, 2 sqrt
+ *   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
  */
 #include "rpr_planar.h"
 
@@ -364,14 +364,17 @@ CF_INLINE void rpr_planar_ik_kernel(const int single, const rpr_planar_params *p
     const real_t x_2 = x[0];
     const real_t y = x[1];
     const real_t t1 = y * y;
+    const real_t leg1 = cf_sqrt(x_2 * x_2 + t1);
     const int t2 = cf_nought(b) == 0;
     const int t3 = cf_nought(x_2) + cf_nought(y) == 0;
     const int invalid = !(t2 & (CLOSEDFORM_C(0.0) <= b) & t3);
     const real_t t4 = cf_poison(single, invalid);
     const real_t t5 = x_2 - b;
-    q[0] = cf_sqrt(x_2 * x_2 + t1) + t4;
-    q[1] = cf_sqrt(t1 + t5 * t5) + t4;
-    status[0] = cf_status(single, invalid, 0, 0);
+    const real_t leg2 = cf_sqrt(t1 + t5 * t5);
+    const int t6 = b * cf_abs(y) <= CLOSEDFORM_DETERMINED * (leg1 * leg2);
+    q[0] = leg1 + t4;
+    q[1] = leg2 + t4;
+    status[0] = cf_status(single, invalid, 0, t6);
 }
 
 CLOSEDFORM_DISPATCHED

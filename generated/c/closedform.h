@@ -9,16 +9,33 @@
 #ifndef CLOSEDFORM_H
 #define CLOSEDFORM_H
 
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
-#error "closedform.h needs IEEE arithmetic: compile without -ffast-math and -ffinite-math-only"
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
+    defined(_M_FP_FAST)
+#error "closedform.h needs IEEE arithmetic: compile without -ffast-math, -ffinite-math-only, /fp:fast"
 #endif
-#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD == 2
-#error "closedform.h needs arithmetic in the declared type: compile with -msse2 -mfpmath=sse"
+#if defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
+#error "closedform.h needs IEEE arithmetic: compile without -funsafe-math-optimizations and its parts"
+#endif
+#if FLT_EVAL_METHOD < 0 || FLT_EVAL_METHOD == 2 || \
+    (FLT_EVAL_METHOD == 1 && defined(CLOSEDFORM_FLOAT))
+#error "closedform.h needs arithmetic in the declared type: on x86 compile with -msse2 -mfpmath=sse"
+#endif
+
+/* Compilers that do not tell of these options are told not to heed them, from here to the end of
+ * the source that includes this header. */
+#if defined(__clang__)
+#pragma clang fp reassociate(off)
+#if __clang_major__ >= 18
+#pragma clang fp reciprocal(off)
+#endif
+#elif defined(__GNUC__) && __GNUC__ < 12
+#pragma GCC optimize("no-associative-math", "no-reciprocal-math", "signed-zeros")
 #endif
 
 #if defined(__GNUC__)
@@ -405,11 +422,11 @@ CF_INLINE void cf_turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, 
 CF_INLINE real_t cf_atan2(real_t y, real_t x)
 {
     const real_t ax = cf_abs(x), ay = cf_abs(y);
-    const real_t num = ay > ax ? ax : ay;
-    const real_t den = ay > ax ? ay : ax;
-    /* Equal arguments include 0/0, which counts as 0, and inf/inf, which counts as 1. */
-    const real_t same = den > 0 ? CLOSEDFORM_C(1) : CLOSEDFORM_C(0);
-    const real_t t = num == den ? same : num / den;
+    /* One of these is NaN if an argument is: cf_min and cf_max return their second argument then.
+     * 0/0 is not divided, for it would raise an exception; inf/inf counts as 1. */
+    const real_t num = cf_min(ay, ax), larger = cf_max(ax, ay);
+    const real_t den = larger == 0 ? CLOSEDFORM_C(1) : larger;
+    const real_t t = num == den ? CLOSEDFORM_C(1) : num / den;
     const real_t z = t * t;
     const real_t a = t + t * (z * cf_atan_poly(z));
 

@@ -5,6 +5,10 @@
  * compiler may not turn the selects below into vector code; the third, which gcc switches off under
  * -std=c99, allows an FMA, a third faster. The error bounds hold with and without it. Never with
  * -ffast-math: the argument reduction depends on the order of its operations.
+ *
+ * A call for one posture raises none of the floating-point exceptions invalid, division by zero and
+ * overflow where its answer is finite or a status tells of it, for finite input (angles up to 1e11).
+ * A batch does so too if CLOSEDFORM_TRAP_SAFE is defined. Rounding is to nearest throughout.
  */
 #ifndef CLOSEDFORM_H
 #define CLOSEDFORM_H
@@ -146,6 +150,19 @@ CF_INLINE real_t cf_rarely(int single, int condition, real_t a, real_t b)
 {
     if (single) return CF_UNLIKELY(condition) ? a : b;
     return cf_select(condition, a, b);
+}
+
+/* What to divide by, where nothing uses the quotient if `unused` is 1, for then the divisor may be
+ * zero: 1, so that no floating-point exception is raised. In a batch the selection would take up to
+ * a fifteenth of its time; it is made there if CLOSEDFORM_TRAP_SAFE is defined. */
+CF_INLINE real_t cf_divisor(int single, int unused, real_t divisor)
+{
+#ifdef CLOSEDFORM_TRAP_SAFE
+    (void)single;
+    return cf_select(unused, CLOSEDFORM_C(1.0), divisor);
+#else
+    return single && CF_UNLIKELY(unused) ? CLOSEDFORM_C(1.0) : divisor;
+#endif
 }
 
 /* NaN where `failed`, else zero: added to an answer, it is one selection for all entries. A single

@@ -1177,12 +1177,12 @@ CF_INLINE void h6ar_ik_whole_kernel(const int single, const h6ar_params *params,
     const int short_2 = L1 * fore <= CLOSEDFORM_VANISHING * t27;
     const real_t M = cf_max(t33, CLOSEDFORM_C(0.0));
     const real_t N = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t36 = CLOSEDFORM_C(1.0) / (M + N);
+    const real_t t36 = CLOSEDFORM_C(1.0) / cf_divisor(single, short_2, M + N);
     const real_t t37 = M - N;
     const real_t c_bend = cf_select(short_2, CLOSEDFORM_C(1.0), t36 * t37);
     const real_t t38 = CLOSEDFORM_VANISHING * t24;
     const int bare = fore <= t38;
-    const real_t t39 = CLOSEDFORM_C(1.0) / fore;
+    const real_t t39 = CLOSEDFORM_C(1.0) / cf_divisor(single, bare, fore);
     const real_t c_lag = cf_select(bare, CLOSEDFORM_C(1.0), a_3W * t39);
     const real_t t40 = c_bend * c_lag;
     const real_t t41 = CLOSEDFORM_C(2.0) * cf_sqrt(M * N);
@@ -1208,7 +1208,7 @@ CF_INLINE void h6ar_ik_whole_kernel(const int single, const h6ar_params *params,
     const real_t t50 = t28 * ahead_1;
     const real_t up = t49 + t50;
     const real_t t51 = out_rear_elbow_up * out_rear_elbow_up + up * up;
-    const real_t t52 = CLOSEDFORM_C(1.0) / cf_sqrt(t51);
+    const real_t t52 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded, cf_sqrt(t51));
     const real_t t53 = out_rear_elbow_up * t52;
     const real_t ctheta2A = cf_select(folded, CLOSEDFORM_C(1.0), -t53);
     const real_t higher = d * s_phi / c_phi;
@@ -1316,7 +1316,7 @@ CF_INLINE void h6ar_ik_whole_kernel(const int single, const h6ar_params *params,
     const real_t out_front_elbow_down = t47 + t48;
     const real_t t120 = t49 - t50;
     const real_t t121 = out_front_elbow_down * out_front_elbow_down + t120 * t120;
-    const real_t t122 = CLOSEDFORM_C(1.0) / cf_sqrt(t121);
+    const real_t t122 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded, cf_sqrt(t121));
     const real_t t123 = out_front_elbow_down * t122;
     const real_t ctheta2A_front_elbow_down = cf_select(folded, CLOSEDFORM_C(1.0), t123);
     const real_t t124 = cf_select(folded, CLOSEDFORM_C(0.0), t120 * t122);

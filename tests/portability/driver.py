@@ -129,7 +129,7 @@ def calls_header(robots: Sequence[str]) -> str:
     return "\n".join([*lines, "static const call calls[] = {", ",\n".join(rows), "};", ""])
 
 
-class Refused(Exception):
+class RefusedError(Exception):
     """The header refuses these flags, and says why."""
 
 
@@ -223,5 +223,5 @@ def built(command: Sequence[str]) -> None:
     if done.returncode:
         errors = [line for line in done.stderr.splitlines() if "error" in line]
         if any(REFUSED in line for line in errors):
-            raise Refused(errors[0])
+            raise RefusedError(errors[0])
         raise RuntimeError(f"{' '.join(command)}\n{done.stderr[:2000]}")

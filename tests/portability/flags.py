@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from .cases import cases, mismatches
-from .driver import Refused, compile_driver
+from .driver import RefusedError, compile_driver
 
 RELEASE = ("-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast")
 REASSOCIATING = ("-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math")
@@ -37,7 +37,7 @@ def outcome(
     """``right``, ``refused``, or what is wrong."""
     try:
         program = compile_driver(folder, [compiler, "-std=c99", *flags], robots, single=single)
-    except Refused:
+    except RefusedError:
         return "refused"
     wrong = list(mismatches(program, cases(robots, single=single), single=single))
     return "right" if not wrong else f"wrong: {wrong[0]}"

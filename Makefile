@@ -13,7 +13,7 @@ PDFS := $(patsubst generated/latex/%.tex,build/pdf/%.pdf,$(wildcard generated/la
 COMPILERS := $(foreach cc,gcc clang,$(foreach type,double float,warnings-$(cc)-$(type)))
 WARNINGS := -std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
 
-.PHONY: all test check lint types regenerated warnings $(COMPILERS) \
+.PHONY: all test check lint types regenerated warnings analysed portability $(COMPILERS) \
 	format pdf bench accuracy clean distclean help
 .DELETE_ON_ERROR:
 
@@ -39,7 +39,7 @@ build/native.stamp: build/derived.txt $(C_SOURCES) setup.py
 test: all  ## run the tests on all cores; ARGS="-k name" selects
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
-check: lint types regenerated warnings  ## lint, types, warnings of C; generated/ is what is printed
+check: lint types regenerated warnings analysed  ## lint, types, warnings of C; generated/ is what is printed
 
 lint: .venv/installed.stamp
 	$(BIN)/ruff check .
@@ -61,6 +61,29 @@ $(COMPILERS): warnings-%: build/derived.txt
 	for source in $(PORTABLE); do \
 		$$compiler $(WARNINGS) $(FLOAT) -O1 -c -o /dev/null $$source || exit 1; done; \
 	echo "$@: clean"
+
+# Not checked: parameters of one type beside each other, which are what kernels take; products of
+# small constants as sizes; the underscore with which NumPy's macros begin; memcpy, for which C99
+# has no other name.
+TIDY := -*,bugprone-*,clang-analyzer-*,portability-*,-bugprone-easily-swappable-parameters,$\
+-bugprone-implicit-widening-of-multiplication-result,-bugprone-reserved-identifier,$\
+-clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling
+
+analysed: build/derived.txt  ## cppcheck and clang-tidy on the C, where they are installed
+	@if command -v cppcheck >/dev/null; then \
+		cppcheck --quiet --std=c99 --enable=warning,performance,portability --error-exitcode=1 \
+			--suppress=missingIncludeSystem --suppressions-list=tests/cppcheck-suppressions.txt \
+			-Igenerated/c -Iclosedform/extension $(PORTABLE) closedform/extension/closedform_rows.c \
+			closedform/extension/closedform_sweep.c && echo "$@: cppcheck clean"; \
+	else echo "$@: there is no cppcheck, skipped"; fi
+	@if command -v clang-tidy >/dev/null; then \
+		clang-tidy --quiet --checks='$(TIDY)' --warnings-as-errors='*' $(PORTABLE) \
+			closedform/extension/closedform_rows.c closedform/extension/closedform_sweep.c \
+			-- -std=c99 -Igenerated/c -Iclosedform/extension && echo "$@: clang-tidy clean"; \
+	else echo "$@: there is no clang-tidy, skipped"; fi
+
+portability: all  ## try compilers, other processors and Pythons that are here; ARGS=--all
+	$(BIN)/python tests/portability/run.py $(ARGS)
 
 format: .venv/installed.stamp  ## lay out the Python that is written by hand
 	$(BIN)/ruff check --fix .

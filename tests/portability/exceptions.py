@@ -1,4 +1,4 @@
-"""Whether single calls raise floating-point exceptions, at ordinary postures and where it is hard."""
+"""Where floating-point exceptions are looked for: at ordinary postures, and where it is hard."""
 
 from __future__ import annotations
 

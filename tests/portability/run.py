@@ -2,8 +2,8 @@
 
     python tests/portability/run.py [--all]
 
-Each attempt prints a line: right, skipped and why, or what is wrong; only the last fails. Nothing is
-timed. Without --all two robots stand for the rest, and no environment of Python is made.
+Each attempt prints a line: right, skipped and why, or what is wrong; only the last fails.
+Nothing is timed. Without --all two robots stand for the rest, and no environment of Python is made.
 Further interpreters are named in PYTHONS.
 """
 
@@ -115,15 +115,17 @@ def interpreters() -> Iterator[tuple[str, str]]:
     """The extension, built against each NumPy in an environment of its own."""
     named = os.environ.get("PYTHONS", "").split()
     for python in dict.fromkeys([*PYTHONS, *named]):
-        if (
-            subprocess.run([python, "-c", ""], capture_output=True, check=False).returncode
-            if shutil.which(python)
-            else True
-        ):
+        if not works(python):
             yield python, "skipped: it is not installed"
             continue
         for numpy in NUMPY:
             yield f"{python}, {numpy}", extension(python, numpy)
+
+
+def works(python: str) -> bool:
+    if shutil.which(python) is None:
+        return False
+    return subprocess.run([python, "-c", ""], capture_output=True).returncode == 0
 
 
 def extension(python: str, numpy: str) -> str:

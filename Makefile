@@ -47,8 +47,8 @@ endef
 export LOCK INSTALL
 LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
 
-.PHONY: all native test check lint types regenerated warnings $(COMPILERS) \
-	format pdf bench fuzz accuracy clean distclean help
+.PHONY: all native test check lint types regenerated warnings analysed \
+	portability $(COMPILERS) format pdf bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
 all: native  ## derive, prove, generate and build; one line a robot (the default)
@@ -70,7 +70,7 @@ test: all  ## run the tests on all cores; ARGS="-k name" selects
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
 # Nothing here may depend on all, which would first mend what is to be found.
-check: lint types regenerated warnings  ## lint, types, warnings of C; generated/ is what is printed
+check: lint types regenerated warnings analysed  ## lint, types, C checkers; generated/ is what is printed
 
 lint: .venv/installed.stamp
 	$(BIN)/ruff check .
@@ -92,6 +92,29 @@ $(COMPILERS): warnings-%:
 	for source in $(PORTABLE); do \
 		$$compiler $(WARNINGS) $(FLOAT) -O1 -c -o /dev/null $$source || exit 1; done; \
 	echo "$@: clean"
+
+# Not checked: parameters of one type beside each other, which are what kernels take; products of
+# small constants as sizes; the underscore with which NumPy's macros begin; memcpy, for which C99
+# has no other name.
+TIDY := -*,bugprone-*,clang-analyzer-*,portability-*,-bugprone-easily-swappable-parameters,$\
+-bugprone-implicit-widening-of-multiplication-result,-bugprone-reserved-identifier,$\
+-clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling
+
+analysed:  ## cppcheck and clang-tidy on the C, where they are installed
+	@if command -v cppcheck >/dev/null; then \
+		cppcheck --quiet --std=c99 --enable=warning,performance,portability --error-exitcode=1 \
+			--suppress=missingIncludeSystem --suppressions-list=tests/cppcheck-suppressions.txt \
+			-Igenerated/c -Iclosedform/extension $(PORTABLE) closedform/extension/closedform_rows.c \
+			closedform/extension/closedform_sweep.c && echo "$@: cppcheck clean"; \
+	else echo "$@: there is no cppcheck, skipped"; fi
+	@if command -v clang-tidy >/dev/null; then \
+		clang-tidy --quiet --checks='$(TIDY)' --warnings-as-errors='*' $(PORTABLE) \
+			closedform/extension/closedform_rows.c closedform/extension/closedform_sweep.c \
+			-- -std=c99 -Igenerated/c -Iclosedform/extension && echo "$@: clang-tidy clean"; \
+	else echo "$@: there is no clang-tidy, skipped"; fi
+
+portability: all  ## try compilers, other processors and Pythons that are here; ARGS=--all
+	$(BIN)/python tests/portability/run.py $(ARGS)
 
 format: .venv/installed.stamp  ## lay out the Python that is written by hand
 	$(BIN)/ruff check --fix .

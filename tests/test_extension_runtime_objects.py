@@ -171,6 +171,102 @@ def test_code_run_by_a_conversion_may_raise_or_change_its_list(native: Any) -> N
     assert params == []
 
 
+# Code of the caller that runs while its arguments are converted
+
+
+def _resized(array: np.ndarray, *shape: int) -> None:
+    array.resize(shape, refcheck=False)
+
+
+CHANGES: dict[str, Callable[[np.ndarray], Any]] = {
+    "no axes": lambda a: _resized(a),
+    "one axis": lambda a: setattr(a, "shape", (-1,)),
+    "other coordinates": lambda a: setattr(a, "shape", (*a.shape[::-1][:-1], -1, 1)),
+    "fewer postures": lambda a: _resized(a, 1, *a.shape[1:]),
+    "more postures": lambda a: _resized(a, 5000, *a.shape[1:]),
+    "half the size": lambda a: setattr(a, "dtype", np.float32),
+    "integers": lambda a: setattr(a, "dtype", np.int64),
+    "nothing": lambda a: None,
+}
+
+
+class Hostile:
+    """A number that changes an array while it is converted."""
+
+    def __init__(self, victim: np.ndarray, change: Callable[[np.ndarray], Any]) -> None:
+        self.victim, self.change = victim, change
+
+    def __float__(self) -> float:
+        self.change(self.victim)
+        return 1.0
+
+
+class HostileArray(Hostile):
+    """The same by ``__array__``."""
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
+        return np.full((3, 3), float(self))
+
+
+class HostileSequence(Hostile):
+    """The same by ``__len__`` and ``__getitem__``."""
+
+    def __len__(self) -> int:
+        return 2
+
+    def __getitem__(self, k: int) -> float:
+        if k > 1:
+            raise IndexError
+        return float(self)
+
+
+@pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
+def test_an_array_may_change_while_what_follows_is_converted(native: Any, change: Any) -> None:
+    """Each call is as of the array that it leaves behind, or is refused; nothing is read beyond."""
+    polar_, two_ = function(native, "polar"), function(native, "two")
+
+    def attempts() -> list[tuple[np.ndarray, Callable[[np.ndarray], Any]]]:
+        calls: list[Callable[[np.ndarray], Any]] = [
+            lambda a: polar_(a, (Hostile(a, change), 1.0)),
+            lambda a: polar_(a, (1.0, Hostile(a, change))),
+            lambda a: polar_(a, HostileSequence(a, change)),
+            lambda a: polar_(a, (Hostile(a, change), 1.0), out=np.empty((100, 2))),
+            lambda a: polar_(a, (Hostile(a, change), 1.0), out=a),
+            lambda a: two_(a, HostileArray(a, change)),
+            lambda a: two_(a, np.array([[Hostile(a, change)] * 3] * 3, object)),
+        ]
+        fields: list[Callable[[np.ndarray], Any]] = [
+            lambda a: polar_(np.ones((100, 2)), (a, Hostile(a, change))),
+            lambda a: polar_(np.ones((100, 2)), (Hostile(a, change), a)),
+        ]
+        return [(np.ones((100, 2)), call) for call in calls] + [
+            (np.ones(100), call) for call in fields
+        ]
+
+    for array, call in attempts():
+        with contextlib.suppress(ValueError):
+            result = call(array)
+            lead = len(result[0] if isinstance(result, tuple) else result)
+            assert lead == 100 or lead == array.size / 2
+    unchanged = np.ones((100, 2))
+    assert polar_(unchanged, (Hostile(unchanged, lambda a: None), 1.0)).shape == (100, 2)
+
+
+def test_a_copy_of_what_overlaps_runs_no_code_of_the_caller(native: Any) -> None:
+    class Loud(np.ndarray):
+        def __array_finalize__(self, _: Any) -> None:
+            made.append(type(self))
+
+    made: list[type] = []
+    q = np.arange(8.0).reshape(4, 2).view(Loud)
+    before = np.array(q)
+    del made[:]
+    out = q.view(np.ndarray)
+    result = function(native, "polar")(q, (np.ones(4), 0.5), out=out[::-1])
+    assert made == []
+    check(ROWS["polar"], result, polar(before, 1.0, 0.5))
+
+
 # The objects
 
 

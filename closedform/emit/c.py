@@ -119,7 +119,7 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> C
 
 
 def _branch(derivation: Derivation, function: Function, program: Lowered, full: str) -> CBranch:
-    emission = Emission(derivation, function, program, full)
+    emission = Emission(derivation, function, program, full, branch=True)
     signs = emission.inputs[-1]
     assert function.branches
     rows = [[b[s] for b in function.branches.signs] for s in function.branches.signs[0]]

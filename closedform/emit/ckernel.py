@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from math import prod
 
 from closedform.derivation import Derivation
-from closedform.emit.code import COMPARE, WRAPS, Printer, Text
+from closedform.emit.code import COMPARE, PRODUCT, WRAPS, Printer, Text
 from closedform.emit.text import WIDTH
 from closedform.functions import Function
 from closedform.lower import Lowered
@@ -45,11 +45,13 @@ class CPrinter(Printer):
 
     has_meaning = staticmethod(in_c)
 
-    def __init__(self, lowered: Lowered, reserved: Iterable[str] = ()):
+    def __init__(self, lowered: Lowered, reserved: Iterable[str] = (), *, branch: bool = False):
         super().__init__(lowered, reserved)
+        self.branch = branch
         self.arctangents: list[tuple[str, str]] = []
         self.head = 0
         self._arguments = self._before_arctangents()
+        self._unused_where = _unused_where(self.schedule(), lowered.roots)
 
     def _before_arctangents(self) -> set[int]:
         """The nodes that need no ``atan2``."""
@@ -73,6 +75,8 @@ class CPrinter(Printer):
         )
 
     def render(self, node: Node) -> Text:
+        if node.op == "div" and (condition := self._unused_where.get(node.id)) is not None:
+            return self._quotient(node, condition)
         if not self._together(node):
             return super().render(node)
         if not self.arctangents:
@@ -80,6 +84,16 @@ class CPrinter(Printer):
         y, x = (self.text[a.id].code for a in node.args)
         self.arctangents.append((y, x))
         return Text(f"angles[{len(self.arctangents) - 1}]")
+
+    def _quotient(self, node: Node, unused: Node) -> Text:
+        """Divides by 1 where nothing uses the quotient: its divisor may vanish there.
+
+        The loop over the branches is part of a single call.
+        """
+        dividend, divisor = (self.text[a.id] for a in node.args)
+        where = "1" if self.branch else "single"
+        safe = f"cf_divisor({where}, {self.text[unused.id].code}, {divisor.code})"
+        return Text(f"{dividend.at(PRODUCT)} / {safe}", PRODUCT)
 
     def constant(self, text: str) -> Text:
         return Text(f"CLOSEDFORM_C({text})")
@@ -111,6 +125,25 @@ class CPrinter(Printer):
             return False
         compares_calls = node.op in ("lt", "le", "eq", "finite") and "cf_" in text.code
         return compares_calls or super().deserves_name(node, text, uses)
+
+
+def _unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, Node]:
+    """The quotients by what is no constant that a condition, known before, always selects away."""
+    place = {node.id: k for k, node in enumerate(schedule)}
+    away: dict[int, frozenset[int]] = {root.id: frozenset() for root in roots}
+    for node in reversed(schedule):
+        for k, arg in enumerate(node.args):
+            passed = away[node.id]
+            if node.op == "select" and k == 2 and arg not in node.args[:2]:
+                passed |= {node.args[0].id}
+            away[arg.id] = away[arg.id] & passed if arg.id in away else passed
+    found = {}
+    for node in schedule:
+        if node.op == "div" and node.args[1].op != "const":
+            known = [c for c in away[node.id] if place[c] < place[node.id]]
+            if known:
+                found[node.id] = schedule[max(place[c] for c in known)]
+    return found
 
 
 @dataclass(frozen=True)
@@ -189,7 +222,15 @@ def _lanes(n: int) -> int:
 class Emission:
     """Collects the strings of one program."""
 
-    def __init__(self, derivation: Derivation, function: Function, program: Lowered, full: str):
+    def __init__(
+        self,
+        derivation: Derivation,
+        function: Function,
+        program: Lowered,
+        full: str,
+        *,
+        branch: bool = False,
+    ):
         self.derivation, self.function, self.program = derivation, function, program
         self.full = full
         self.inputs = tuple(_array(a.name, a.shape, "real", "const ") for a in program.inputs)
@@ -201,7 +242,7 @@ class Emission:
         }
         names = [a.name for a in (*self.inputs, *self.outputs)]
         own = {f"{derivation.name}_params", f"{derivation.name.upper()}_DEFAULTS"}
-        self.printer = CPrinter(program, reserved={*C_LOCALS, *names, *own})
+        self.printer = CPrinter(program, reserved={*C_LOCALS, *names, *own}, branch=branch)
         self.values = self.printer.run()
         read = program.used_inputs(below_angles=False)
         self.parameters = [p for p in program.parameters if p in read]

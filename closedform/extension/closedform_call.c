@@ -202,10 +202,6 @@ take_inputs(operands *o)
         if (o->in[k] == NULL) {
             return -1;
         }
-        if (!core_matches(o->in[k], &f->in[k])) {
-            raise_core(f, &f->in[k], o->in[k]);
-            return -1;
-        }
     }
     return 0;
 }
@@ -274,6 +270,42 @@ take_params(operands *o)
     }
     Py_DECREF(fields);
     return status;
+}
+
+static int
+check_kind(const cf_function *f, const char *prefix, const char *name, PyArrayObject *array)
+{
+    if (cf_has_kind(array, CF_REAL)) {
+        return 0;
+    }
+    PyErr_Format(PyExc_ValueError, "%s: %s%s was changed while other arguments were converted",
+                 f->name, prefix, name);
+    return -1;
+}
+
+/* Looks at the converted arrays once nothing is left to convert: converting an argument may run
+ * code of the caller that gives an array converted before it another shape or dtype. From here to
+ * the end of the sweep no such code runs, or what it changes is no longer read. */
+static int
+check_arrays(const operands *o)
+{
+    const cf_function *f = o->call->function;
+    for (size_t k = 0; k < f->n_in; k++) {
+        if (check_kind(f, "", f->in[k].name, o->in[k]) < 0) {
+            return -1;
+        }
+        if (!core_matches(o->in[k], &f->in[k])) {
+            raise_core(f, &f->in[k], o->in[k]);
+            return -1;
+        }
+    }
+    for (size_t k = 0; k < f->n_params; k++) {
+        if (o->field[k] != NULL &&
+            check_kind(f, "params.", f->param_names[k], o->field[k]) < 0) {
+            return -1;
+        }
+    }
+    return 0;
 }
 
 /* Merges the leading axes of one array into those of the call; 0 if they do not broadcast. */
@@ -484,11 +516,13 @@ detach(const operands *o, PyArrayObject **array)
 {
     for (size_t k = 0; k < o->call->function->n_out; k++) {
         if (overlap(*array, o->out[k])) {
-            PyArrayObject *copy = (PyArrayObject *)PyArray_NewCopy(*array, NPY_KEEPORDER);
-            if (copy == NULL) {
+            /* A plain array: a copy of the caller's class would run its __array_finalize__. */
+            PyObject *copy = PyArray_NewLikeArray(*array, NPY_KEEPORDER, NULL, 0);
+            if (copy == NULL || PyArray_CopyInto((PyArrayObject *)copy, *array) < 0) {
+                Py_XDECREF(copy);
                 return -1;
             }
-            Py_SETREF(*array, copy);
+            Py_SETREF(*array, (PyArrayObject *)copy);
             return 0;
         }
     }
@@ -578,7 +612,7 @@ static int
 evaluate(operands *o)
 {
     const cf_function *f = o->call->function;
-    if (take_inputs(o) < 0 || take_params(o) < 0 || broadcast_all(o) < 0) {
+    if (take_inputs(o) < 0 || take_params(o) < 0 || check_arrays(o) < 0 || broadcast_all(o) < 0) {
         return -1;
     }
     for (size_t k = 0; k < f->n_out; k++) {

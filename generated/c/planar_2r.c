@@ -475,7 +475,7 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int single, const planar_2r_params
     const real_t t1 = l1 + l2;
     const int no_first_link = l1 <= t1 * CLOSEDFORM_VANISHING;
     const real_t elbow_y = T24 - T21 * l2;
-    const real_t t2 = CLOSEDFORM_C(1.0) / l1;
+    const real_t t2 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_first_link, l1);
     const real_t s1 = cf_select(no_first_link, CLOSEDFORM_C(0.0), elbow_y * t2);
     const real_t elbow_x = T14 - T11 * l2;
     const real_t c1 = cf_select(no_first_link, CLOSEDFORM_C(1.0), elbow_x * t2);

@@ -796,7 +796,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t t4 = d3 + amplitude;
     const real_t above = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = below - above;
-    const real_t t6 = CLOSEDFORM_C(1.0) / (amplitude * (below + above));
+    const real_t t6 = CLOSEDFORM_C(1.0) / cf_divisor(single, free_theta1, amplitude * (below + above));
     const real_t t7 = T14 * t5 * t6;
     const real_t root = cf_sqrt(below * above);
     const real_t t8 = CLOSEDFORM_C(2.0) * root;
@@ -832,7 +832,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const int unreachable = !(t33 & (t29 <= t34));
     const real_t t35 = cf_poison(single, invalid | unreachable);
     const int folded = reach <= t2;
-    const real_t t36 = CLOSEDFORM_C(1.0) / reach;
+    const real_t t36 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded, reach);
     const real_t t37 = cf_select(folded, CLOSEDFORM_C(0.0), T34 * t36);
     const int no_link = a2 * f <= CLOSEDFORM_VANISHING * (t1 * t1);
     const int t38 = folded | no_link;
@@ -842,7 +842,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t A = cf_max(t30, CLOSEDFORM_C(0.0));
     const real_t C = cf_max(t34, CLOSEDFORM_C(0.0));
     const real_t AC = A * C;
-    const real_t t39 = CLOSEDFORM_C(1.0) / (SB + AC);
+    const real_t t39 = CLOSEDFORM_C(1.0) / cf_divisor(single, t38, SB + AC);
     const real_t t40 = cf_select(t38, CLOSEDFORM_C(1.0), (SB - AC) * t39);
     const real_t t41 = t37 * t40;
     const real_t SA = S * A;
@@ -857,9 +857,9 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t t47 = t40 * t44;
     const real_t t48 = t46 - t47;
     const int no_forearm = f <= t2;
-    const real_t t49 = CLOSEDFORM_C(1.0) / f;
+    const real_t t49 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_forearm, f);
     const real_t t50 = cf_select(no_forearm, CLOSEDFORM_C(0.0), d4 * t49);
-    const real_t t51 = CLOSEDFORM_C(1.0) / (SA + BC);
+    const real_t t51 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link, SA + BC);
     const real_t t52 = cf_select(no_link, CLOSEDFORM_C(1.0), -((SA - BC) * t51));
     const real_t t53 = t50 * t52;
     const real_t t54 = cf_select(no_forearm, CLOSEDFORM_C(1.0), a3 * t49);
@@ -878,7 +878,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t h = cf_sqrt(t62 + R2_13 * R2_13);
     const real_t t63 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
     const int aligned = h <= t63;
-    const real_t t64 = CLOSEDFORM_C(1.0) / h;
+    const real_t t64 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
     const real_t t65 = cf_select(aligned, CLOSEDFORM_C(0.0), t61 * t64);
     const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(R2_13 * t64));
     const real_t t66 = T11 * t10 + T21 * c1;
@@ -895,7 +895,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t t70 = T33 * t69 - R1_13 * c23_right_down_noflip;
     const real_t h_right_down_noflip = cf_sqrt(t62 + t70 * t70);
     const int aligned_right_down_noflip = h_right_down_noflip <= t63;
-    const real_t t71 = CLOSEDFORM_C(1.0) / h_right_down_noflip;
+    const real_t t71 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_right_down_noflip, h_right_down_noflip);
     const real_t t72 = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(0.0), t61 * t71);
     const real_t c4_right_down_noflip = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(1.0), t70 * t71);
     const real_t t73 = t72 * (T31 * t69 - R1_11 * c23_right_down_noflip);
@@ -916,7 +916,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t t82 = T33 * t81 - c23_left_up_noflip * R1_13_left_up_noflip;
     const real_t h_left_up_noflip = cf_sqrt(t80 + t82 * t82);
     const int aligned_left_up_noflip = h_left_up_noflip <= t63;
-    const real_t t83 = CLOSEDFORM_C(1.0) / h_left_up_noflip;
+    const real_t t83 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_up_noflip, h_left_up_noflip);
     const real_t t84 = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(0.0), t79 * t83);
     const real_t c4_left_up_noflip = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(1.0), t82 * t83);
     const real_t R2_33_left_up_noflip = T33 * c23_left_up_noflip + t81 * R1_13_left_up_noflip;
@@ -935,7 +935,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t t90 = R2_13_left_down_noflip * R2_13_left_down_noflip;
     const real_t h_left_down_noflip = cf_sqrt(t80 + t90);
     const int aligned_left_down_noflip = h_left_down_noflip <= t63;
-    const real_t t91 = CLOSEDFORM_C(1.0) / h_left_down_noflip;
+    const real_t t91 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_down_noflip, h_left_down_noflip);
     const real_t t92 = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(0.0), t79 * t91);
     const real_t c4_left_down_noflip = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(1.0), -(R2_13_left_down_noflip * t91));
     const real_t t93 = t79 * t92 - R2_13_left_down_noflip * c4_left_down_noflip;

@@ -517,7 +517,7 @@ CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
     const real_t r_elbow = cf_sqrt(x_x * x_x + x_y * x_y);
     const real_t t1 = l1 + l2;
     const int folded_elbow = r_elbow <= CLOSEDFORM_VANISHING * t1;
-    const real_t t2 = CLOSEDFORM_C(1.0) / r_elbow;
+    const real_t t2 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded_elbow, r_elbow);
     const int no_link_elbow = l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1);
     const real_t t3 = t1 - r_elbow;
     const real_t A_elbow = cf_max(t3, CLOSEDFORM_C(0.0));
@@ -529,7 +529,7 @@ CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
     const real_t t7 = r_elbow + t4;
     const real_t B_elbow = cf_max(t7, CLOSEDFORM_C(0.0));
     const real_t t8 = S_elbow * B_elbow;
-    const real_t t9 = CLOSEDFORM_C(1.0) / (t6 + t8);
+    const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t6 + t8);
     const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t6 - t8) * t9));
     const real_t t10 = t2 * (x_y * c_base_elbow);
     const real_t t11 = A_elbow * S_elbow;
@@ -549,7 +549,7 @@ CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
     const real_t t20 = -(CLOSEDFORM_FEASIBILITY * t19);
     const int unreachable = !((t20 <= t3) & (t20 <= t7) & (t20 <= t5));
     const real_t t21 = cf_poison(single, invalid | unreachable);
-    const real_t t22 = CLOSEDFORM_C(1.0) / (t11 + t12);
+    const real_t t22 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t11 + t12);
     const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow * t22);
     const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -(t22 * (t11 - t12)));
     const real_t t23 = h - x_z + t21;

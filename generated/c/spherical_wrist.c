@@ -372,7 +372,7 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single,
     const real_t R33 = R[8];
     const real_t h = cf_sqrt(R13 * R13 + R23 * R23);
     const int aligned = h <= CLOSEDFORM_VANISHING;
-    const real_t t1 = CLOSEDFORM_C(1.0) / h;
+    const real_t t1 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
     const real_t s4 = cf_select(aligned, CLOSEDFORM_C(0.0), R23 * t1);
     const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), R13 * t1);
     const int t2 = cf_nought(d6) == 0;

@@ -740,7 +740,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     const real_t t5 = d2 + amplitude;
     const real_t above = cf_max(t5, CLOSEDFORM_C(0.0));
     const real_t t6 = below - above;
-    const real_t t7 = CLOSEDFORM_C(1.0) / (amplitude * (below + above));
+    const real_t t7 = CLOSEDFORM_C(1.0) / cf_divisor(single, free_theta1, amplitude * (below + above));
     const real_t t8 = T14 * t6 * t7;
     const real_t root = cf_sqrt(below * above);
     const real_t t9 = CLOSEDFORM_C(2.0) * root;
@@ -770,7 +770,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     const real_t t29 = cf_poison(single, invalid | unreachable);
     const real_t reach = cf_sqrt(t2 + root * root);
     const int drawn_in = reach <= t3;
-    const real_t t30 = CLOSEDFORM_C(1.0) / reach;
+    const real_t t30 = CLOSEDFORM_C(1.0) / cf_divisor(single, drawn_in, reach);
     const real_t s2 = cf_select(drawn_in, CLOSEDFORM_C(0.0), root * t30);
     const real_t t31 = T34 * t30;
     const real_t c2 = cf_select(drawn_in, CLOSEDFORM_C(1.0), t31);
@@ -783,7 +783,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     const real_t h = cf_sqrt(t34 + t36 * t36);
     const real_t t37 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
     const int aligned = h <= t37;
-    const real_t t38 = CLOSEDFORM_C(1.0) / h;
+    const real_t t38 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
     const real_t t39 = cf_select(aligned, CLOSEDFORM_C(0.0), t33 * t38);
     const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(t36 * t38));
     const real_t t40 = T33 * c2;
@@ -801,7 +801,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     const real_t t47 = R2_13_right_back_noflip * R2_13_right_back_noflip;
     const real_t h_right_back_noflip = cf_sqrt(t34 + t47);
     const int aligned_right_back_noflip = h_right_back_noflip <= t37;
-    const real_t t48 = CLOSEDFORM_C(1.0) / h_right_back_noflip;
+    const real_t t48 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_right_back_noflip, h_right_back_noflip);
     const real_t t49 = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(0.0), t33 * t48);
     const real_t c4_right_back_noflip = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(1.0), R2_13_right_back_noflip * t48);
     const real_t t50 = R2_13_right_back_noflip * c4_right_back_noflip;
@@ -818,7 +818,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     const real_t t56 = R2_13_left_out_noflip * R2_13_left_out_noflip;
     const real_t h_left_out_noflip = cf_sqrt(t55 + t56);
     const int aligned_left_out_noflip = h_left_out_noflip <= t37;
-    const real_t t57 = CLOSEDFORM_C(1.0) / h_left_out_noflip;
+    const real_t t57 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_out_noflip, h_left_out_noflip);
     const real_t t58 = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(0.0), t54 * t57);
     const real_t c4_left_out_noflip = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(1.0), R2_13_left_out_noflip * t57);
     const real_t t59 = t54 * t58 + R2_13_left_out_noflip * c4_left_out_noflip;
@@ -833,7 +833,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     const real_t t65 = t35 - c2_right_back_noflip * R1_13_left_out_noflip;
     const real_t h_left_back_noflip = cf_sqrt(t55 + t65 * t65);
     const int aligned_left_back_noflip = h_left_back_noflip <= t37;
-    const real_t t66 = CLOSEDFORM_C(1.0) / h_left_back_noflip;
+    const real_t t66 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_back_noflip, h_left_back_noflip);
     const real_t t67 = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(0.0), t54 * t66);
     const real_t c4_left_back_noflip = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(1.0), -(t65 * t66));
     const real_t t68 = t43 - c2_right_back_noflip * R1_11_left_out_noflip;

@@ -36,7 +36,7 @@ RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
 LOCALS = frozenset({
     "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
     "single", "opposite", "adjacent", "angles", "principals", "turned", "wide", "rare", "signs",
-    "k",
+    "k", "exponent", "excess", "dimensions", "params_scaled",
 })  # fmt: skip
 RESERVED = LOCALS | C_WORDS
 

@@ -83,15 +83,46 @@ typedef uint64_t cf_word;
 /* A decimal literal as real_t, without an implicit conversion. */
 #define CLOSEDFORM_C(x) ((real_t)(x))
 #define CLOSEDFORM_NAN CLOSEDFORM_C(NAN)
-/* Which part of its natural scale counts as zero; the reasons stand in tolerances.py. */
+/* Which part of its natural scale counts as zero, and between which sizes of a mechanism no power up
+ * to the second, third ... leaves the range of the type; the reasons stand in tolerances.py. */
 #ifdef CLOSEDFORM_FLOAT
 #define CLOSEDFORM_FEASIBILITY CLOSEDFORM_C(1e-06)
 #define CLOSEDFORM_VANISHING CLOSEDFORM_C(4.76837158203125e-07)
 #define CLOSEDFORM_ROTATION CLOSEDFORM_C(0.0001)
+#define CF_SIZES_2 CLOSEDFORM_C(2.3283064365386963e-10), CLOSEDFORM_C(7.205759403792794e+16)
+#define CF_SIZES_3 CLOSEDFORM_C(4.76837158203125e-07), CLOSEDFORM_C(137438953472.0)
+#define CF_SIZES_4 CLOSEDFORM_C(1.52587890625e-05), CLOSEDFORM_C(268435456.0)
+#define CF_SIZES_5 CLOSEDFORM_C(0.000244140625), CLOSEDFORM_C(4194304.0)
+#define CF_SIZES_6 CLOSEDFORM_C(0.0009765625), CLOSEDFORM_C(262144.0)
+#define CF_SIZES_7 CLOSEDFORM_C(0.001953125), CLOSEDFORM_C(65536.0)
+#define CF_SIZES_8 CLOSEDFORM_C(0.00390625), CLOSEDFORM_C(16384.0)
+#define CF_SIZES_9 CLOSEDFORM_C(0.0078125), CLOSEDFORM_C(4096.0)
+#define CF_SIZES_10 CLOSEDFORM_C(0.015625), CLOSEDFORM_C(2048.0)
+#define CF_SIZES_11 CLOSEDFORM_C(0.03125), CLOSEDFORM_C(1024.0)
+#define CF_SIZES_12 CLOSEDFORM_C(0.03125), CLOSEDFORM_C(512.0)
+#define CF_SIZES_13 CLOSEDFORM_C(0.0625), CLOSEDFORM_C(256.0)
+#define CF_SIZES_14 CLOSEDFORM_C(0.0625), CLOSEDFORM_C(256.0)
+#define CF_SIZES_15 CLOSEDFORM_C(0.0625), CLOSEDFORM_C(128.0)
+#define CF_SIZES_16 CLOSEDFORM_C(0.0625), CLOSEDFORM_C(128.0)
 #else
 #define CLOSEDFORM_FEASIBILITY CLOSEDFORM_C(1e-12)
 #define CLOSEDFORM_VANISHING CLOSEDFORM_C(8.881784197001252e-16)
 #define CLOSEDFORM_ROTATION CLOSEDFORM_C(1e-06)
+#define CF_SIZES_2 CLOSEDFORM_C(8.636168555094445e-78), CLOSEDFORM_C(3.273390607896142e+150)
+#define CF_SIZES_3 CLOSEDFORM_C(6.681911775230489e-52), CLOSEDFORM_C(1.7498005798264095e+100)
+#define CF_SIZES_4 CLOSEDFORM_C(2.938735877055719e-39), CLOSEDFORM_C(1.8092513943330656e+75)
+#define CF_SIZES_5 CLOSEDFORM_C(1.9721522630525295e-31), CLOSEDFORM_C(1.6069380442589903e+60)
+#define CF_SIZES_6 CLOSEDFORM_C(2.5849394142282115e-26), CLOSEDFORM_C(9.353610478917779e+49)
+#define CF_SIZES_7 CLOSEDFORM_C(1.0587911840678754e-22), CLOSEDFORM_C(5.575186299632656e+42)
+#define CF_SIZES_8 CLOSEDFORM_C(5.421010862427522e-20), CLOSEDFORM_C(4.253529586511731e+37)
+#define CF_SIZES_9 CLOSEDFORM_C(1.3877787807814457e-17), CLOSEDFORM_C(2.596148429267414e+33)
+#define CF_SIZES_10 CLOSEDFORM_C(4.440892098500626e-16), CLOSEDFORM_C(1.2676506002282294e+30)
+#define CF_SIZES_11 CLOSEDFORM_C(1.4210854715202004e-14), CLOSEDFORM_C(1.2379400392853803e+27)
+#define CF_SIZES_12 CLOSEDFORM_C(2.2737367544323206e-13), CLOSEDFORM_C(9.671406556917033e+24)
+#define CF_SIZES_13 CLOSEDFORM_C(1.8189894035458565e-12), CLOSEDFORM_C(7.555786372591432e+22)
+#define CF_SIZES_14 CLOSEDFORM_C(1.4551915228366852e-11), CLOSEDFORM_C(2.3611832414348226e+21)
+#define CF_SIZES_15 CLOSEDFORM_C(5.820766091346741e-11), CLOSEDFORM_C(7.378697629483821e+19)
+#define CF_SIZES_16 CLOSEDFORM_C(2.3283064365386963e-10), CLOSEDFORM_C(4.611686018427388e+18)
 #endif
 
 /* The real_t nearest to pi: the largest angle returned. */
@@ -160,6 +191,31 @@ CF_INLINE real_t cf_min(real_t a, real_t b) { return a < b ? a : b; }
 
 /* Zero, or NaN if x is not finite: of several numbers the sum tells whether all are. */
 CF_INLINE real_t cf_nought(real_t x) { return CLOSEDFORM_C(0.0) * x; }
+
+/* Has its sign bit set unless least <= size <= most; a loop ORs the words of its postures. No size is
+ * negative, and a word grows with its number. */
+CF_INLINE cf_word cf_size_excess(real_t size, real_t least, real_t most)
+{
+    const cf_word w = cf_to_word(size);
+    return (w - cf_to_word(least)) | (cf_to_word(most) - w);
+}
+
+/* Close to a size the exponent of a power of two, and of what has none (zero, infinity, NaN) 0. It is a
+ * multiple of 4, so that roots of powers of lengths are multiplied by powers of two as well. */
+CF_RARE int cf_exponent(real_t size)
+{
+    int exponent = 0;
+    if (cf_to_word(size) < cf_to_word(CLOSEDFORM_C(INFINITY))) (void)CF_LIBM(frexp)(size, &exponent);
+    return exponent - exponent % 4;
+}
+
+/* Multiplies every number by 2^exponent as often as its degree says. */
+CF_RARE void cf_rescale(size_t n, const signed char *degrees, int exponent, const real_t *x,
+                        real_t *scaled)
+{
+    for (size_t k = 0; k < n; ++k)
+        scaled[k] = CF_LIBM(ldexp)(x[k], degrees[k] * exponent);
+}
 
 /* The constants of the two types. Polynomials: Remez in 260 bits, relative error of the function
  * as the weight, coefficients then rounded in turn. Odd or even in the argument, with z its square:

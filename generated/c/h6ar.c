@@ -131,11 +131,46 @@ CLOSEDFORM_DISPATCHED
 void h6ar_fk(const h6ar_params *params, const real_t q[6],
     real_t x[6])
 {
+    static const signed char x_degrees[6] = { 1, 1, 1, 0, 0, 0 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d1 = CF_LIBM(ldexp)(params->d1, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8], turned[8];
     const real_t lanes[8] = { q[0], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
     cf_turned_lanes(8, lanes, sines, cosines, turned);
     const real_t principals[1] = { turned[5] };
     h6ar_fk_kernel(1, params, q, sines, cosines, principals, x);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, x_degrees, exponent, x, x);
+    }
+}
+
+CF_RARE void h6ar_fk_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t x_i[6];
+        h6ar_fk(params, q_i, x_i);
+        for (size_t k = 0; k < 6; ++k) x[k * x_stride + i] = x_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -144,6 +179,11 @@ void h6ar_fk_batch(size_t n, const h6ar_params *params,
     real_t *x, size_t x_stride)
 {
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_fk_other_sizes(n, params, q, q_stride, x, x_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -312,10 +352,45 @@ CLOSEDFORM_DISPATCHED
 void h6ar_pose(const h6ar_params *params, const real_t q[6],
     real_t T[16])
 {
+    static const signed char T_degrees[16] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d1 = CF_LIBM(ldexp)(params->d1, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[0], q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     h6ar_pose_kernel(1, params, q, sines, cosines, T);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(16, T_degrees, exponent, T, T);
+    }
+}
+
+CF_RARE void h6ar_pose_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t T_i[16];
+        h6ar_pose(params, q_i, T_i);
+        for (size_t k = 0; k < 16; ++k) T[k * T_stride + i] = T_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -324,6 +399,11 @@ void h6ar_pose_batch(size_t n, const h6ar_params *params,
     real_t *T, size_t T_stride)
 {
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_pose_other_sizes(n, params, q, q_stride, T, T_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -739,10 +819,44 @@ CLOSEDFORM_DISPATCHED
 void h6ar_jacobian(const h6ar_params *params, const real_t q[6],
     real_t J[36])
 {
+    static const signed char J_degrees[36] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[5], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     h6ar_jacobian_kernel(1, params, q, sines, cosines, J);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(36, J_degrees, exponent, J, J);
+    }
+}
+
+CF_RARE void h6ar_jacobian_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t J_i[36];
+        h6ar_jacobian(params, q_i, J_i);
+        for (size_t k = 0; k < 36; ++k) J[k * J_stride + i] = J_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -751,6 +865,11 @@ void h6ar_jacobian_batch(size_t n, const h6ar_params *params,
     real_t *J, size_t J_stride)
 {
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -912,10 +1031,44 @@ CLOSEDFORM_DISPATCHED
 void h6ar_determinant(const h6ar_params *params, const real_t q[6],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 3 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_5) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     h6ar_determinant_kernel(1, params, q, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void h6ar_determinant_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        h6ar_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -925,6 +1078,11 @@ void h6ar_determinant_batch(size_t n, const h6ar_params *params,
 {
     (void)det_stride;
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_5) & CF_SIGN) != 0)) {
+        h6ar_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
@@ -1051,10 +1209,44 @@ CLOSEDFORM_DISPATCHED
 void h6ar_singularities(const h6ar_params *params, const real_t q[6],
     real_t factors[6])
 {
+    static const signed char factors_degrees[6] = { 1, 1, 1, 0, 0, 1 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     h6ar_singularities_kernel(1, params, q, sines, cosines, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, factors_degrees, exponent, factors, factors);
+    }
+}
+
+CF_RARE void h6ar_singularities_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[6];
+        h6ar_singularities(params, q_i, factors_i);
+        for (size_t k = 0; k < 6; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1063,6 +1255,11 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
     real_t *factors, size_t factors_stride)
 {
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
@@ -2368,9 +2565,56 @@ CLOSEDFORM_DISPATCHED
 void h6ar_ik(const h6ar_params *params, const real_t x[6],
     real_t q[24], uint8_t status[4])
 {
+    static const signed char x_degrees[6] = { 1, 1, 1, 0, 0, 0 };
+    real_t x_scaled[6];
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_max(cf_max(cf_abs(params->lp), cf_abs(x[0])), cf_max(cf_abs(x[1]), cf_abs(x[2]))));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d1 = CF_LIBM(ldexp)(params->d1, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+        cf_rescale(6, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
     uint8_t rare[1];
     h6ar_ik_branches(params, x, q, status, rare);
     if (CF_UNLIKELY(rare[0])) h6ar_ik_whole(params, x, q, status);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word h6ar_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void h6ar_ik_other_sizes(size_t n, const real_t dimensions,
+    const h6ar_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(h6ar_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[6];
+        for (size_t k = 0; k < 6; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[24];
+        uint8_t status_i[4];
+        h6ar_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 24; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 4; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2379,6 +2623,7 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params,
     real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -2392,7 +2637,13 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params,
             h6ar_ik_whole(params, x_i, q_i, status_i);
             for (size_t k = 0; k < 24; ++k) q[k * q_stride + i] = q_i[k];
             for (size_t k = 0; k < 4; ++k) status[k * status_stride + i] = status_i[k];
+
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= h6ar_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            h6ar_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 
@@ -2424,10 +2675,42 @@ CLOSEDFORM_DISPATCHED
 void h6ar_wrist_length(const h6ar_params *params, const real_t psi[1],
     const real_t phi[1], real_t l_W[1])
 {
+    static const signed char l_W_degrees[1] = { 1 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_abs(params->al));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { psi[0], phi[0] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     h6ar_wrist_length_kernel(1, params, psi, phi, cosines, l_W);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, l_W_degrees, exponent, l_W, l_W);
+    }
+}
+
+CF_RARE void h6ar_wrist_length_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *psi, size_t psi_stride,
+    const real_t *phi, size_t phi_stride,
+    real_t *l_W, size_t l_W_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t psi_i[1];
+        for (size_t k = 0; k < 1; ++k) psi_i[k] = psi[k * psi_stride + i];
+        real_t phi_i[1];
+        for (size_t k = 0; k < 1; ++k) phi_i[k] = phi[k * phi_stride + i];
+        real_t l_W_i[1];
+        h6ar_wrist_length(params, psi_i, phi_i, l_W_i);
+        for (size_t k = 0; k < 1; ++k) l_W[k * l_W_stride + i] = l_W_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2440,6 +2723,11 @@ void h6ar_wrist_length_batch(size_t n, const h6ar_params *params,
     (void)phi_stride;
     (void)l_W_stride;
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_abs(params->al));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_wrist_length_other_sizes(n, params, psi, psi_stride, phi, phi_stride, l_W, l_W_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];

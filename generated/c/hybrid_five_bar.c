@@ -80,6 +80,18 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
     const real_t q[3], real_t p[6], uint8_t status[2])
 {
+    static const signed char p_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
@@ -87,6 +99,26 @@ void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
     hybrid_five_bar_fk_kernel(1, params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, p_degrees, exponent, p, p);
+    }
+}
+
+CF_RARE void hybrid_five_bar_fk_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t p_i[6];
+        uint8_t status_i[2];
+        hybrid_five_bar_fk(params, q_i, p_i, status_i);
+        for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -96,6 +128,11 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
     uint8_t *status, size_t status_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
@@ -192,10 +229,35 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params,
     const real_t q[3], real_t theta[4])
 {
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_passive_angles_kernel(1, params, q, sines, cosines, theta);
+}
+
+CF_RARE void hybrid_five_bar_passive_angles_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *theta, size_t theta_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t theta_i[4];
+        hybrid_five_bar_passive_angles(params, q_i, theta_i);
+        for (size_t k = 0; k < 4; ++k) theta[k * theta_stride + i] = theta_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -204,6 +266,11 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
     real_t *theta, size_t theta_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_passive_angles_other_sizes(n, params, q, q_stride, theta, theta_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -299,10 +366,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params,
     const real_t q[3], real_t A[18])
 {
+    static const signed char A_degrees[18] = { 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, A_degrees, exponent, A, A);
+    }
+}
+
+CF_RARE void hybrid_five_bar_jacobian_parallel_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t A_i[18];
+        hybrid_five_bar_jacobian_parallel(params, q_i, A_i);
+        for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -311,6 +407,11 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
     real_t *A, size_t A_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_jacobian_parallel_other_sizes(n, params, q, q_stride, A, A_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
@@ -404,10 +505,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params,
     const real_t q[3], real_t B[6])
 {
+    static const signed char B_degrees[6] = { 2, 2, 2, 2, 2, 2 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_jacobian_serial_kernel(1, params, q, sines, cosines, B);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, B_degrees, exponent, B, B);
+    }
+}
+
+CF_RARE void hybrid_five_bar_jacobian_serial_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t B_i[6];
+        hybrid_five_bar_jacobian_serial(params, q_i, B_i);
+        for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -416,6 +546,11 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
     real_t *B, size_t B_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_jacobian_serial_other_sizes(n, params, q, q_stride, B, B_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -522,10 +657,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params,
     const real_t q[3], real_t J[18])
 {
+    static const signed char J_degrees[18] = { 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_kernel(1, params, q, sines, cosines, J);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, J_degrees, exponent, J, J);
+    }
+}
+
+CF_RARE void hybrid_five_bar_jacobian_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t J_i[18];
+        hybrid_five_bar_jacobian(params, q_i, J_i);
+        for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -534,6 +698,11 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
     real_t *J, size_t J_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
+        hybrid_five_bar_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
@@ -628,10 +797,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_determinant(const hybrid_five_bar_params *params,
     const real_t q[3], real_t det[2])
 {
+    static const signed char det_degrees[2] = { 3, 3 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_5) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_determinant_kernel(1, params, q, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void hybrid_five_bar_determinant_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[2];
+        hybrid_five_bar_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -640,6 +838,11 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
     real_t *det, size_t det_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_5) & CF_SIGN) != 0)) {
+        hybrid_five_bar_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -719,10 +922,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_singularities(const hybrid_five_bar_params *params,
     const real_t q[3], real_t factors[8])
 {
+    static const signed char factors_degrees[8] = { 1, 2, 2, 2, 1, 2, 2, 2 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_singularities_kernel(1, params, q, sines, cosines, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(8, factors_degrees, exponent, factors, factors);
+    }
+}
+
+CF_RARE void hybrid_five_bar_singularities_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[8];
+        hybrid_five_bar_singularities(params, q_i, factors_i);
+        for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -731,6 +963,11 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
     real_t *factors, size_t factors_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -797,10 +1034,35 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params,
     const real_t q[3], real_t kappa[2])
 {
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_condition_number_kernel(1, params, q, sines, cosines, kappa);
+}
+
+CF_RARE void hybrid_five_bar_condition_number_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t kappa_i[2];
+        hybrid_five_bar_condition_number(params, q_i, kappa_i);
+        for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -809,6 +1071,11 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
     real_t *kappa, size_t kappa_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_condition_number_other_sizes(n, params, q, q_stride, kappa, kappa_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -951,10 +1218,51 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
     const real_t x[3], real_t q[24], uint8_t status[8])
 {
+    static const signed char x_degrees[3] = { 1, 1, 1 };
+    real_t x_scaled[3];
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_max(cf_abs(params->L2), cf_abs(x[0]))), cf_max(cf_abs(x[1]), cf_abs(x[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
     real_t status_real[8];
     hybrid_five_bar_ik_kernel(1, params, x, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word hybrid_five_bar_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void hybrid_five_bar_ik_other_sizes(size_t n, const real_t dimensions,
+    const hybrid_five_bar_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(hybrid_five_bar_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[3];
+        for (size_t k = 0; k < 3; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[24];
+        uint8_t status_i[8];
+        hybrid_five_bar_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 24; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -964,6 +1272,7 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
     uint8_t *status, size_t status_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[8][CLOSEDFORM_BLOCK];
@@ -1030,6 +1339,11 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[7 * status_stride + start + i] = (uint8_t)status_real[7][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= hybrid_five_bar_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            hybrid_five_bar_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 
@@ -1067,10 +1381,48 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params,
     const real_t p[3], uint8_t inside[1])
 {
+    static const signed char p_degrees[3] = { 1, 1, 1 };
+    real_t p_scaled[3];
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_max(cf_abs(params->L2), cf_abs(p[0]))), cf_max(cf_abs(p[1]), cf_abs(p[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, p_degrees, -exponent, p, p_scaled);
+        p = p_scaled;
+    }
     real_t inside_real[1];
     hybrid_five_bar_workspace_contains_kernel(params, p, inside_real);
     for (size_t i = 0; i < 1; ++i)
         inside[i] = (uint8_t)inside_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word hybrid_five_bar_workspace_contains_excess(const real_t dimensions,
+    const real_t *p, size_t p_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(p[i])), cf_max(cf_abs(p[p_stride + i]), cf_abs(p[2 * p_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void hybrid_five_bar_workspace_contains_other_sizes(size_t n, const real_t dimensions,
+    const hybrid_five_bar_params *params,
+    const real_t *p, size_t p_stride,
+    uint8_t *inside, size_t inside_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(hybrid_five_bar_workspace_contains_excess(dimensions, p, p_stride, i) & CF_SIGN)) continue;
+        real_t p_i[3];
+        for (size_t k = 0; k < 3; ++k) p_i[k] = p[k * p_stride + i];
+        uint8_t inside_i[1];
+        hybrid_five_bar_workspace_contains(params, p_i, inside_i);
+        for (size_t k = 0; k < 1; ++k) inside[k * inside_stride + i] = inside_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1080,6 +1432,7 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
 {
     (void)inside_stride;
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t inside_real[1][CLOSEDFORM_BLOCK];
@@ -1093,6 +1446,11 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             inside[start + i] = (uint8_t)inside_real[0][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= hybrid_five_bar_workspace_contains_excess(dimensions, p + start, p_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            hybrid_five_bar_workspace_contains_other_sizes(length, dimensions, params, p + start, p_stride, inside + start, inside_stride);
     }
 }
 
@@ -1140,7 +1498,33 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params,
     real_t volume[1])
 {
+    static const signed char volume_degrees[1] = { 3 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     hybrid_five_bar_workspace_volume_kernel(1, params, volume);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, volume_degrees, exponent, volume, volume);
+    }
+}
+
+CF_RARE void hybrid_five_bar_workspace_volume_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    real_t *volume, size_t volume_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t volume_i[1];
+        hybrid_five_bar_workspace_volume(params, volume_i);
+        for (size_t k = 0; k < 1; ++k) volume[k * volume_stride + i] = volume_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1149,6 +1533,11 @@ void hybrid_five_bar_workspace_volume_batch(size_t n, const hybrid_five_bar_para
 {
     (void)volume_stride;
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        hybrid_five_bar_workspace_volume_other_sizes(n, params, volume, volume_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT

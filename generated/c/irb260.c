@@ -685,10 +685,40 @@ CLOSEDFORM_DISPATCHED
 void irb260_determinant(const irb260_params *params, const real_t q[4],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 3 };
+    irb260_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l3)), cf_max(cf_abs(params->l4), cf_abs(params->l6)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l3 = CF_LIBM(ldexp)(params->l3, -exponent);
+        params_scaled.l4 = CF_LIBM(ldexp)(params->l4, -exponent);
+        params_scaled.l6 = CF_LIBM(ldexp)(params->l6, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[2], q[1] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     irb260_determinant_kernel(params, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void irb260_determinant_other_sizes(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[4];
+        for (size_t k = 0; k < 4; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        irb260_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -698,6 +728,11 @@ void irb260_determinant_batch(size_t n, const irb260_params *params,
 {
     (void)det_stride;
     const irb260_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l3)), cf_max(cf_abs(params->l4), cf_abs(params->l6)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
+        irb260_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -958,6 +993,24 @@ CLOSEDFORM_DISPATCHED
 void irb260_ik(const irb260_params *params, const real_t x[4],
     real_t q[16], uint8_t status[4])
 {
+    static const signed char x_degrees[4] = { 1, 1, 1, 0 };
+    real_t x_scaled[4];
+    irb260_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_max(cf_abs(params->l5), cf_abs(params->l6)), cf_max(cf_abs(x[0]), cf_abs(x[1])))), cf_abs(x[2]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params_scaled.l3 = CF_LIBM(ldexp)(params->l3, -exponent);
+        params_scaled.l4 = CF_LIBM(ldexp)(params->l4, -exponent);
+        params_scaled.l5 = CF_LIBM(ldexp)(params->l5, -exponent);
+        params_scaled.l6 = CF_LIBM(ldexp)(params->l6, -exponent);
+        params = &params_scaled;
+        cf_rescale(4, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { x[3] };
     cf_sincos_lanes(1, lanes, sines, cosines);
@@ -967,6 +1020,32 @@ void irb260_ik(const irb260_params *params, const real_t x[4],
         status[i] = (uint8_t)status_real[i];
 }
 
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word irb260_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void irb260_ik_other_sizes(size_t n, const real_t dimensions,
+    const irb260_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(irb260_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[4];
+        for (size_t k = 0; k < 4; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[16];
+        uint8_t status_i[4];
+        irb260_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 16; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 4; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
+}
+
 CLOSEDFORM_DISPATCHED
 void irb260_ik_batch(size_t n, const irb260_params *params,
     const real_t *x, size_t x_stride,
@@ -974,6 +1053,7 @@ void irb260_ik_batch(size_t n, const irb260_params *params,
     uint8_t *status, size_t status_stride)
 {
     const irb260_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_abs(params->l5), cf_abs(params->l6)));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -1020,6 +1100,11 @@ void irb260_ik_batch(size_t n, const irb260_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[3 * status_stride + start + i] = (uint8_t)status_real[3][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= irb260_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            irb260_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 
@@ -1092,7 +1177,52 @@ CLOSEDFORM_DISPATCHED
 void irb260_workspace_margin(const irb260_params *params, const real_t p[3],
     real_t margin[1])
 {
+    static const signed char p_degrees[3] = { 1, 1, 1 };
+    static const signed char margin_degrees[1] = { 1 };
+    real_t p_scaled[3];
+    irb260_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_max(cf_abs(params->l5), cf_abs(params->l6)), cf_max(cf_abs(p[0]), cf_abs(p[1])))), cf_abs(p[2]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params_scaled.l3 = CF_LIBM(ldexp)(params->l3, -exponent);
+        params_scaled.l4 = CF_LIBM(ldexp)(params->l4, -exponent);
+        params_scaled.l5 = CF_LIBM(ldexp)(params->l5, -exponent);
+        params_scaled.l6 = CF_LIBM(ldexp)(params->l6, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, p_degrees, -exponent, p, p_scaled);
+        p = p_scaled;
+    }
     irb260_workspace_margin_kernel(params, p, margin);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, margin_degrees, exponent, margin, margin);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word irb260_workspace_margin_excess(const real_t dimensions,
+    const real_t *p, size_t p_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(p[i])), cf_max(cf_abs(p[p_stride + i]), cf_abs(p[2 * p_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void irb260_workspace_margin_other_sizes(size_t n, const real_t dimensions,
+    const irb260_params *params,
+    const real_t *p, size_t p_stride,
+    real_t *margin, size_t margin_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(irb260_workspace_margin_excess(dimensions, p, p_stride, i) & CF_SIGN)) continue;
+        real_t p_i[3];
+        for (size_t k = 0; k < 3; ++k) p_i[k] = p[k * p_stride + i];
+        real_t margin_i[1];
+        irb260_workspace_margin(params, p_i, margin_i);
+        for (size_t k = 0; k < 1; ++k) margin[k * margin_stride + i] = margin_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1102,6 +1232,7 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params,
 {
     (void)margin_stride;
     const irb260_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_abs(params->l5), cf_abs(params->l6)));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -1111,6 +1242,11 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params,
             irb260_workspace_margin_kernel(&local, p_i, margin_i);
             margin[start + i] = margin_i[0];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= irb260_workspace_margin_excess(dimensions, p + start, p_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            irb260_workspace_margin_other_sizes(length, dimensions, params, p + start, p_stride, margin + start, margin_stride);
     }
 }
 
@@ -1150,10 +1286,51 @@ CLOSEDFORM_DISPATCHED
 void irb260_workspace_contains(const irb260_params *params, const real_t p[3],
     uint8_t inside[1])
 {
+    static const signed char p_degrees[3] = { 1, 1, 1 };
+    real_t p_scaled[3];
+    irb260_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_max(cf_abs(params->l5), cf_abs(params->l6)), cf_max(cf_abs(p[0]), cf_abs(p[1])))), cf_abs(p[2]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params_scaled.l3 = CF_LIBM(ldexp)(params->l3, -exponent);
+        params_scaled.l4 = CF_LIBM(ldexp)(params->l4, -exponent);
+        params_scaled.l5 = CF_LIBM(ldexp)(params->l5, -exponent);
+        params_scaled.l6 = CF_LIBM(ldexp)(params->l6, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, p_degrees, -exponent, p, p_scaled);
+        p = p_scaled;
+    }
     real_t inside_real[1];
     irb260_workspace_contains_kernel(params, p, inside_real);
     for (size_t i = 0; i < 1; ++i)
         inside[i] = (uint8_t)inside_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word irb260_workspace_contains_excess(const real_t dimensions,
+    const real_t *p, size_t p_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(p[i])), cf_max(cf_abs(p[p_stride + i]), cf_abs(p[2 * p_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void irb260_workspace_contains_other_sizes(size_t n, const real_t dimensions,
+    const irb260_params *params,
+    const real_t *p, size_t p_stride,
+    uint8_t *inside, size_t inside_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(irb260_workspace_contains_excess(dimensions, p, p_stride, i) & CF_SIGN)) continue;
+        real_t p_i[3];
+        for (size_t k = 0; k < 3; ++k) p_i[k] = p[k * p_stride + i];
+        uint8_t inside_i[1];
+        irb260_workspace_contains(params, p_i, inside_i);
+        for (size_t k = 0; k < 1; ++k) inside[k * inside_stride + i] = inside_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1163,6 +1340,7 @@ void irb260_workspace_contains_batch(size_t n, const irb260_params *params,
 {
     (void)inside_stride;
     const irb260_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_abs(params->l5), cf_abs(params->l6)));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t inside_real[1][CLOSEDFORM_BLOCK];
@@ -1176,5 +1354,10 @@ void irb260_workspace_contains_batch(size_t n, const irb260_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             inside[start + i] = (uint8_t)inside_real[0][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= irb260_workspace_contains_excess(dimensions, p + start, p_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            irb260_workspace_contains_other_sizes(length, dimensions, params, p + start, p_stride, inside + start, inside_stride);
     }
 }

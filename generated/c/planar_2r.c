@@ -248,10 +248,38 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 2 };
+    planar_2r_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
     cf_sincos_lanes(1, lanes, sines, cosines);
     planar_2r_determinant_kernel(params, sines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void planar_2r_determinant_other_sizes(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        planar_2r_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -261,6 +289,11 @@ void planar_2r_determinant_batch(size_t n, const planar_2r_params *params,
 {
     (void)det_stride;
     const planar_2r_params local = *params;
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        planar_2r_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -288,10 +321,38 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
     real_t w[1])
 {
+    static const signed char w_degrees[1] = { 2 };
+    planar_2r_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
     cf_sincos_lanes(1, lanes, sines, cosines);
     planar_2r_manipulability_kernel(params, sines, w);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, w_degrees, exponent, w, w);
+    }
+}
+
+CF_RARE void planar_2r_manipulability_other_sizes(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *w, size_t w_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t w_i[1];
+        planar_2r_manipulability(params, q_i, w_i);
+        for (size_t k = 0; k < 1; ++k) w[k * w_stride + i] = w_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -301,6 +362,11 @@ void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params,
 {
     (void)w_stride;
     const planar_2r_params local = *params;
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        planar_2r_manipulability_other_sizes(n, params, q, q_stride, w, w_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -413,10 +479,50 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
     real_t q[4], uint8_t status[2])
 {
+    static const signed char x_degrees[2] = { 1, 1 };
+    real_t x_scaled[2];
+    planar_2r_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(x[0]), cf_abs(x[1])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
     real_t status_real[2];
     planar_2r_ik_kernel(1, params, x, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word planar_2r_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_abs(x[x_stride + i])), CF_SIZES_4);
+}
+
+CF_RARE void planar_2r_ik_other_sizes(size_t n, const real_t dimensions,
+    const planar_2r_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(planar_2r_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[2];
+        for (size_t k = 0; k < 2; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[4];
+        uint8_t status_i[2];
+        planar_2r_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 4; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -426,6 +532,7 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
     uint8_t *status, size_t status_stride)
 {
     const planar_2r_params local = *params;
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[2][CLOSEDFORM_BLOCK];
@@ -448,6 +555,11 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= planar_2r_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            planar_2r_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 
@@ -524,10 +636,50 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
     real_t q[2], uint8_t status[1])
 {
+    static const signed char T_degrees[16] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0 };
+    real_t T_scaled[16];
+    planar_2r_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(T[3]), cf_abs(T[7]))), cf_abs(T[11]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+        cf_rescale(16, T_degrees, -exponent, T, T_scaled);
+        T = T_scaled;
+    }
     real_t status_real[1];
     planar_2r_ik_pose_kernel(1, params, T, q, status_real);
     for (size_t i = 0; i < 1; ++i)
         status[i] = (uint8_t)status_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word planar_2r_ik_pose_excess(const real_t dimensions,
+    const real_t *T, size_t T_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(T[3 * T_stride + i])), cf_max(cf_abs(T[7 * T_stride + i]), cf_abs(T[11 * T_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void planar_2r_ik_pose_other_sizes(size_t n, const real_t dimensions,
+    const planar_2r_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(planar_2r_ik_pose_excess(dimensions, T, T_stride, i) & CF_SIGN)) continue;
+        real_t T_i[16];
+        for (size_t k = 0; k < 16; ++k) T_i[k] = T[k * T_stride + i];
+        real_t q_i[2];
+        uint8_t status_i[1];
+        planar_2r_ik_pose(params, T_i, q_i, status_i);
+        for (size_t k = 0; k < 2; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 1; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -538,6 +690,7 @@ void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params,
 {
     (void)status_stride;
     const planar_2r_params local = *params;
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[1][CLOSEDFORM_BLOCK];
@@ -554,6 +707,11 @@ void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= planar_2r_ik_pose_excess(dimensions, T + start, T_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            planar_2r_ik_pose_other_sizes(length, dimensions, params, T + start, T_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 

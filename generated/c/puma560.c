@@ -680,10 +680,39 @@ CLOSEDFORM_DISPATCHED
 void puma560_determinant(const puma560_params *params, const real_t q[6],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 3 };
+    puma560_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_abs(params->d4));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.a2 = CF_LIBM(ldexp)(params->a2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d4 = CF_LIBM(ldexp)(params->d4, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[4], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     puma560_determinant_kernel(params, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void puma560_determinant_other_sizes(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        puma560_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -693,6 +722,11 @@ void puma560_determinant_batch(size_t n, const puma560_params *params,
 {
     (void)det_stride;
     const puma560_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_abs(params->d4));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
+        puma560_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
@@ -1053,10 +1087,52 @@ CLOSEDFORM_DISPATCHED
 void puma560_ik(const puma560_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8])
 {
+    static const signed char T_degrees[16] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0 };
+    real_t T_scaled[16];
+    puma560_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_max(cf_abs(params->d3), cf_abs(params->d4))), cf_max(cf_max(cf_abs(T[3]), cf_abs(T[7])), cf_abs(T[11])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.a2 = CF_LIBM(ldexp)(params->a2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d3 = CF_LIBM(ldexp)(params->d3, -exponent);
+        params_scaled.d4 = CF_LIBM(ldexp)(params->d4, -exponent);
+        params = &params_scaled;
+        cf_rescale(16, T_degrees, -exponent, T, T_scaled);
+        T = T_scaled;
+    }
     real_t status_real[8];
     puma560_ik_kernel(1, params, T, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word puma560_ik_excess(const real_t dimensions,
+    const real_t *T, size_t T_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(T[3 * T_stride + i])), cf_max(cf_abs(T[7 * T_stride + i]), cf_abs(T[11 * T_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void puma560_ik_other_sizes(size_t n, const real_t dimensions,
+    const puma560_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(puma560_ik_excess(dimensions, T, T_stride, i) & CF_SIGN)) continue;
+        real_t T_i[16];
+        for (size_t k = 0; k < 16; ++k) T_i[k] = T[k * T_stride + i];
+        real_t q_i[48];
+        uint8_t status_i[8];
+        puma560_ik(params, T_i, q_i, status_i);
+        for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1066,6 +1142,7 @@ void puma560_ik_batch(size_t n, const puma560_params *params,
     uint8_t *status, size_t status_stride)
 {
     const puma560_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_max(cf_abs(params->d3), cf_abs(params->d4)));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[8][CLOSEDFORM_BLOCK];
@@ -1156,5 +1233,10 @@ void puma560_ik_batch(size_t n, const puma560_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[7 * status_stride + start + i] = (uint8_t)status_real[7][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= puma560_ik_excess(dimensions, T + start, T_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            puma560_ik_other_sizes(length, dimensions, params, T + start, T_stride, q + start, q_stride, status + start, status_stride);
     }
 }

@@ -252,10 +252,38 @@ CLOSEDFORM_DISPATCHED
 void scara_determinant(const scara_params *params, const real_t q[4],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 2 };
+    scara_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
     cf_sincos_lanes(1, lanes, sines, cosines);
     scara_determinant_kernel(params, sines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void scara_determinant_other_sizes(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[4];
+        for (size_t k = 0; k < 4; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        scara_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -265,6 +293,11 @@ void scara_determinant_batch(size_t n, const scara_params *params,
 {
     (void)det_stride;
     const scara_params local = *params;
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        scara_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -588,6 +621,22 @@ CLOSEDFORM_DISPATCHED
 void scara_ik(const scara_params *params, const real_t x[4],
     real_t q[8], uint8_t status[2])
 {
+    static const signed char x_degrees[4] = { 1, 1, 1, 0 };
+    static const signed char q_degrees[8] = { 0, 0, 1, 0, 0, 0, 1, 0 };
+    real_t x_scaled[4];
+    scara_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->h), cf_abs(x[0]))), cf_max(cf_abs(x[1]), cf_abs(x[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params_scaled.h = CF_LIBM(ldexp)(params->h, -exponent);
+        params = &params_scaled;
+        cf_rescale(4, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { x[3] };
     cf_sincos_lanes(1, lanes, sines, cosines);
@@ -595,6 +644,35 @@ void scara_ik(const scara_params *params, const real_t x[4],
     scara_ik_kernel(1, params, x, sines, cosines, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(8, q_degrees, exponent, q, q);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word scara_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void scara_ik_other_sizes(size_t n, const real_t dimensions,
+    const scara_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(scara_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[4];
+        for (size_t k = 0; k < 4; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[8];
+        uint8_t status_i[2];
+        scara_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 8; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -604,6 +682,7 @@ void scara_ik_batch(size_t n, const scara_params *params,
     uint8_t *status, size_t status_stride)
 {
     const scara_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_abs(params->h));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -634,5 +713,10 @@ void scara_ik_batch(size_t n, const scara_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= scara_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            scara_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }

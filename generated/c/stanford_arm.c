@@ -633,10 +633,46 @@ void stanford_arm_determinant(const stanford_arm_params *params,
     const real_t q[6], real_t det[1])
 {
     (void)params;
+    static const signed char q_degrees[6] = { 0, 0, 1, 0, 0, 0 };
+    static const signed char det_degrees[1] = { 2 };
+    real_t q_scaled[6];
+    int exponent = 0;
+    const real_t size = cf_abs(q[2]);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        cf_rescale(6, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[4] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     stanford_arm_determinant_kernel(q, sines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word stanford_arm_determinant_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(dimensions, cf_abs(q[2 * q_stride + i])), CF_SIZES_2);
+}
+
+CF_RARE void stanford_arm_determinant_other_sizes(size_t n, const real_t dimensions,
+    const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(stanford_arm_determinant_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        stanford_arm_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -646,6 +682,7 @@ void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
 {
     (void)params;
     (void)det_stride;
+    const real_t dimensions = CLOSEDFORM_C(0.0);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -659,6 +696,11 @@ void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
             stanford_arm_determinant_kernel(q_i, sines_i, det_i);
             det[start + i] = det_i[0];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= stanford_arm_determinant_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            stanford_arm_determinant_other_sizes(length, dimensions, params, q + start, q_stride, det + start, det_stride);
     }
 }
 
@@ -1271,9 +1313,52 @@ CLOSEDFORM_DISPATCHED
 void stanford_arm_ik(const stanford_arm_params *params,
     const real_t T[16], real_t q[48], uint8_t status[8])
 {
+    static const signed char T_degrees[16] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0 };
+    static const signed char q_degrees[48] = { 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0 };
+    real_t T_scaled[16];
+    stanford_arm_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->d2), cf_abs(T[3])), cf_max(cf_abs(T[7]), cf_abs(T[11])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.d2 = CF_LIBM(ldexp)(params->d2, -exponent);
+        params = &params_scaled;
+        cf_rescale(16, T_degrees, -exponent, T, T_scaled);
+        T = T_scaled;
+    }
     uint8_t rare[1];
     stanford_arm_ik_common(params, T, q, status, rare);
     if (CF_UNLIKELY(rare[0])) stanford_arm_ik_whole(params, T, q, status);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(48, q_degrees, exponent, q, q);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word stanford_arm_ik_excess(const real_t dimensions,
+    const real_t *T, size_t T_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(T[3 * T_stride + i])), cf_max(cf_abs(T[7 * T_stride + i]), cf_abs(T[11 * T_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void stanford_arm_ik_other_sizes(size_t n, const real_t dimensions,
+    const stanford_arm_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(stanford_arm_ik_excess(dimensions, T, T_stride, i) & CF_SIGN)) continue;
+        real_t T_i[16];
+        for (size_t k = 0; k < 16; ++k) T_i[k] = T[k * T_stride + i];
+        real_t q_i[48];
+        uint8_t status_i[8];
+        stanford_arm_ik(params, T_i, q_i, status_i);
+        for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1282,6 +1367,7 @@ void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
     real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
+    const real_t dimensions = cf_abs(params->d2);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1295,6 +1381,12 @@ void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
             stanford_arm_ik_whole(params, T_i, q_i, status_i);
             for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
             for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= stanford_arm_ik_excess(dimensions, T + start, T_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            stanford_arm_ik_other_sizes(length, dimensions, params, T + start, T_stride, q + start, q_stride, status + start, status_stride);
     }
 }

@@ -407,10 +407,39 @@ CLOSEDFORM_DISPATCHED
 void ur_arm_determinant(const ur_arm_params *params, const real_t q[6],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 3 };
+    ur_arm_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L2), cf_abs(params->L3)), cf_abs(params->d5));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.L3 = CF_LIBM(ldexp)(params->L3, -exponent);
+        params_scaled.d5 = CF_LIBM(ldexp)(params->d5, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[2], q[1], q[3], q[4] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     ur_arm_determinant_kernel(params, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void ur_arm_determinant_other_sizes(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        ur_arm_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -420,6 +449,11 @@ void ur_arm_determinant_batch(size_t n, const ur_arm_params *params,
 {
     (void)det_stride;
     const ur_arm_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L2), cf_abs(params->L3)), cf_abs(params->d5));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
+        ur_arm_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[4][CLOSEDFORM_BLOCK], cosines[4][CLOSEDFORM_BLOCK];
@@ -2151,9 +2185,53 @@ CLOSEDFORM_DISPATCHED
 void ur_arm_ik(const ur_arm_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8])
 {
+    static const signed char T_degrees[16] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0 };
+    real_t T_scaled[16];
+    ur_arm_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->d1), cf_abs(params->L2)), cf_max(cf_abs(params->L3), cf_abs(params->d4))), cf_max(cf_max(cf_abs(params->d5), cf_abs(params->d6)), cf_max(cf_abs(T[3]), cf_abs(T[7])))), cf_abs(T[11]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.d1 = CF_LIBM(ldexp)(params->d1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.L3 = CF_LIBM(ldexp)(params->L3, -exponent);
+        params_scaled.d4 = CF_LIBM(ldexp)(params->d4, -exponent);
+        params_scaled.d5 = CF_LIBM(ldexp)(params->d5, -exponent);
+        params_scaled.d6 = CF_LIBM(ldexp)(params->d6, -exponent);
+        params = &params_scaled;
+        cf_rescale(16, T_degrees, -exponent, T, T_scaled);
+        T = T_scaled;
+    }
     uint8_t rare[1];
     ur_arm_ik_branches(params, T, q, status, rare);
     if (CF_UNLIKELY(rare[0])) ur_arm_ik_whole(params, T, q, status);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word ur_arm_ik_excess(const real_t dimensions,
+    const real_t *T, size_t T_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(T[3 * T_stride + i])), cf_max(cf_abs(T[7 * T_stride + i]), cf_abs(T[11 * T_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void ur_arm_ik_other_sizes(size_t n, const real_t dimensions,
+    const ur_arm_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(ur_arm_ik_excess(dimensions, T, T_stride, i) & CF_SIGN)) continue;
+        real_t T_i[16];
+        for (size_t k = 0; k < 16; ++k) T_i[k] = T[k * T_stride + i];
+        real_t q_i[48];
+        uint8_t status_i[8];
+        ur_arm_ik(params, T_i, q_i, status_i);
+        for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2162,6 +2240,7 @@ void ur_arm_ik_batch(size_t n, const ur_arm_params *params,
     real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->d1), cf_abs(params->L2)), cf_max(cf_abs(params->L3), cf_abs(params->d4))), cf_max(cf_abs(params->d5), cf_abs(params->d6)));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -2175,6 +2254,12 @@ void ur_arm_ik_batch(size_t n, const ur_arm_params *params,
             ur_arm_ik_whole(params, T_i, q_i, status_i);
             for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
             for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= ur_arm_ik_excess(dimensions, T + start, T_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            ur_arm_ik_other_sizes(length, dimensions, params, T + start, T_stride, q + start, q_stride, status + start, status_stride);
     }
 }

@@ -204,6 +204,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("x", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((0, 1), (1, 1), (2, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -362,6 +363,7 @@ _POSE = _runtime.Kernel(
     (_runtime.Array("T", (4, 4)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((3, 1), (7, 1), (11, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -735,6 +737,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (6, 6)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -855,6 +858,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 3),), 1.9721522630525295e-31, 1.6069380442589903e+60),
 )
 
 
@@ -971,6 +975,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -2307,7 +2312,8 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (4, 6)), _runtime.Array("status", (4,), np.uint8)),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _ik_common,
+    common=_ik_common,
+    size=_runtime.Size((0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -2358,6 +2364,7 @@ _WRIST_LENGTH = _runtime.Kernel(
     (_runtime.Array("l_W", ()),),
     Parameters._fields,
     ('d', 'gs', 'al'),
+    size=_runtime.Size((2, 3, 4), ((0, 1),), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 

@@ -290,6 +290,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("x", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((0, 1), (1, 1), (2, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -541,6 +542,7 @@ _POSE = _runtime.Kernel(
     (_runtime.Array("T", (4, 4)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((3, 1), (7, 1), (11, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1042,6 +1044,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (6, 6)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1254,6 +1257,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 3),), 1.0587911840678754e-22, 5.575186299632656e+42),
 )
 
 
@@ -1467,6 +1471,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -3139,7 +3144,8 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 6)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _ik_common,
+    common=_ik_common,
+    size=_runtime.Size((0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -3194,6 +3200,7 @@ _WRIST_LENGTH = _runtime.Kernel(
     (_runtime.Array("l_W", ()),),
     Parameters._fields,
     ('d', 'gs', 'al'),
+    size=_runtime.Size((2, 3, 4), ((0, 1),), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 

@@ -147,6 +147,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -228,6 +229,7 @@ _PASSIVE_ANGLES = _runtime.Kernel(
     (_runtime.Array("theta", (2, 2)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), (), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -326,6 +328,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -405,6 +408,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -513,6 +517,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 1), (1, 1), (2, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -598,6 +603,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 3), (1, 3)), 1.9721522630525295e-31, 1.6069380442589903e+60),
 )
 
 
@@ -682,6 +688,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 1), (1, 2), (2, 2), (3, 2), (4, 1), (5, 2), (6, 2), (7, 2)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -740,6 +747,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), (), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -895,6 +903,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 3)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -956,6 +965,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Array("inside", (), np.bool_),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -1020,6 +1030,7 @@ _WORKSPACE_VOLUME = _runtime.Kernel(
     (_runtime.Array("volume", ()),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((0, 1, 2), ((0, 3),), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

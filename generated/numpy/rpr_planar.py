@@ -113,6 +113,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 2)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -176,6 +177,7 @@ _PASSIVE_ANGLES = _runtime.Kernel(
     (_runtime.Array("theta", (2, 2)),),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -245,6 +247,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 2, 2)),),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -298,6 +301,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -356,6 +360,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 3)),),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -393,6 +398,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (1, 2)), _runtime.Array("status", (1,), np.uint8)),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), ((0, 1), (1, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 

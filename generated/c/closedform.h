@@ -178,6 +178,43 @@ CF_INLINE real_t cf_status(int single, int invalid, int unreachable, int singula
     return cf_select(invalid, CLOSEDFORM_C(3.0), valid);
 }
 
+/* What keeps a product that decides a status out of a fused multiply-add, so that the status is the same
+ * on every processor and in NumPy. In a batch it is multiplied by cf_one, of which no compiler knows
+ * that it is 1; that product is fused with the addition instead, and exact. In a single call an empty
+ * instruction stands between product and addition, which would keep a loop from becoming vectors. */
+#if (defined(__x86_64__) || defined(__i386__)) && !defined(__FMA__) && !defined(__FMA4__) && \
+    !defined(CLOSEDFORM_DISPATCH)
+#define CF_HIDE(x) (void)(x) /* nothing is fused */
+#elif defined(__GNUC__) && defined(__SSE2__)
+#define CF_HIDE(x) __asm__("" : "+x"(x))
+#elif defined(__GNUC__) && defined(__aarch64__)
+#define CF_HIDE(x) __asm__("" : "+w"(x))
+#endif
+
+CF_INLINE real_t cf_one(void)
+{
+#ifdef CF_HIDE
+    real_t one = CLOSEDFORM_C(1.0);
+    CF_HIDE(one);
+#else
+    volatile real_t one = CLOSEDFORM_C(1.0);
+#endif
+    return one;
+}
+
+CF_INLINE real_t cf_rounded(int single, real_t one, real_t x)
+{
+#ifdef CF_HIDE
+    if (single) {
+        CF_HIDE(x);
+        return x;
+    }
+#else
+    (void)single;
+#endif
+    return x * one;
+}
+
 CF_INLINE real_t cf_sqrt(real_t x) { return CF_LIBM(sqrt)(x); }
 CF_INLINE real_t cf_abs(real_t x) { return CF_LIBM(fabs)(x); }
 CF_INLINE real_t cf_copysign(real_t size, real_t sign) { return CF_LIBM(copysign)(size, sign); }

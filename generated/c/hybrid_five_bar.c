@@ -19,7 +19,7 @@
  */
 #include "hybrid_five_bar.h"
 
-CF_INLINE void hybrid_five_bar_fk_kernel(const int single,
+CF_INLINE void hybrid_five_bar_fk_kernel(const int single, const real_t one,
     const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t p[6], real_t status[2])
@@ -36,44 +36,45 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const int single,
     const real_t c2 = cosines[1];
     const real_t s3 = sines[2];
     const real_t c3 = cosines[2];
-    const real_t C_r = L1 * s2;
-    const real_t t1 = C_r - L1 * s3;
-    const real_t C_y = L1 * c2;
-    const real_t t2 = C_y - (L0 + L1 * c3);
-    const real_t apart = cf_sqrt(t1 * t1 + t2 * t2);
-    const real_t t3 = L0 + L1 + L2;
-    const real_t t4 = t3 * CLOSEDFORM_VANISHING;
-    const int coincide = apart <= t4;
+    const real_t C_r = cf_rounded(single, one, L1 * s2);
+    const real_t t1 = C_r - cf_rounded(single, one, L1 * s3);
+    const real_t C_y = cf_rounded(single, one, L1 * c2);
+    const real_t t2 = C_y - (L0 + cf_rounded(single, one, L1 * c3));
+    const real_t t3 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, t2 * t2);
+    const real_t apart = cf_sqrt(t3);
+    const real_t t4 = L0 + L1 + L2;
+    const real_t t5 = t4 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = CLOSEDFORM_C(1.0) / apart;
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 * t5);
-    const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
-    const real_t t8 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t9 = t8 - apart;
-    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
-    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t10);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 * t5));
-    const real_t t11 = height * n_1;
-    const real_t P_r = C_r - (t7 - t11);
-    const int t12 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int invalid = !(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14);
-    const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t3) <= t9);
-    const real_t t15 = cf_poison(single, invalid | unreachable);
-    const real_t t16 = distance * n_1 * CLOSEDFORM_C(0.5);
-    const real_t t17 = height * t6;
-    const real_t P_r_right_of_CD = C_r - (t7 + t11);
-    const real_t t18 = cf_status(single, invalid, unreachable, coincide);
-    p[0] = -(c1 * P_r) + t15;
-    p[1] = C_y + (t16 + t17) + t15;
-    p[2] = s1 * P_r + t15;
-    p[3] = -(c1 * P_r_right_of_CD) + t15;
-    p[4] = C_y + (t16 - t17) + t15;
-    p[5] = s1 * P_r_right_of_CD + t15;
-    status[0] = t18;
-    status[1] = t18;
+    const real_t t6 = CLOSEDFORM_C(1.0) / apart;
+    const real_t t7 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 * t6);
+    const real_t t8 = distance * t7 * CLOSEDFORM_C(0.5);
+    const real_t t9 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t10 = t9 - apart;
+    const real_t slack = cf_max(t10, CLOSEDFORM_C(0.0));
+    const real_t t11 = cf_sqrt(slack * (apart + t9)) * CLOSEDFORM_C(0.5);
+    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t11);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 * t6));
+    const real_t t12 = height * n_1;
+    const real_t P_r = C_r - (t8 - t12);
+    const int t13 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t15 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t14 & (CLOSEDFORM_C(0.0) <= L2) & t15);
+    const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t4) <= t10);
+    const real_t t16 = cf_poison(single, invalid | unreachable);
+    const real_t t17 = distance * n_1 * CLOSEDFORM_C(0.5);
+    const real_t t18 = height * t7;
+    const real_t P_r_right_of_CD = C_r - (t8 + t12);
+    const real_t t19 = cf_status(single, invalid, unreachable, coincide);
+    p[0] = -(c1 * P_r) + t16;
+    p[1] = C_y + (t17 + t18) + t16;
+    p[2] = s1 * P_r + t16;
+    p[3] = -(c1 * P_r_right_of_CD) + t16;
+    p[4] = C_y + (t17 - t18) + t16;
+    p[5] = s1 * P_r_right_of_CD + t16;
+    status[0] = t19;
+    status[1] = t19;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -92,11 +93,12 @@ void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
         params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
         params = &params_scaled;
     }
+    const real_t one = cf_one();
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     real_t status_real[2];
-    hybrid_five_bar_fk_kernel(1, params, q, sines, cosines, p, status_real);
+    hybrid_five_bar_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
     if (CF_UNLIKELY(exponent != 0)) {
@@ -128,6 +130,7 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
     uint8_t *status, size_t status_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t one = cf_one();
     const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
     if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
         hybrid_five_bar_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
@@ -147,7 +150,7 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t p_i[6];
             real_t status_i[2];
-            hybrid_five_bar_fk_kernel(0, &local, q_i, sines_i, cosines_i, p_i, status_i);
+            hybrid_five_bar_fk_kernel(0, one, &local, q_i, sines_i, cosines_i, p_i, status_i);
             p[start + i] = p_i[0];
             p[p_stride + start + i] = p_i[1];
             p[2 * p_stride + start + i] = p_i[2];
@@ -1094,7 +1097,7 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
     }
 }
 
-CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
+CF_INLINE void hybrid_five_bar_ik_kernel(const int single, const real_t one,
     const hybrid_five_bar_params *params,
     const real_t x[3], real_t q[24], real_t status[8])
 {
@@ -1104,7 +1107,7 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const real_t x_2 = x[0];
     const real_t y = x[1];
     const real_t z = x[2];
-    const real_t r2 = x_2 * x_2 + z * z;
+    const real_t r2 = cf_rounded(single, one, x_2 * x_2) + cf_rounded(single, one, z * z);
     const real_t r = cf_sqrt(r2);
     const real_t t1 = L1 + L2;
     const real_t t2 = CLOSEDFORM_VANISHING * (L0 + t1);
@@ -1115,16 +1118,16 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const int invalid = !(t4 & (CLOSEDFORM_C(0.0) <= L2) & t5);
     const real_t t6 = L2 * CLOSEDFORM_C(2.0);
     const real_t t7 = CLOSEDFORM_FEASIBILITY * (t1 * (L1 * CLOSEDFORM_C(2.0) + t6));
-    const real_t t8 = t1 * t1;
-    const real_t square_c = r2 + y * y;
+    const real_t t8 = cf_rounded(single, one, t1 * t1);
+    const real_t square_c = r2 + cf_rounded(single, one, y * y);
     const real_t t9 = t8 - square_c;
     const real_t t10 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + L2 * CLOSEDFORM_C(1.1368683772161603e-13);
     const real_t t11 = L1 - L2;
     const real_t t12 = CLOSEDFORM_FEASIBILITY * (t1 * (t10 + CLOSEDFORM_C(2.0) * cf_abs(t11)));
-    const real_t t13 = t11 * t11;
+    const real_t t13 = cf_rounded(single, one, t11 * t11);
     const real_t t14 = square_c - t13;
     const real_t t15 = y - L0;
-    const real_t square_d = r2 + t15 * t15;
+    const real_t square_d = r2 + cf_rounded(single, one, t15 * t15);
     const real_t t16 = t8 - square_d;
     const real_t t17 = square_d - t13;
     const int t18 = (-t7 <= t9) & (-t12 <= t14) & (-t7 <= t16) & (-t12 <= t17);
@@ -1233,8 +1236,9 @@ void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
         cf_rescale(3, x_degrees, -exponent, x, x_scaled);
         x = x_scaled;
     }
+    const real_t one = cf_one();
     real_t status_real[8];
-    hybrid_five_bar_ik_kernel(1, params, x, q, status_real);
+    hybrid_five_bar_ik_kernel(1, one, params, x, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -1272,6 +1276,7 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
     uint8_t *status, size_t status_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t one = cf_one();
     const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
@@ -1281,7 +1286,7 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
             const real_t x_i[3] = { x[start + i], x[x_stride + start + i], x[2 * x_stride + start + i] };
             real_t q_i[24];
             real_t status_i[8];
-            hybrid_five_bar_ik_kernel(0, &local, x_i, q_i, status_i);
+            hybrid_five_bar_ik_kernel(0, one, &local, x_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -1347,7 +1352,8 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
     }
 }
 
-CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const int single, const real_t one,
+    const hybrid_five_bar_params *params,
     const real_t p[3], real_t inside[1])
 {
     const real_t L0 = params->L0;
@@ -1362,16 +1368,16 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     const real_t t4 = L1 + L2;
     const real_t t5 = L1 * CLOSEDFORM_C(2.0) + L2 * CLOSEDFORM_C(2.0);
     const real_t t6 = -(CLOSEDFORM_FEASIBILITY * (t4 * t5));
-    const real_t t7 = t4 * t4;
-    const real_t r2 = x * x + z * z;
-    const real_t square_c = r2 + y * y;
+    const real_t t7 = cf_rounded(single, one, t4 * t4);
+    const real_t r2 = cf_rounded(single, one, x * x) + cf_rounded(single, one, z * z);
+    const real_t square_c = r2 + cf_rounded(single, one, y * y);
     const real_t t8 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + L2 * CLOSEDFORM_C(1.1368683772161603e-13);
     const real_t t9 = L1 - L2;
     const real_t t10 = CLOSEDFORM_FEASIBILITY * (t4 * (t8 + CLOSEDFORM_C(2.0) * cf_abs(t9)));
-    const real_t t11 = t9 * t9;
+    const real_t t11 = cf_rounded(single, one, t9 * t9);
     const int t12 = (t6 <= t7 - square_c) & (-t10 <= square_c - t11);
     const real_t t13 = y - L0;
-    const real_t square_d = r2 + t13 * t13;
+    const real_t square_d = r2 + cf_rounded(single, one, t13 * t13);
     const int t14 = t12 & (t6 <= t7 - square_d) & (-t10 <= square_d - t11);
     const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= L2) & t3)) | (!t14);
     inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
@@ -1396,8 +1402,9 @@ void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params,
         cf_rescale(3, p_degrees, -exponent, p, p_scaled);
         p = p_scaled;
     }
+    const real_t one = cf_one();
     real_t inside_real[1];
-    hybrid_five_bar_workspace_contains_kernel(params, p, inside_real);
+    hybrid_five_bar_workspace_contains_kernel(1, one, params, p, inside_real);
     for (size_t i = 0; i < 1; ++i)
         inside[i] = (uint8_t)inside_real[i];
 }
@@ -1432,6 +1439,7 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
 {
     (void)inside_stride;
     const hybrid_five_bar_params local = *params;
+    const real_t one = cf_one();
     const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
@@ -1440,7 +1448,7 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
         for (size_t i = 0; i < length; ++i) {
             const real_t p_i[3] = { p[start + i], p[p_stride + start + i], p[2 * p_stride + start + i] };
             real_t inside_i[1];
-            hybrid_five_bar_workspace_contains_kernel(&local, p_i, inside_i);
+            hybrid_five_bar_workspace_contains_kernel(0, one, &local, p_i, inside_i);
             inside_real[0][i] = inside_i[0];
         }
         CF_INDEPENDENT

@@ -42,7 +42,7 @@ OURS = ("cf_", "CF_", "closedform_", "CLOSEDFORM_")
 C_LOCALS = frozenset({
     "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
     "single", "opposite", "adjacent", "angles", "principals", "turned", "wide", "rare", "signs",
-    "k",
+    "k", "exponent", "excess", "dimensions", "params_scaled", "one",
 })  # fmt: skip
 """What the C functions call their own."""
 C_SUFFIXES = ("_i", "_stride", "_real", "_lanes")

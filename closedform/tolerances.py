@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+HIGHEST_DEGREE = 16
+"""Of the powers of a length that generated code keeps in range."""
+
 
 @dataclass(frozen=True)
 class Tolerances:
@@ -39,6 +42,11 @@ class Tolerances:
         scale, against the Arb reference.
     ulps_per_operation
         What every operation of a function adds to that: roundings add up along a long program.
+    least_exponent, most_exponent
+        Between these powers of two the powers of the size of a mechanism are kept, its largest
+        length; one of another size is computed at a size near 1.  Above there is room for numbers
+        and sums; below half of the range is left to lengths that are smaller than the largest, and
+        to what of a difference of their powers is left.
     """
 
     feasibility: float
@@ -48,7 +56,13 @@ class Tolerances:
     round_trip: float
     forward: float
     ulps: float
+    least_exponent: int
+    most_exponent: int
     ulps_per_operation: float = 0.01
+
+    def sizes(self, degree: int) -> tuple[float, float]:
+        """Between which sizes no power up to ``degree`` leaves the range."""
+        return 2.0 ** -(-self.least_exponent // degree), 2.0 ** (self.most_exponent // degree)
 
 
 DOUBLE = Tolerances(
@@ -59,6 +73,8 @@ DOUBLE = Tolerances(
     round_trip=1.1e-12,
     forward=1e-12,
     ulps=8.0,
+    least_exponent=-512,
+    most_exponent=1000,
 )
 FLOAT = Tolerances(
     feasibility=1e-6,
@@ -68,6 +84,8 @@ FLOAT = Tolerances(
     round_trip=4e-6,
     forward=4e-5,
     ulps=8.0,
+    least_exponent=-64,
+    most_exponent=112,
 )
 GENERATED = ("feasibility", "vanishing", "determined", "rotation")
 """Those that generated code holds by name."""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sizes import lengths, powers, scaled
 
 C = Path(__file__).resolve().parent.parent / "generated" / "c"
 ROBOTS = sorted(path.stem for path in C.glob("*.c") if path.stem != "extension")
@@ -149,3 +150,59 @@ def test_batch_and_single_call_agree(robot, real, build):
             assert np.nanquantile(apart, 0.98) < few_ulps, name
         if inverse:
             assert np.mean((batch[-1] == 0).any(axis=0)) > 0.5, name
+
+
+@pytest.mark.skipif(
+    not CPU.exists() or " avx2 " not in CPU.read_text(), reason="a processor without AVX2"
+)
+def test_a_mechanism_of_any_size(robot, real, build):
+    """Of one that is much larger or smaller, a call gives the same to the last bit; a batch gives
+    what a call does."""
+    library = ctypes.CDLL(str(build(robot, real)[0]))
+    header = " ".join((C / f"{robot}.h").read_text().split())
+    fields = len(re.findall(r"real_t \w+; /\*", header))
+    dimensions = np.linspace(3, 2, fields).astype(real)
+    ends = (-1000, -300, 300, 1000) if real == np.float64 else (-100, -40, 40, 120)
+    known: dict[str, np.ndarray] = {}
+    for name, arguments in re.findall(rf"void ({robot}_\w+)\(([^()]*)\);", header):
+        if name.endswith("_batch"):
+            continue
+        names = re.findall(r"(?:real_t|uint8_t) (\w+)\[", arguments)
+        plain = [np.ascontiguousarray(a[:, :60]) for a in planes_of(arguments, real, known)]
+        n_in = arguments.count("const real_t")
+        n = plain[-1].shape[1]
+
+        def evaluated(exponent: int, batch: bool = False) -> list[np.ndarray]:
+            params = np.ldexp(dimensions, exponent)
+            arrays = [
+                scaled(a, lengths(robot, label), exponent) if k < n_in else np.zeros_like(a)  # noqa: B023
+                for k, (a, label) in enumerate(zip(plain, names, strict=True))  # noqa: B023
+            ]
+            if batch:
+                strided = [x for a in arrays for x in (pointer(a), ctypes.c_size_t(n))]  # noqa: B023
+                library[f"{name}_batch"](ctypes.c_size_t(n), pointer(params), *strided)  # noqa: B023
+                return arrays[n_in:]  # noqa: B023
+            rows = [np.ascontiguousarray(a.T) for a in arrays]
+            for row in zip(*rows, strict=True):
+                library[name](pointer(params), *map(pointer, row))  # noqa: B023
+            return [r.T for r in rows[n_in:]]  # noqa: B023
+
+        single, many = evaluated(0), evaluated(0, batch=True)
+        degree = [
+            powers(b, a) if a.dtype == real else np.zeros(a.shape, np.int32)
+            for a, b in zip(single, evaluated(4), strict=True)
+        ]
+        for exponent in ends:
+            for one, batch, alone, together, d in zip(
+                evaluated(exponent), evaluated(exponent, batch=True), single, many, degree,
+                strict=True,
+            ):  # fmt: skip
+                if one.dtype == np.uint8:
+                    np.testing.assert_array_equal(one, alone, f"{name} {exponent}")
+                    np.testing.assert_array_equal(batch, together, f"{name} {exponent}")
+                    continue
+                with np.errstate(over="ignore", under="ignore"):
+                    expected, other = (np.ldexp(v, exponent * d) for v in (alone, together))
+                np.testing.assert_array_equal(one, expected, f"{name} {exponent}")
+                same = (batch == one) | (batch == other) | (np.isnan(batch) & np.isnan(one))
+                assert same.all(), (name, exponent)

@@ -14,11 +14,12 @@ from typing import Any
 from closedform import __version__
 from closedform.derivation import Derivation
 from closedform.emit.ckernel import CArray, CProgram, Emission
+from closedform.emit.csize import CSize, size_of
 from closedform.emit.docstring import comment, docstring
 from closedform.emit.text import WIDTH, banner, interface
 from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.tolerances import DOUBLE, FLOAT, GENERATED
+from closedform.tolerances import DOUBLE, FLOAT, GENERATED, HIGHEST_DEGREE
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class CFunction:
     whole: CProgram
     common: CProgram | None
     branch: CBranch | None
+    size: CSize | None
     arguments: str
     block_arguments: str
     gathered_arguments: str
@@ -78,6 +80,7 @@ def shared(robots: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
             (name.upper(), repr(getattr(DOUBLE, name)), repr(getattr(FLOAT, name)))
             for name in GENERATED
         ],
+        "sizes": [(n, DOUBLE.sizes(n), FLOAT.sizes(n)) for n in range(2, HIGHEST_DEGREE + 1)],
         "version": __version__,
     }
 
@@ -106,6 +109,7 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> C
         whole=whole.emit(),
         common=common,
         branch=branch,
+        size=size_of(derivation, program, inputs, outputs),
         arguments=", ".join(["params", *(a.name for a in arrays)]),
         block_arguments=", ".join(
             ["params", *(f"{a.name} + start, {a.name}_stride" for a in arrays)]

@@ -17,7 +17,7 @@ from closedform.emit.code import COMPARE, PRODUCT, WRAPS, Printer, Text
 from closedform.emit.text import WIDTH
 from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.lower.graph import Node, hardly_ever, strip_sign
+from closedform.lower.graph import Node, constant_of, hardly_ever, reachable, strip_sign
 from closedform.lower.program import LEAVES
 from closedform.names import C_LOCALS, in_c
 
@@ -52,6 +52,7 @@ class CPrinter(Printer):
         self.head = 0
         self._arguments = self._before_arctangents()
         self._unused_where = _unused_where(self.schedule(), lowered.roots)
+        self._deciding = set(_deciding_products(lowered))
 
     def _before_arctangents(self) -> set[int]:
         """The nodes that need no ``atan2``."""
@@ -77,6 +78,8 @@ class CPrinter(Printer):
     def render(self, node: Node) -> Text:
         if node.op == "div" and (condition := self._unused_where.get(node.id)) is not None:
             return self._quotient(node, condition)
+        if node.id in self._deciding:
+            return Text(f"cf_rounded(single, one, {super().render(node).code})")
         if not self._together(node):
             return super().render(node)
         if not self.arctangents:
@@ -146,6 +149,28 @@ def _unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, 
     return found
 
 
+def _deciding_products(lowered: Lowered) -> Iterator[int]:
+    """The products that are added to something, where a status or a condition rests on the sum.
+
+    They are rounded before the addition, as NumPy does it; a fused multiply-add could decide
+    differently at a threshold.
+    """
+    deciding = [n for n in lowered.schedule() if n.op == "status"]
+    deciding += [n for result in lowered.results if result.kind == "bool" for n in result.nodes]
+    for node in reachable(deciding):
+        if node.op in ("add", "sub"):
+            products = [n for n in map(strip_sign, node.args) if n.op == "mul"]
+            yield from (n.id for n in products if not any(map(_is_exact_factor, n.args)))
+
+
+def _is_exact_factor(node: Node) -> bool:
+    """Whether a product with it needs no rounding: a sign, or a power of two."""
+    value = constant_of(node)
+    if value is None:
+        return node.op == "sign"
+    return bool(value.is_Rational and int(abs(value.p) * value.q).bit_count() == 1)
+
+
 @dataclass(frozen=True)
 class CArray:
     """An argument or a result of a function."""
@@ -188,6 +213,7 @@ class CProgram:
     kernel_call_single: str
     kernel_call_batch: str
     copies_params: bool
+    takes_one: bool
     lanes: tuple[str, ...]
     angle_blocks: tuple[str, ...]
     loads: tuple[str, ...]
@@ -254,6 +280,7 @@ class Emission:
         self.entries = [e for e in self.places if e in read]
         self.kernel_lines = self._kernel_lines()
         self.distinguishes_single = _occurs("single", self.kernel_lines)
+        self.takes_one = _occurs("one", self.kernel_lines)
         arrays = ("sines", "cosines", "principals")
         self.trig = [name for name in arrays if _occurs(name, self.kernel_lines)]
 
@@ -263,6 +290,7 @@ class Emission:
         narrowed = tuple(o for o in self.outputs if o.kind != "CF_REAL")
         shared = ["params"] * bool(self.parameters)
         single, trig = ["const int single"] * self.distinguishes_single, self.trig
+        single += ["const real_t one"] * self.takes_one
         names = [o.name for o in self.outputs]
         return CProgram(
             full=self.full,
@@ -312,6 +340,7 @@ class Emission:
                 [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)],
             ),
             copies_params=bool(self.parameters),
+            takes_one=self.takes_one,
             lanes=tuple(self._lanes()),
             angle_blocks=tuple(self._angle_blocks()),
             loads=tuple(self._loads()),
@@ -320,8 +349,9 @@ class Emission:
         )
 
     def call(self, single: str, params: str, *arrays: Sequence[str]) -> str:
-        """The arguments of a call of the kernel; the first two where it takes them."""
-        leading = [single] * self.distinguishes_single + [params] * bool(self.parameters)
+        """The arguments of a call of the kernel; the first three where it takes them."""
+        leading = [single] * self.distinguishes_single + ["one"] * self.takes_one
+        leading += [params] * bool(self.parameters)
         return ", ".join([*leading, *(name for names in arrays for name in names)])
 
     def _kernel_lines(self) -> list[str]:

@@ -82,6 +82,7 @@ class NumpyFunction:
     outputs: str
     used: str
     common: str
+    size: str
 
 
 def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, Any]:
@@ -115,7 +116,20 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
         _arrays((r.name, r.shape, r.kind) for r in program.results),
         repr(program.parameters),
         kernels[-1].name if program.common else "",
+        _size(program),
     )
+
+
+def _size(program: Lowered) -> str:
+    """Which planes are lengths, the degrees of the results, and between which sizes they hold."""
+    if program.degrees is None or not program.is_scaled:
+        return ""
+    entries = [str(e) for a in program.inputs for e in a.entries] + list(program.parameters)
+    lengths = tuple(k for k, name in enumerate(entries) if name in program.degrees.lengths)
+    flat = [d for row in program.degrees.results for d in row]
+    degrees = tuple((k, d) for k, d in enumerate(flat) if d)
+    least, most = DOUBLE.sizes(program.degrees.highest)
+    return f"_runtime.Size({lengths!r}, {degrees!r}, {least!r}, {most!r})"
 
 
 def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:

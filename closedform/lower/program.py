@@ -23,11 +23,13 @@ from closedform.functions import (
 )
 from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.common import common_case
+from closedform.lower.degrees import NUMBERS, Degrees, degrees
 from closedform.lower.graph import Graph, Node, reachable
 from closedform.lower.ranges import Ranges, UnboundedError
 from closedform.lower.roots import fewer_roots
 from closedform.lower.share import share
 from closedform.lower.turns import Turns
+from closedform.tolerances import HIGHEST_DEGREE
 
 LEAVES = frozenset({
     "const", "input", "nan", "tolerance", "true", "false", "sin", "cos", "principal",
@@ -61,7 +63,8 @@ class Lowered:
     preferred names (from the derivation) to nodes.  ``common`` is the program where nothing
     vanishes, if that is much shorter: its last result, ``rare``, is whether something does.
     ``branch`` is one branch of that, if it is short enough to be taken several times: its last
-    input is the signs of the branch.
+    input is the signs of the branch.  ``degrees`` tells how values go with the size of the
+    mechanism, where they go with a power of it.
     """
 
     name: str
@@ -73,6 +76,7 @@ class Lowered:
     names: Mapping[int, str]
     common: Lowered | None = None
     branch: Lowered | None = None
+    degrees: Degrees | None = None
 
     @property
     def roots(self) -> list[Node]:
@@ -97,6 +101,11 @@ class Lowered:
         return {k: counts[k] for k in sorted(counts) if counts[k]}
 
     @property
+    def is_scaled(self) -> bool:
+        """Whether powers of the size of the mechanism may leave the range of a type."""
+        return self.degrees is not None and 1 < self.degrees.highest <= HIGHEST_DEGREE
+
+    @property
     def length(self) -> int:
         """How many operators there are in all."""
         return sum(self.operations().values())
@@ -107,11 +116,24 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
     entries = Turns.of(function, derivation).entries()
     whole, common = _lower(function, derivation, entries, list(function.cases()))
     if common.length > (1 - SPARED) * whole.length:
-        return whole
+        return _with_degrees(whole, derivation)
     common = replace(common, parameters=whole.parameters)
     branch = _one_branch(function, derivation, entries) if function.branches else None
     short = branch is not None and branch.length < ALONE * common.length
-    return replace(whole, common=common, branch=branch if short else None)
+    whole = replace(whole, common=common, branch=branch if short else None)
+    return _with_degrees(whole, derivation)
+
+
+def _with_degrees(program: Lowered, derivation: Derivation) -> Lowered:
+    """The program and its degrees, the highest of which is also that of the common case."""
+    known = {j.name: int(j.kind == "prismatic") for j in derivation.joints}
+    known |= {p.name: 0 for p in derivation.parameters if p.unit in NUMBERS}
+    preferred = [p.name for p in derivation.parameters if p.name not in known]
+    results = [r.nodes for p in (program, program.common) if p for r in p.results]
+    found = degrees(results, known, preferred)
+    if found:
+        found = replace(found, results=found.results[: len(program.results)])
+    return replace(program, degrees=found)
 
 
 def _one_branch(

@@ -2,8 +2,8 @@
 
 ``sqrt(a) sqrt(b)`` is ``sqrt(a b)``, and twice ``atan2(sqrt(a), sqrt(b))`` is
 ``atan2(2 sqrt(a b), b - a)``, where neither a nor b is negative; ``atan2(y / d, x / d)`` is
-``atan2(y, x)`` where d is not.  The products have up to four times the exponent of a length, which
-leaves lengths from 1e-73 to 1e77, in single precision from 1e-7 to 1e9.
+``atan2(y, x)`` where d is not.  The products have up to four times the exponent of a length;
+lengths with which they would leave the range are multiplied by a power of two first.
 """
 
 from __future__ import annotations

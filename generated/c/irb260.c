@@ -685,10 +685,40 @@ CLOSEDFORM_DISPATCHED
 void irb260_determinant(const irb260_params *params, const real_t q[4],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 3 };
+    irb260_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l3)), cf_max(cf_abs(params->l4), cf_abs(params->l6)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l3 = CF_LIBM(ldexp)(params->l3, -exponent);
+        params_scaled.l4 = CF_LIBM(ldexp)(params->l4, -exponent);
+        params_scaled.l6 = CF_LIBM(ldexp)(params->l6, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[2], q[1] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     irb260_determinant_kernel(params, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void irb260_determinant_other_sizes(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[4];
+        for (size_t k = 0; k < 4; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        irb260_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -698,6 +728,11 @@ void irb260_determinant_batch(size_t n, const irb260_params *params,
 {
     (void)det_stride;
     const irb260_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l3)), cf_max(cf_abs(params->l4), cf_abs(params->l6)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
+        irb260_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -828,10 +863,10 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params,
     }
 }
 
-CF_INLINE void irb260_ik_kernel(const int single, const irb260_params *params,
-    const real_t x[4], const real_t *sines,
-    const real_t *cosines, real_t q[16],
-    real_t status[4])
+CF_INLINE void irb260_ik_kernel(const int single, const real_t one,
+    const irb260_params *params, const real_t x[4],
+    const real_t *sines, const real_t *cosines,
+    real_t q[16], real_t status[4])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -845,64 +880,65 @@ CF_INLINE void irb260_ik_kernel(const int single, const irb260_params *params,
     const real_t psi = x[3];
     const real_t s_psi = sines[0];
     const real_t c_psi = cosines[0];
-    const real_t r = cf_sqrt(px * px + py * py);
-    const real_t t1 = l3 + l4;
-    const real_t t2 = l1 + l6;
-    const real_t t3 = l2 + l5 + t1 + t2;
-    const real_t t4 = CLOSEDFORM_VANISHING * t3;
-    const int on_axis = r <= t4;
+    const real_t t1 = cf_rounded(single, one, px * px) + cf_rounded(single, one, py * py);
+    const real_t r = cf_sqrt(t1);
+    const real_t t2 = l3 + l4;
+    const real_t t3 = l1 + l6;
+    const real_t t4 = l2 + l5 + t2 + t3;
+    const real_t t5 = CLOSEDFORM_VANISHING * t4;
+    const int on_axis = r <= t5;
     const real_t s_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(0.0), px);
     const real_t c_turret = cf_select(on_axis, CLOSEDFORM_C(1.0), py);
-    const int t5 = cf_nought(l1) + cf_nought(l2) + cf_nought(l3) + cf_nought(l4) + cf_nought(l5) + cf_nought(l6) == 0;
-    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t7 = t6 & (CLOSEDFORM_C(0.0) <= l3) & (CLOSEDFORM_C(0.0) <= l4);
-    const int t8 = t7 & (CLOSEDFORM_C(0.0) <= l5) & (CLOSEDFORM_C(0.0) <= l6);
-    const int t9 = cf_nought(px) + cf_nought(py) + cf_nought(pz) + cf_nought(psi) == 0;
-    const int invalid = !(t8 & t9);
-    const real_t t10 = -(CLOSEDFORM_FEASIBILITY * t3);
+    const int t6 = cf_nought(l1) + cf_nought(l2) + cf_nought(l3) + cf_nought(l4) + cf_nought(l5) + cf_nought(l6) == 0;
+    const int t7 = t6 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t8 = t7 & (CLOSEDFORM_C(0.0) <= l3) & (CLOSEDFORM_C(0.0) <= l4);
+    const int t9 = t8 & (CLOSEDFORM_C(0.0) <= l5) & (CLOSEDFORM_C(0.0) <= l6);
+    const int t10 = cf_nought(px) + cf_nought(py) + cf_nought(pz) + cf_nought(psi) == 0;
+    const int invalid = !(t9 & t10);
+    const real_t t11 = -(CLOSEDFORM_FEASIBILITY * t4);
     const real_t h = pz - l2 + l5;
-    const real_t t11 = h * h;
-    const real_t t12 = r - t2;
-    const real_t reach = cf_sqrt(t11 + t12 * t12);
-    const real_t t13 = t1 - reach;
-    const real_t t14 = l3 - l4;
-    const real_t t15 = t14 + reach;
-    const real_t t16 = reach - t14;
-    const int unreachable = !((t10 <= t13) & (t10 <= t15) & (t10 <= t16));
-    const real_t t17 = cf_poison(single, invalid | unreachable);
-    const int folded = reach <= t4;
-    const int no_link = l3 * l4 <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const real_t A = cf_max(t13, CLOSEDFORM_C(0.0));
-    const real_t C = cf_max(t16, CLOSEDFORM_C(0.0));
-    const real_t t18 = A * C;
-    const real_t S = t1 + reach;
-    const real_t B = cf_max(t15, CLOSEDFORM_C(0.0));
-    const real_t t19 = S * B;
-    const real_t t20 = A * S;
-    const real_t t21 = C * B;
-    const real_t t22 = c_psi * s_turret_back_elbow_up;
-    const real_t t23 = s_psi * s_turret_back_elbow_up;
+    const real_t t12 = cf_rounded(single, one, h * h);
+    const real_t t13 = r - t3;
+    const real_t reach = cf_sqrt(t12 + cf_rounded(single, one, t13 * t13));
+    const real_t t14 = t2 - reach;
+    const real_t t15 = l3 - l4;
+    const real_t t16 = t15 + reach;
+    const real_t t17 = reach - t15;
+    const int unreachable = !((t11 <= t14) & (t11 <= t16) & (t11 <= t17));
+    const real_t t18 = cf_poison(single, invalid | unreachable);
+    const int folded = reach <= t5;
+    const int no_link = l3 * l4 <= CLOSEDFORM_VANISHING * (t2 * t2);
+    const real_t A = cf_max(t14, CLOSEDFORM_C(0.0));
+    const real_t C = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t t19 = A * C;
+    const real_t S = t2 + reach;
+    const real_t B = cf_max(t16, CLOSEDFORM_C(0.0));
+    const real_t t20 = S * B;
+    const real_t t21 = A * S;
+    const real_t t22 = C * B;
+    const real_t t23 = c_psi * s_turret_back_elbow_up;
+    const real_t t24 = s_psi * s_turret_back_elbow_up;
     const real_t c_turret_back_elbow_up = cf_select(on_axis, CLOSEDFORM_C(1.0), -py);
-    const real_t t24 = r + t2;
-    const real_t reach_back_elbow_up = cf_sqrt(t11 + t24 * t24);
-    const real_t t25 = t1 - reach_back_elbow_up;
-    const real_t t26 = t14 + reach_back_elbow_up;
-    const real_t t27 = reach_back_elbow_up - t14;
-    const int unreachable_2 = !((t10 <= t25) & (t10 <= t26) & (t10 <= t27));
-    const real_t t28 = cf_poison(single, invalid | unreachable_2);
-    const int folded_back_elbow_up = reach_back_elbow_up <= t4;
-    const real_t A_back_elbow_up = cf_max(t25, CLOSEDFORM_C(0.0));
-    const real_t C_back_elbow_up = cf_max(t27, CLOSEDFORM_C(0.0));
-    const real_t t29 = A_back_elbow_up * C_back_elbow_up;
-    const real_t S_back_elbow_up = t1 + reach_back_elbow_up;
-    const real_t B_back_elbow_up = cf_max(t26, CLOSEDFORM_C(0.0));
-    const real_t t30 = S_back_elbow_up * B_back_elbow_up;
-    const real_t t31 = A_back_elbow_up * S_back_elbow_up;
-    const real_t t32 = C_back_elbow_up * B_back_elbow_up;
-    const real_t t33 = cf_status(single, invalid, unreachable, on_axis | folded | no_link);
-    const real_t t34 = cf_status(single, invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
-    const real_t opposite[16] = { s_turret_back_elbow_up, -t12, CLOSEDFORM_C(2.0) * cf_sqrt(t18 * t19), CLOSEDFORM_C(2.0) * cf_sqrt(t20 * t21), s_psi * c_turret + t22, s_turret_back_elbow_up, t24, CLOSEDFORM_C(2.0) * cf_sqrt(t29 * t30), CLOSEDFORM_C(2.0) * cf_sqrt(t31 * t32), t22 - s_psi * c_turret_back_elbow_up };
-    const real_t adjacent[16] = { c_turret, h, t19 - t18, t21 - t20, c_psi * c_turret - t23, c_turret_back_elbow_up, h, t30 - t29, t32 - t31, t23 + c_psi * c_turret_back_elbow_up };
+    const real_t t25 = r + t3;
+    const real_t reach_back_elbow_up = cf_sqrt(t12 + cf_rounded(single, one, t25 * t25));
+    const real_t t26 = t2 - reach_back_elbow_up;
+    const real_t t27 = t15 + reach_back_elbow_up;
+    const real_t t28 = reach_back_elbow_up - t15;
+    const int unreachable_2 = !((t11 <= t26) & (t11 <= t27) & (t11 <= t28));
+    const real_t t29 = cf_poison(single, invalid | unreachable_2);
+    const int folded_back_elbow_up = reach_back_elbow_up <= t5;
+    const real_t A_back_elbow_up = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t C_back_elbow_up = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t30 = A_back_elbow_up * C_back_elbow_up;
+    const real_t S_back_elbow_up = t2 + reach_back_elbow_up;
+    const real_t B_back_elbow_up = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t31 = S_back_elbow_up * B_back_elbow_up;
+    const real_t t32 = A_back_elbow_up * S_back_elbow_up;
+    const real_t t33 = C_back_elbow_up * B_back_elbow_up;
+    const real_t t34 = cf_status(single, invalid, unreachable, on_axis | folded | no_link);
+    const real_t t35 = cf_status(single, invalid, unreachable_2, on_axis | folded_back_elbow_up | no_link);
+    const real_t opposite[16] = { s_turret_back_elbow_up, -t13, CLOSEDFORM_C(2.0) * cf_sqrt(t19 * t20), CLOSEDFORM_C(2.0) * cf_sqrt(t21 * t22), s_psi * c_turret + t23, s_turret_back_elbow_up, t25, CLOSEDFORM_C(2.0) * cf_sqrt(t30 * t31), CLOSEDFORM_C(2.0) * cf_sqrt(t32 * t33), t23 - s_psi * c_turret_back_elbow_up };
+    const real_t adjacent[16] = { c_turret, h, t20 - t19, t22 - t21, c_psi * c_turret - t24, c_turret_back_elbow_up, h, t31 - t30, t33 - t32, t24 + c_psi * c_turret_back_elbow_up };
     real_t angles[16];
     if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);
@@ -918,53 +954,98 @@ CF_INLINE void irb260_ik_kernel(const int single, const irb260_params *params,
         angles[8] = cf_atan2(opposite[8], adjacent[8]);
         angles[9] = cf_atan2(opposite[9], adjacent[9]);
     }
-    const real_t t35 = cf_wrap_cut(-angles[0]) + t17;
-    const real_t t36 = cf_select(no_link, CLOSEDFORM_C(0.0), angles[2]);
-    const real_t t37 = cf_select(folded, CLOSEDFORM_C(0.0), angles[1] + t36);
-    const real_t t38 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - angles[3]);
-    const real_t t39 = cf_wrap_cut(angles[4]) + t17;
-    const real_t t40 = cf_select(folded, CLOSEDFORM_C(0.0), angles[1] - t36);
-    const real_t t41 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + angles[3]);
-    const real_t t42 = cf_wrap_cut(angles[5]) + t28;
-    const real_t t43 = cf_select(no_link, CLOSEDFORM_C(0.0), angles[7]);
-    const real_t t44 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), angles[6] + t43);
-    const real_t t45 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - angles[8]);
-    const real_t t46 = cf_wrap_cut(-angles[9]) + t28;
-    const real_t t47 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), angles[6] - t43);
-    const real_t t48 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + angles[8]);
-    q[0] = t35;
-    q[1] = cf_wrap(-t37) + t17;
-    q[2] = -t38 + t17;
-    q[3] = t39;
-    q[4] = t35;
-    q[5] = cf_wrap(-t40) + t17;
-    q[6] = cf_wrap(-t41) + t17;
-    q[7] = t39;
-    q[8] = t42;
-    q[9] = cf_wrap(-t44) + t28;
-    q[10] = -t45 + t28;
-    q[11] = t46;
-    q[12] = t42;
-    q[13] = cf_wrap_cut(-t47) + t28;
-    q[14] = cf_wrap(-t48) + t28;
-    q[15] = t46;
-    status[0] = t33;
-    status[1] = t33;
-    status[2] = t34;
-    status[3] = t34;
+    const real_t t36 = cf_wrap_cut(-angles[0]) + t18;
+    const real_t t37 = cf_select(no_link, CLOSEDFORM_C(0.0), angles[2]);
+    const real_t t38 = cf_select(folded, CLOSEDFORM_C(0.0), angles[1] + t37);
+    const real_t t39 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - angles[3]);
+    const real_t t40 = cf_wrap_cut(angles[4]) + t18;
+    const real_t t41 = cf_select(folded, CLOSEDFORM_C(0.0), angles[1] - t37);
+    const real_t t42 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + angles[3]);
+    const real_t t43 = cf_wrap_cut(angles[5]) + t29;
+    const real_t t44 = cf_select(no_link, CLOSEDFORM_C(0.0), angles[7]);
+    const real_t t45 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), angles[6] + t44);
+    const real_t t46 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) - angles[8]);
+    const real_t t47 = cf_wrap_cut(-angles[9]) + t29;
+    const real_t t48 = cf_select(folded_back_elbow_up, CLOSEDFORM_C(0.0), angles[6] - t44);
+    const real_t t49 = cf_select(no_link, CLOSEDFORM_C(1.5707963267948966), CLOSEDFORM_C(1.5707963267948966) + angles[8]);
+    q[0] = t36;
+    q[1] = cf_wrap(-t38) + t18;
+    q[2] = -t39 + t18;
+    q[3] = t40;
+    q[4] = t36;
+    q[5] = cf_wrap(-t41) + t18;
+    q[6] = cf_wrap(-t42) + t18;
+    q[7] = t40;
+    q[8] = t43;
+    q[9] = cf_wrap(-t45) + t29;
+    q[10] = -t46 + t29;
+    q[11] = t47;
+    q[12] = t43;
+    q[13] = cf_wrap_cut(-t48) + t29;
+    q[14] = cf_wrap(-t49) + t29;
+    q[15] = t47;
+    status[0] = t34;
+    status[1] = t34;
+    status[2] = t35;
+    status[3] = t35;
 }
 
 CLOSEDFORM_DISPATCHED
 void irb260_ik(const irb260_params *params, const real_t x[4],
     real_t q[16], uint8_t status[4])
 {
+    static const signed char x_degrees[4] = { 1, 1, 1, 0 };
+    real_t x_scaled[4];
+    irb260_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_max(cf_abs(params->l5), cf_abs(params->l6)), cf_max(cf_abs(x[0]), cf_abs(x[1])))), cf_abs(x[2]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params_scaled.l3 = CF_LIBM(ldexp)(params->l3, -exponent);
+        params_scaled.l4 = CF_LIBM(ldexp)(params->l4, -exponent);
+        params_scaled.l5 = CF_LIBM(ldexp)(params->l5, -exponent);
+        params_scaled.l6 = CF_LIBM(ldexp)(params->l6, -exponent);
+        params = &params_scaled;
+        cf_rescale(4, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
+    const real_t one = cf_one();
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { x[3] };
     cf_sincos_lanes(1, lanes, sines, cosines);
     real_t status_real[4];
-    irb260_ik_kernel(1, params, x, sines, cosines, q, status_real);
+    irb260_ik_kernel(1, one, params, x, sines, cosines, q, status_real);
     for (size_t i = 0; i < 4; ++i)
         status[i] = (uint8_t)status_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word irb260_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void irb260_ik_other_sizes(size_t n, const real_t dimensions,
+    const irb260_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(irb260_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[4];
+        for (size_t k = 0; k < 4; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[16];
+        uint8_t status_i[4];
+        irb260_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 16; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 4; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -974,6 +1055,8 @@ void irb260_ik_batch(size_t n, const irb260_params *params,
     uint8_t *status, size_t status_stride)
 {
     const irb260_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_abs(params->l5), cf_abs(params->l6)));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -986,7 +1069,7 @@ void irb260_ik_batch(size_t n, const irb260_params *params,
             const real_t cosines_i[1] = { cosines[0][i] };
             real_t q_i[16];
             real_t status_i[4];
-            irb260_ik_kernel(0, &local, x_i, sines_i, cosines_i, q_i, status_i);
+            irb260_ik_kernel(0, one, &local, x_i, sines_i, cosines_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -1020,6 +1103,11 @@ void irb260_ik_batch(size_t n, const irb260_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[3 * status_stride + start + i] = (uint8_t)status_real[3][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= irb260_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            irb260_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 
@@ -1092,7 +1180,52 @@ CLOSEDFORM_DISPATCHED
 void irb260_workspace_margin(const irb260_params *params, const real_t p[3],
     real_t margin[1])
 {
+    static const signed char p_degrees[3] = { 1, 1, 1 };
+    static const signed char margin_degrees[1] = { 1 };
+    real_t p_scaled[3];
+    irb260_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_max(cf_abs(params->l5), cf_abs(params->l6)), cf_max(cf_abs(p[0]), cf_abs(p[1])))), cf_abs(p[2]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params_scaled.l3 = CF_LIBM(ldexp)(params->l3, -exponent);
+        params_scaled.l4 = CF_LIBM(ldexp)(params->l4, -exponent);
+        params_scaled.l5 = CF_LIBM(ldexp)(params->l5, -exponent);
+        params_scaled.l6 = CF_LIBM(ldexp)(params->l6, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, p_degrees, -exponent, p, p_scaled);
+        p = p_scaled;
+    }
     irb260_workspace_margin_kernel(params, p, margin);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, margin_degrees, exponent, margin, margin);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word irb260_workspace_margin_excess(const real_t dimensions,
+    const real_t *p, size_t p_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(p[i])), cf_max(cf_abs(p[p_stride + i]), cf_abs(p[2 * p_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void irb260_workspace_margin_other_sizes(size_t n, const real_t dimensions,
+    const irb260_params *params,
+    const real_t *p, size_t p_stride,
+    real_t *margin, size_t margin_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(irb260_workspace_margin_excess(dimensions, p, p_stride, i) & CF_SIGN)) continue;
+        real_t p_i[3];
+        for (size_t k = 0; k < 3; ++k) p_i[k] = p[k * p_stride + i];
+        real_t margin_i[1];
+        irb260_workspace_margin(params, p_i, margin_i);
+        for (size_t k = 0; k < 1; ++k) margin[k * margin_stride + i] = margin_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1102,6 +1235,7 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params,
 {
     (void)margin_stride;
     const irb260_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_abs(params->l5), cf_abs(params->l6)));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -1111,10 +1245,16 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params,
             irb260_workspace_margin_kernel(&local, p_i, margin_i);
             margin[start + i] = margin_i[0];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= irb260_workspace_margin_excess(dimensions, p + start, p_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            irb260_workspace_margin_other_sizes(length, dimensions, params, p + start, p_stride, margin + start, margin_stride);
     }
 }
 
-CF_INLINE void irb260_workspace_contains_kernel(const irb260_params *params, const real_t p[3],
+CF_INLINE void irb260_workspace_contains_kernel(const int single, const real_t one,
+    const irb260_params *params, const real_t p[3],
     real_t inside[1])
 {
     const real_t l1 = params->l1;
@@ -1135,25 +1275,68 @@ CF_INLINE void irb260_workspace_contains_kernel(const irb260_params *params, con
     const real_t t7 = l3 + l4;
     const real_t t8 = -(CLOSEDFORM_FEASIBILITY * (l2 + l5 + t6 + t7));
     const real_t h = pz - l2 + l5;
-    const real_t t9 = h * h;
-    const real_t r = cf_sqrt(px * px + py * py);
-    const real_t t10 = r + t6;
-    const real_t reach_back = cf_sqrt(t9 + t10 * t10);
-    const real_t t11 = cf_abs(l3 - l4);
-    const real_t t12 = r - t6;
-    const real_t reach_front = cf_sqrt(t9 + t12 * t12);
-    const real_t t13 = cf_max(cf_min(reach_back - t11, t7 - reach_back), cf_min(reach_front - t11, t7 - reach_front));
-    inside[0] = (!((!(t4 & t5)) | (!(t8 <= t13)))) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t9 = cf_rounded(single, one, h * h);
+    const real_t t10 = cf_rounded(single, one, px * px) + cf_rounded(single, one, py * py);
+    const real_t r = cf_sqrt(t10);
+    const real_t t11 = r + t6;
+    const real_t reach_back = cf_sqrt(t9 + cf_rounded(single, one, t11 * t11));
+    const real_t t12 = cf_abs(l3 - l4);
+    const real_t t13 = r - t6;
+    const real_t reach_front = cf_sqrt(t9 + cf_rounded(single, one, t13 * t13));
+    const real_t t14 = cf_max(cf_min(reach_back - t12, t7 - reach_back), cf_min(reach_front - t12, t7 - reach_front));
+    inside[0] = (!((!(t4 & t5)) | (!(t8 <= t14)))) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CLOSEDFORM_DISPATCHED
 void irb260_workspace_contains(const irb260_params *params, const real_t p[3],
     uint8_t inside[1])
 {
+    static const signed char p_degrees[3] = { 1, 1, 1 };
+    real_t p_scaled[3];
+    irb260_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_max(cf_abs(params->l5), cf_abs(params->l6)), cf_max(cf_abs(p[0]), cf_abs(p[1])))), cf_abs(p[2]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params_scaled.l3 = CF_LIBM(ldexp)(params->l3, -exponent);
+        params_scaled.l4 = CF_LIBM(ldexp)(params->l4, -exponent);
+        params_scaled.l5 = CF_LIBM(ldexp)(params->l5, -exponent);
+        params_scaled.l6 = CF_LIBM(ldexp)(params->l6, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, p_degrees, -exponent, p, p_scaled);
+        p = p_scaled;
+    }
+    const real_t one = cf_one();
     real_t inside_real[1];
-    irb260_workspace_contains_kernel(params, p, inside_real);
+    irb260_workspace_contains_kernel(1, one, params, p, inside_real);
     for (size_t i = 0; i < 1; ++i)
         inside[i] = (uint8_t)inside_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word irb260_workspace_contains_excess(const real_t dimensions,
+    const real_t *p, size_t p_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(p[i])), cf_max(cf_abs(p[p_stride + i]), cf_abs(p[2 * p_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void irb260_workspace_contains_other_sizes(size_t n, const real_t dimensions,
+    const irb260_params *params,
+    const real_t *p, size_t p_stride,
+    uint8_t *inside, size_t inside_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(irb260_workspace_contains_excess(dimensions, p, p_stride, i) & CF_SIGN)) continue;
+        real_t p_i[3];
+        for (size_t k = 0; k < 3; ++k) p_i[k] = p[k * p_stride + i];
+        uint8_t inside_i[1];
+        irb260_workspace_contains(params, p_i, inside_i);
+        for (size_t k = 0; k < 1; ++k) inside[k * inside_stride + i] = inside_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1163,6 +1346,8 @@ void irb260_workspace_contains_batch(size_t n, const irb260_params *params,
 {
     (void)inside_stride;
     const irb260_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->l3), cf_abs(params->l4))), cf_max(cf_abs(params->l5), cf_abs(params->l6)));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t inside_real[1][CLOSEDFORM_BLOCK];
@@ -1170,11 +1355,16 @@ void irb260_workspace_contains_batch(size_t n, const irb260_params *params,
         for (size_t i = 0; i < length; ++i) {
             const real_t p_i[3] = { p[start + i], p[p_stride + start + i], p[2 * p_stride + start + i] };
             real_t inside_i[1];
-            irb260_workspace_contains_kernel(&local, p_i, inside_i);
+            irb260_workspace_contains_kernel(0, one, &local, p_i, inside_i);
             inside_real[0][i] = inside_i[0];
         }
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             inside[start + i] = (uint8_t)inside_real[0][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= irb260_workspace_contains_excess(dimensions, p + start, p_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            irb260_workspace_contains_other_sizes(length, dimensions, params, p + start, p_stride, inside + start, inside_stride);
     }
 }

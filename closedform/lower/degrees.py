@@ -1,0 +1,169 @@
+"""How the values of a program go with the size of the mechanism.
+
+If all lengths double, an angle stays, a distance doubles and an area becomes four times as large:
+their degrees are 0, 1 and 2.  The degrees follow from the program itself, for what is added or
+compared has one degree, and what a sine is taken of has degree 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import ceil
+from typing import TypeAlias
+
+from closedform.lower.graph import BOOLEAN, Node, constant_of, reachable
+
+NUMBERS = frozenset({"", "-", "1", "deg", "degree", "degrees", "rad", "radian", "radians"})
+"""The units of parameters that are not lengths."""
+
+Degree: TypeAlias = "dict[str, Fraction]"
+"""A sum of the unknown degrees of inputs; the name ``""`` stands for the number 1."""
+
+ONE = Fraction(1)
+
+
+class MixedError(ValueError):
+    """Values of different degrees are added or compared."""
+
+
+@dataclass(frozen=True)
+class Degrees:
+    """The inputs that are lengths, the degree of every entry of the results, and the highest.
+
+    The highest counts the values in between too, and takes a negative degree without its sign.
+    """
+
+    lengths: frozenset[str]
+    results: tuple[tuple[int, ...], ...]
+    highest: int
+
+
+def degrees(
+    results: Sequence[Sequence[Node]], known: Mapping[str, int], preferred: Sequence[str]
+) -> Degrees | None:
+    """The degrees of a program, or None where it has none, as with a constant among its lengths.
+
+    ``known`` are degrees of inputs.  Those ``preferred`` are lengths unless something speaks
+    against it, the others only if something speaks for it.
+    """
+    roots = [n for nodes in results for n in nodes]
+    nodes = list(reachable(roots))
+    inputs = [str(n.payload) for n in nodes if n.op == "input"]
+    system = _System()
+    try:
+        for name in inputs:
+            if name in known:
+                system.equate({name: ONE}, {"": Fraction(known[name])})
+        found = _of_nodes(nodes, system)
+    except MixedError:
+        return None
+    for name in [name for name in preferred if name in inputs]:
+        system.prefer(name, 1)
+    for name in inputs:
+        system.prefer(name, 0)
+    taken = {name: system.value({name: ONE}) for name in inputs}
+    listed = [[system.value(found[n.id]) for n in row] for row in results]
+    if any(d not in (0, 1) for d in taken.values()) or any(
+        d.denominator != 1 for row in listed for d in row
+    ):
+        return None
+    return Degrees(
+        frozenset(name for name, d in taken.items() if d == 1),
+        tuple(tuple(int(d) for d in row) for row in listed),
+        ceil(max((abs(system.value(d)) for d in found.values()), default=0)),
+    )
+
+
+@dataclass
+class _System:
+    """Linear equations between unknown degrees, solved one after the other."""
+
+    solved: dict[str, Degree] = field(default_factory=dict)
+
+    def reduced(self, degree: Degree) -> Degree:
+        """The same in terms of what is still free."""
+        result: Degree = {}
+        for name, factor in degree.items():
+            for other, f in self.solved.get(name, {name: ONE}).items():
+                result[other] = result.get(other, Fraction(0)) + factor * f
+        return {name: f for name, f in result.items() if f}
+
+    def equate(self, a: Degree, b: Degree) -> None:
+        if a == b:
+            return
+        difference = self.reduced(_combined(a, b, -1))
+        free = next((name for name in difference if name), None)
+        if free is None:
+            if difference:
+                raise MixedError
+            return
+        factor = difference.pop(free)
+        self.solved[free] = {name: -f / factor for name, f in difference.items()}
+        self.solved = {name: self.reduced(value) for name, value in self.solved.items()}
+
+    def prefer(self, name: str, degree: int) -> None:
+        """Give an input this degree if it may have any."""
+        if any(self.reduced({name: ONE})):
+            self.equate({name: ONE}, {"": Fraction(degree)})
+
+    def value(self, degree: Degree | None) -> Fraction:
+        """The number that a degree is, once nothing is free; that of zero counts as 0."""
+        return self.reduced(degree or {}).get("", Fraction(0))
+
+
+def _combined(a: Degree, b: Degree, factor: int) -> Degree:
+    """``a + factor * b``."""
+    names = dict.fromkeys([*a, *b])
+    total = {n: a.get(n, Fraction(0)) + factor * b.get(n, Fraction(0)) for n in names}
+    return {name: f for name, f in total.items() if f}
+
+
+def _of_nodes(nodes: Iterable[Node], system: _System) -> dict[int, Degree | None]:
+    """The degree of every node; None is that of zero and of NaN, which have any."""
+    found: dict[int, Degree | None] = {}
+
+    def one_degree(args: Iterable[Node]) -> Degree | None:
+        listed = [d for n in args if (d := found[n.id]) is not None]
+        for other in listed[1:]:
+            system.equate(listed[0], other)
+        return listed[0] if listed else None
+
+    for node in nodes:
+        args = node.args
+        degree: Degree | None = None
+        match node.op:
+            case "const":
+                degree = None if node.payload == 0 else {}
+            case "nan" | "poison":
+                pass
+            case "input":
+                degree = {str(node.payload): ONE}
+            case "add" | "sub" | "max" | "min" | "neg" | "abs":
+                degree = one_degree(args)
+            case "lt" | "le" | "eq":
+                one_degree(args)
+            case "mul" | "div":
+                a, b = (found[n.id] for n in args)
+                if a is not None and b is not None:
+                    degree = _combined(a, b, 1 if node.op == "mul" else -1)
+            case "sqrt":
+                if (a := found[args[0].id]) is not None:
+                    degree = {name: f / 2 for name, f in a.items()}
+            case "select":
+                # A constant in the place of a length chooses a direction, where any would do.
+                degree = one_degree([n for n in args[1:] if constant_of(n) is None] or args[1:])
+            case "atan2":
+                one_degree(args)
+                degree = {}
+            case "sin" | "cos" | "principal" | "wrap" | "wrap_cut":
+                if (a := found[args[0].id]) is not None:
+                    system.equate(a, {})
+                degree = {}
+            case "tolerance" | "sign" | "status":
+                degree = {}
+            case op if op not in BOOLEAN:
+                raise TypeError(f"the degree of {op} is not known")
+        found[node.id] = degree
+    return found

@@ -1,0 +1,36 @@
+"""Which coordinates of a mechanism are lengths, for the tests that scale all of them."""
+
+import numpy as np
+
+LENGTHS = {
+    "planar_2r": {"x": [0, 1]},
+    "rpr_planar": {"x": [0, 1], "q": [0, 1]},
+    "scara": {"x": [0, 1, 2], "q": [2]},
+    "stanford_arm": {"q": [2]},
+    "irb260": {"x": [0, 1, 2], "p": [0, 1, 2]},
+    "hybrid_five_bar": {"x": [0, 1, 2], "p": [0, 1, 2]},
+    "h6ar": {"x": [0, 1, 2]},
+    "h6ar_loop_closed": {"x": [0, 1, 2]},
+}
+
+
+def lengths(robot: str, name: str) -> list[int]:
+    """The places of lengths in an input of this name, its entries counted through."""
+    return [3, 7, 11] if name == "T" else LENGTHS.get(robot, {}).get(name, [])
+
+
+def scaled(planes: np.ndarray, places: list[int], exponent: int) -> np.ndarray:
+    """Entries by planes, those of the places times a power of two."""
+    result = planes.copy()
+    result[places] = np.ldexp(planes[places], exponent)
+    return result
+
+
+def powers(larger: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Of every entry, with which power of the lengths it goes, as 16 times the lengths show."""
+    with np.errstate(all="ignore"):
+        found = np.log2(larger / values) / 4
+    plain = np.isnan(values) | np.isinf(values) | (values == 0)
+    np.testing.assert_array_equal(np.isnan(larger), np.isnan(values))
+    assert np.isin(found[~plain], range(-1, 4)).all()
+    return np.where(plain, 0, found).astype(np.int32)

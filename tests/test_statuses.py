@@ -1,0 +1,61 @@
+"""NumPy, a call of the C and a batch of it give every branch the same status, at thresholds too."""
+
+import importlib
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+POSTURES = 20_000
+
+
+def small(random: np.random.Generator) -> np.ndarray:
+    """Distances from a threshold, of either sign and any size up to 1e-5, and zero."""
+    size = 10.0 ** random.uniform(-17, -5, POSTURES)
+    return random.choice([-1, 0, 1, 1], POSTURES) * size
+
+
+def near(joint: int, values: tuple[float, ...]) -> Callable[..., None]:
+    def at_threshold(q: np.ndarray, random: np.random.Generator) -> None:
+        q[:, joint] = random.choice(values, POSTURES) + small(random)
+
+    return at_threshold
+
+
+def near_shoulder(q: np.ndarray, random: np.random.Generator) -> None:
+    """The wrist of a Puma on the axis of its waist, or its arm at full stretch."""
+    near(4, (0.0,))(q, random)
+    q[: POSTURES // 2, 2] = np.arctan2(0.4318, -0.0203) - np.pi / 2 + small(random)[: POSTURES // 2]
+
+
+def near_edges(q: np.ndarray, random: np.random.Generator) -> None:
+    near(2, (0.0,))(q, random)
+    near(4, (0.0, np.pi))(q, random)
+
+
+THRESHOLDS = {
+    "planar_2r": [near(1, (0.0, np.pi))],
+    "scara": [near(1, (0.0, np.pi))],
+    "spherical_wrist": [near(1, (0.0, np.pi))],
+    "irb260": [near(2, (-np.pi / 2, np.pi / 2))],
+    "puma560": [near(4, (0.0, np.pi)), near_shoulder],
+    "stanford_arm": [near(2, (0.0,)), near(4, (0.0, np.pi))],
+    "ur_arm": [near(4, (0.0, np.pi)), near_edges],
+    "hybrid_five_bar": [near(1, (0.0, np.pi)), near(2, (0.0, np.pi))],
+}
+
+
+@pytest.mark.parametrize("robot", THRESHOLDS)
+def test_statuses_at_thresholds(robot: str) -> None:
+    source = importlib.import_module(f"closedform.generated.numpy.{robot}")
+    compiled = importlib.import_module(f"closedform.generated.c.{robot}")
+    for seed, to_threshold in enumerate(THRESHOLDS[robot]):
+        random = np.random.default_rng(seed)
+        q = random.uniform(-3, 3, (POSTURES, len(source.JOINTS)))
+        to_threshold(q, random)
+        x = source.fk(q)
+        x = x.p[:, 0] if source.ASSEMBLY_MODES else x
+        expected = source.ik(x).status
+        np.testing.assert_array_equal(compiled.ik(x).status, expected)
+        single = np.array([compiled.ik(row).status for row in x])
+        np.testing.assert_array_equal(single, expected)

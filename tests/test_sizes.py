@@ -11,7 +11,7 @@ from closedform.lower.graph import Graph
 from closedform.tolerances import DOUBLE, FLOAT, HIGHEST_DEGREE
 
 ROBOTS = [*LENGTHS, "puma560", "ur_arm", "spherical_wrist"]
-EXPONENTS = (-1000, -700, -300, -100, 8, 100, 300, 700, 1000)
+EXPONENTS = (-900, -700, -300, -100, 8, 100, 300, 700, 1000)
 POSTURES = 60
 
 

@@ -2340,6 +2340,8 @@ const cf_function cf_functions[] = {
       "  straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),\n"
       "  or their difference where it is folded, is determined by yaw and roll, alpha and beta\n"
       "  being half the differences of the arms' angles; sines of equal size are returned.\n"
+      "- SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al):\n"
+      "  rounded joints do not hold the tip to 1e-12 there.\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
       ,
       9, h6ar_values, h6ar_fields,
@@ -2737,9 +2739,11 @@ const cf_function cf_functions[] = {
       "- UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the\n"
       "  waist axis than L_theta, or an arm is out of reach.\n"
       "- SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its\n"
-      "  upper arm is returned beside that of the virtual arm), or a virtual arm that is folded or\n"
-      "  without length, up to what the joints can tell: they then hold the tip, yaw and roll to\n"
-      "  fewer digits.\n"
+      "  upper arm is returned beside that of the virtual arm).\n"
+      "- SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a\n"
+      "  folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the\n"
+      "  distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and stretched\n"
+      "  wrist links (l_W is less than 2^-10 al).\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
       "- A straight right arm is returned bent by a few units in the last place, so that fk can\n"
       "  read the side.\n"
@@ -3177,9 +3181,11 @@ const cf_function cf_functions[] = {
       "- UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.\n"
       "- SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is\n"
       "  free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.\n"
+      "- SINGULAR as well near a parallel singularity, where the sine of the angle between CP and\n"
+      "  DP is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than\n"
+      "  1e-12 of the lengths. If L0 = 0, equal signs of the last two entries put C on D.\n"
       "- Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,\n"
-      "  the loop still closes. fk loses them again near a parallel singularity.\n"
-      "- If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.\n"
+      "  the loop still closes.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_ik_in, 2, hybrid_five_bar_ik_out,
@@ -4452,6 +4458,9 @@ const cf_function cf_functions[] = {
       "Notes\n"
       "-----\n"
       "- Every position can be reached, in one way: lengths are not negative.\n"
+      "- SINGULAR: the sine of the angle between the legs is less than 2^-10, on and near the line\n"
+      "  of the pivots, at a distance of more than some 1000 b, and everywhere if b = 0. The\n"
+      "  lengths are right, but P moves more for an ulp of them than 1e-12 of b + rho1 + rho2.\n"
       ,
       1, rpr_planar_values, rpr_planar_fields,
       1, rpr_planar_ik_in, 2, rpr_planar_ik_out,

@@ -131,11 +131,46 @@ CLOSEDFORM_DISPATCHED
 void h6ar_fk(const h6ar_params *params, const real_t q[6],
     real_t x[6])
 {
+    static const signed char x_degrees[6] = { 1, 1, 1, 0, 0, 0 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d1 = CF_LIBM(ldexp)(params->d1, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8], turned[8];
     const real_t lanes[8] = { q[0], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
     cf_turned_lanes(8, lanes, sines, cosines, turned);
     const real_t principals[1] = { turned[5] };
     h6ar_fk_kernel(1, params, q, sines, cosines, principals, x);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, x_degrees, exponent, x, x);
+    }
+}
+
+CF_RARE void h6ar_fk_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *x, size_t x_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t x_i[6];
+        h6ar_fk(params, q_i, x_i);
+        for (size_t k = 0; k < 6; ++k) x[k * x_stride + i] = x_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -144,6 +179,11 @@ void h6ar_fk_batch(size_t n, const h6ar_params *params,
     real_t *x, size_t x_stride)
 {
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_fk_other_sizes(n, params, q, q_stride, x, x_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -312,10 +352,45 @@ CLOSEDFORM_DISPATCHED
 void h6ar_pose(const h6ar_params *params, const real_t q[6],
     real_t T[16])
 {
+    static const signed char T_degrees[16] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d1 = CF_LIBM(ldexp)(params->d1, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[0], q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     h6ar_pose_kernel(1, params, q, sines, cosines, T);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(16, T_degrees, exponent, T, T);
+    }
+}
+
+CF_RARE void h6ar_pose_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t T_i[16];
+        h6ar_pose(params, q_i, T_i);
+        for (size_t k = 0; k < 16; ++k) T[k * T_stride + i] = T_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -324,6 +399,11 @@ void h6ar_pose_batch(size_t n, const h6ar_params *params,
     real_t *T, size_t T_stride)
 {
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_pose_other_sizes(n, params, q, q_stride, T, T_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -739,10 +819,44 @@ CLOSEDFORM_DISPATCHED
 void h6ar_jacobian(const h6ar_params *params, const real_t q[6],
     real_t J[36])
 {
+    static const signed char J_degrees[36] = { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[0], q[5], q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
     h6ar_jacobian_kernel(1, params, q, sines, cosines, J);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(36, J_degrees, exponent, J, J);
+    }
+}
+
+CF_RARE void h6ar_jacobian_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t J_i[36];
+        h6ar_jacobian(params, q_i, J_i);
+        for (size_t k = 0; k < 36; ++k) J[k * J_stride + i] = J_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -751,6 +865,11 @@ void h6ar_jacobian_batch(size_t n, const h6ar_params *params,
     real_t *J, size_t J_stride)
 {
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
@@ -912,10 +1031,44 @@ CLOSEDFORM_DISPATCHED
 void h6ar_determinant(const h6ar_params *params, const real_t q[6],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 3 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_5) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     h6ar_determinant_kernel(1, params, q, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void h6ar_determinant_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        h6ar_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -925,6 +1078,11 @@ void h6ar_determinant_batch(size_t n, const h6ar_params *params,
 {
     (void)det_stride;
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_5) & CF_SIGN) != 0)) {
+        h6ar_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
@@ -1051,10 +1209,44 @@ CLOSEDFORM_DISPATCHED
 void h6ar_singularities(const h6ar_params *params, const real_t q[6],
     real_t factors[6])
 {
+    static const signed char factors_degrees[6] = { 1, 1, 1, 0, 0, 1 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[5] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     h6ar_singularities_kernel(1, params, q, sines, cosines, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, factors_degrees, exponent, factors, factors);
+    }
+}
+
+CF_RARE void h6ar_singularities_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[6];
+        h6ar_singularities(params, q_i, factors_i);
+        for (size_t k = 0; k < 6; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1063,6 +1255,11 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
     real_t *factors, size_t factors_stride)
 {
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d))), cf_max(cf_max(cf_abs(params->gs), cf_abs(params->al)), cf_max(cf_abs(params->loff), cf_abs(params->lp))));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
@@ -1101,10 +1298,11 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
 }
 
 /* Every case. */
-CF_INLINE void h6ar_ik_whole_kernel(const int single, const h6ar_params *params,
-    const real_t x[6], const real_t *sines,
-    const real_t *cosines, const real_t *principals,
-    real_t q[24], real_t status[4])
+CF_INLINE void h6ar_ik_whole_kernel(const int single, const real_t one,
+    const h6ar_params *params, const real_t x[6],
+    const real_t *sines, const real_t *cosines,
+    const real_t *principals, real_t q[24],
+    real_t status[4])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -1128,500 +1326,544 @@ CF_INLINE void h6ar_ik_whole_kernel(const int single, const h6ar_params *params,
     const real_t s_psi = sines[2];
     const real_t c_psi = cosines[2];
     const real_t principal_pitch = principals[0];
-    const real_t h = cf_sqrt(x_2 * x_2 + y * y);
-    const real_t t1 = L1 + L2;
-    const int nowhere = h <= t1 * CLOSEDFORM_VANISHING;
-    const real_t t2 = lp * s_pitch;
-    const real_t t3 = (gs + al) * c_psi - d;
-    const real_t t4 = d - c_psi * (gs - al);
-    const real_t t5 = cf_max(t3, CLOSEDFORM_C(0.0)) * cf_max(t4, CLOSEDFORM_C(0.0));
-    const real_t t6 = CLOSEDFORM_C(1.0) / c_psi;
-    const real_t wrist = cf_sqrt(t5) * t6;
-    const real_t t7 = loff + lp * c_pitch + wrist;
-    const real_t t8 = s_psi * t7;
-    const real_t t9 = s_phi * t2 - c_phi * t8;
-    const real_t t10 = h + t9;
-    const real_t below = cf_max(t10, CLOSEDFORM_C(0.0));
-    const real_t t11 = h - t9;
-    const real_t above = cf_max(t11, CLOSEDFORM_C(0.0));
+    const real_t t1 = cf_rounded(single, one, x_2 * x_2) + cf_rounded(single, one, y * y);
+    const real_t h = cf_sqrt(t1);
+    const real_t t2 = L1 + L2;
+    const int nowhere = h <= t2 * CLOSEDFORM_VANISHING;
+    const real_t t3 = lp * s_pitch;
+    const real_t t4 = cf_rounded(single, one, (gs + al) * c_psi) - d;
+    const real_t t5 = d - cf_rounded(single, one, c_psi * (gs - al));
+    const real_t t6 = cf_max(t4, CLOSEDFORM_C(0.0)) * cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t t7 = CLOSEDFORM_C(1.0) / c_psi;
+    const real_t wrist = cf_rounded(single, one, cf_sqrt(t6) * t7);
+    const real_t t8 = loff + cf_rounded(single, one, lp * c_pitch) + wrist;
+    const real_t t9 = s_psi * t8;
+    const real_t t10 = cf_rounded(single, one, s_phi * t3) - cf_rounded(single, one, c_phi * t9);
+    const real_t t11 = h + t10;
+    const real_t below = cf_max(t11, CLOSEDFORM_C(0.0));
+    const real_t t12 = h - t10;
+    const real_t above = cf_max(t12, CLOSEDFORM_C(0.0));
     const real_t onward = cf_sqrt(below * above);
-    const int t12 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
-    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
-    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
-    const int t17 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) + cf_nought(psi) + cf_nought(phi) + cf_nought(pitch) == 0;
-    const real_t t18 = cf_select(CLOSEDFORM_C(0.0) < L1 * d * (L2 + a3), CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0));
-    const int t19 = cf_abs(t18) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t16 & (CLOSEDFORM_C(0.0) <= lp) & t17 & t19);
-    const real_t t20 = CLOSEDFORM_FEASIBILITY * (d * CLOSEDFORM_C(0.5));
-    const int t21 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t20 <= t3);
-    const real_t t22 = -(CLOSEDFORM_FEASIBILITY * t1);
-    const int t23 = t21 & (-t20 <= t4) & (t22 <= t10) & (t22 <= t11);
-    const real_t L_2W = L2 + c_psi * t7;
-    const real_t a_3W = a3 + c_phi * t2 + s_phi * t8;
-    const real_t fore = cf_sqrt(L_2W * L_2W + a_3W * a_3W);
-    const real_t t24 = L1 + fore;
-    const real_t t25 = CLOSEDFORM_C(2.0) * fore;
-    const real_t t26 = CLOSEDFORM_FEASIBILITY * (t24 * (L1 * CLOSEDFORM_C(2.0) + t25));
-    const real_t t27 = t24 * t24;
-    const real_t t28 = z - d1;
-    const real_t square = t28 * t28 + onward * onward;
-    const real_t t29 = t27 - square;
-    const real_t t30 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + fore * CLOSEDFORM_C(1.1368683772161603e-13);
-    const real_t t31 = L1 - fore;
-    const real_t t32 = t24 * (t30 + CLOSEDFORM_C(2.0) * cf_abs(t31));
-    const real_t t33 = square - t31 * t31;
-    const int t34 = t23 & (-t26 <= t29) & (-(CLOSEDFORM_FEASIBILITY * t32) <= t33);
-    const real_t size = L1 + cf_sqrt(L2 * L2 + a3 * a3);
-    const real_t t35 = d * size;
-    const int short_2 = L1 * fore <= CLOSEDFORM_VANISHING * t27;
-    const real_t M = cf_max(t33, CLOSEDFORM_C(0.0));
-    const real_t N = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t36 = CLOSEDFORM_C(1.0) / (M + N);
-    const real_t t37 = M - N;
-    const real_t c_bend = cf_select(short_2, CLOSEDFORM_C(1.0), t36 * t37);
-    const real_t t38 = CLOSEDFORM_VANISHING * t24;
-    const int bare = fore <= t38;
-    const real_t t39 = CLOSEDFORM_C(1.0) / fore;
-    const real_t c_lag = cf_select(bare, CLOSEDFORM_C(1.0), a_3W * t39);
-    const real_t t40 = c_bend * c_lag;
-    const real_t t41 = CLOSEDFORM_C(2.0) * cf_sqrt(M * N);
-    const real_t s_bend_front_elbow_down = cf_select(short_2, CLOSEDFORM_C(0.0), t36 * t41);
-    const real_t s_lag = cf_select(bare, CLOSEDFORM_C(0.0), L_2W * t39);
-    const real_t t42 = s_bend_front_elbow_down * s_lag;
-    const real_t c_relative = t40 + t42;
-    const real_t t43 = c_bend * s_lag;
-    const real_t t44 = s_bend_front_elbow_down * c_lag;
-    const real_t s_relative = t43 - t44;
-    const real_t v_1 = L2 * c_relative - a3 * s_relative;
+    const int t13 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
+    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
+    const int t18 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) + cf_nought(psi) + cf_nought(phi) + cf_nought(pitch) == 0;
+    const real_t t19 = cf_select(CLOSEDFORM_C(0.0) < L1 * d * (L2 + a3), CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0));
+    const int t20 = cf_abs(t19) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t17 & (CLOSEDFORM_C(0.0) <= lp) & t18 & t20);
+    const real_t t21 = CLOSEDFORM_FEASIBILITY * (d * CLOSEDFORM_C(0.5));
+    const int t22 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t21 <= t4);
+    const real_t t23 = -(CLOSEDFORM_FEASIBILITY * t2);
+    const int t24 = t22 & (-t21 <= t5) & (t23 <= t11) & (t23 <= t12);
+    const real_t L_2W = L2 + cf_rounded(single, one, c_psi * t8);
+    const real_t a_3W = a3 + cf_rounded(single, one, c_phi * t3) + cf_rounded(single, one, s_phi * t9);
+    const real_t t25 = cf_rounded(single, one, L_2W * L_2W) + cf_rounded(single, one, a_3W * a_3W);
+    const real_t fore = cf_sqrt(t25);
+    const real_t t26 = L1 + fore;
+    const real_t t27 = CLOSEDFORM_C(2.0) * fore;
+    const real_t t28 = CLOSEDFORM_FEASIBILITY * (t26 * (L1 * CLOSEDFORM_C(2.0) + t27));
+    const real_t t29 = cf_rounded(single, one, t26 * t26);
+    const real_t t30 = z - d1;
+    const real_t square = cf_rounded(single, one, t30 * t30) + cf_rounded(single, one, onward * onward);
+    const real_t t31 = t29 - square;
+    const real_t t32 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + fore * CLOSEDFORM_C(1.1368683772161603e-13);
+    const real_t t33 = L1 - fore;
+    const real_t t34 = t26 * (t32 + CLOSEDFORM_C(2.0) * cf_abs(t33));
+    const real_t t35 = square - cf_rounded(single, one, t33 * t33);
+    const int t36 = t24 & (-t28 <= t31) & (-(CLOSEDFORM_FEASIBILITY * t34) <= t35);
+    const real_t t37 = cf_rounded(single, one, L2 * L2) + cf_rounded(single, one, a3 * a3);
+    const real_t size = L1 + cf_sqrt(t37);
+    const real_t t38 = cf_rounded(single, one, d * size);
+    const int short_2 = L1 * fore <= CLOSEDFORM_VANISHING * t29;
+    const real_t M = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t N = cf_max(t31, CLOSEDFORM_C(0.0));
+    const real_t t39 = CLOSEDFORM_C(1.0) / cf_divisor(single, short_2, M + N);
+    const real_t t40 = M - N;
+    const real_t c_bend = cf_select(short_2, CLOSEDFORM_C(1.0), t39 * t40);
+    const real_t t41 = CLOSEDFORM_VANISHING * t26;
+    const int bare = fore <= t41;
+    const real_t t42 = CLOSEDFORM_C(1.0) / cf_divisor(single, bare, fore);
+    const real_t c_lag = cf_select(bare, CLOSEDFORM_C(1.0), a_3W * t42);
+    const real_t t43 = cf_rounded(single, one, c_bend * c_lag);
+    const real_t t44 = CLOSEDFORM_C(2.0) * cf_sqrt(M * N);
+    const real_t s_bend_front_elbow_down = cf_select(short_2, CLOSEDFORM_C(0.0), t39 * t44);
+    const real_t s_lag = cf_select(bare, CLOSEDFORM_C(0.0), L_2W * t42);
+    const real_t t45 = cf_rounded(single, one, s_bend_front_elbow_down * s_lag);
+    const real_t c_relative = t43 + t45;
+    const real_t t46 = cf_rounded(single, one, c_bend * s_lag);
+    const real_t t47 = cf_rounded(single, one, s_bend_front_elbow_down * c_lag);
+    const real_t s_relative = t46 - t47;
+    const real_t v_1 = cf_rounded(single, one, L2 * c_relative) - cf_rounded(single, one, a3 * s_relative);
     const real_t whole_alpha = L1 * v_1;
-    const real_t t45 = cf_abs(whole_alpha);
-    const real_t v_2 = L2 * s_relative + a3 * c_relative;
-    const real_t ahead = d * s_psi * t6;
-    const int folded = cf_abs(t28) + cf_abs(onward) <= t38;
-    const real_t t46 = fore * s_bend_front_elbow_down;
-    const real_t t47 = t28 * t46;
-    const real_t ahead_1 = cf_rarely(single, short_2, t24, t31 + t25 * M * t36);
-    const real_t t48 = onward * ahead_1;
-    const real_t out_rear_elbow_up = t47 - t48;
-    const real_t t49 = onward * t46;
-    const real_t t50 = t28 * ahead_1;
-    const real_t up = t49 + t50;
-    const real_t t51 = out_rear_elbow_up * out_rear_elbow_up + up * up;
-    const real_t t52 = CLOSEDFORM_C(1.0) / cf_sqrt(t51);
-    const real_t t53 = out_rear_elbow_up * t52;
-    const real_t ctheta2A = cf_select(folded, CLOSEDFORM_C(1.0), -t53);
+    const real_t t48 = cf_abs(whole_alpha);
+    const real_t v_2 = cf_rounded(single, one, L2 * s_relative) + cf_rounded(single, one, a3 * c_relative);
+    const real_t ahead = d * s_psi * t7;
+    const int folded = cf_abs(t30) + cf_abs(onward) <= t41;
+    const real_t t49 = fore * s_bend_front_elbow_down;
+    const real_t t50 = cf_rounded(single, one, t30 * t49);
+    const real_t ahead_1 = cf_rarely(single, short_2, t26, t33 + cf_rounded(single, one, t27 * M * t39));
+    const real_t t51 = cf_rounded(single, one, onward * ahead_1);
+    const real_t out_rear_elbow_up = t50 - t51;
+    const real_t t52 = cf_rounded(single, one, out_rear_elbow_up * out_rear_elbow_up);
+    const real_t t53 = cf_rounded(single, one, onward * t49);
+    const real_t t54 = cf_rounded(single, one, t30 * ahead_1);
+    const real_t up = t53 + t54;
+    const real_t norm = cf_sqrt(t52 + cf_rounded(single, one, up * up));
+    const real_t t55 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded, norm);
+    const real_t t56 = out_rear_elbow_up * t55;
+    const real_t ctheta2A = cf_select(folded, CLOSEDFORM_C(1.0), -t56);
     const real_t higher = d * s_phi / c_phi;
-    const real_t stheta2A = cf_select(folded, CLOSEDFORM_C(0.0), up * t52);
-    const real_t t54 = higher * stheta2A;
-    const real_t p_1 = ahead * ctheta2A + t54;
-    const real_t t55 = ahead * stheta2A;
-    const real_t t56 = t55 - higher * ctheta2A;
-    const real_t t57 = v_2 * p_1 + v_1 * t56;
-    const real_t room_alpha = t45 - cf_abs(t57);
-    const real_t t58 = room_alpha * CLOSEDFORM_C(9.094947017729282e-13);
-    const real_t t59 = CLOSEDFORM_VANISHING * t35;
-    const int spent_alpha = cf_max(-t58, room_alpha) <= t59;
-    const real_t t60 = size / CLOSEDFORM_C(100000.0);
-    const real_t t61 = cf_abs(L_2W * c_relative - a_3W * s_relative);
-    const real_t t62 = CLOSEDFORM_C(1.0) / (t60 + t61);
-    const real_t drawn = L1 + L_2W * s_relative + a_3W * c_relative;
-    const real_t t63 = v_2 * drawn * cf_sign(whole_alpha);
-    const real_t t64 = t63 - cf_sign(-t57) * (v_1 * p_1 - v_2 * t56);
-    const real_t t65 = cf_rarely(single, spent_alpha, t62 * (size * cf_abs(t64)), CLOSEDFORM_C(0.0));
-    const int t66 = -(CLOSEDFORM_FEASIBILITY * (t35 + t65)) <= room_alpha;
-    const real_t t67 = size * size * size * size / CLOSEDFORM_C(10000000000.0);
-    const real_t t68 = t64 * (room_alpha - cf_abs(-room_alpha)) / (CLOSEDFORM_C(2.0) * (t67 + t64 * t64));
-    const real_t turn_alpha = cf_rarely(single, spent_alpha, t68, CLOSEDFORM_C(0.0));
-    const real_t t69 = CLOSEDFORM_C(1.0) / L1;
-    const real_t lean_alpha = cf_rarely(single, spent_alpha, turn_alpha - t69 * (drawn * turn_alpha), CLOSEDFORM_C(0.0));
-    const real_t p_1_alpha = cf_rarely(single, spent_alpha, p_1 - t56 * lean_alpha, p_1);
+    const real_t stheta2A = cf_select(folded, CLOSEDFORM_C(0.0), up * t55);
+    const real_t t57 = cf_rounded(single, one, higher * stheta2A);
+    const real_t p_1 = cf_rounded(single, one, ahead * ctheta2A) + t57;
+    const real_t t58 = cf_rounded(single, one, ahead * stheta2A);
+    const real_t t59 = t58 - cf_rounded(single, one, higher * ctheta2A);
+    const real_t t60 = cf_rounded(single, one, v_2 * p_1) + cf_rounded(single, one, v_1 * t59);
+    const real_t room_alpha = t48 - cf_abs(t60);
+    const real_t t61 = room_alpha * CLOSEDFORM_C(9.094947017729282e-13);
+    const real_t t62 = CLOSEDFORM_VANISHING * t38;
+    const int spent_alpha = cf_max(-t61, room_alpha) <= t62;
+    const real_t t63 = size / CLOSEDFORM_C(100000.0);
+    const real_t tilt = cf_rounded(single, one, L_2W * c_relative) - cf_rounded(single, one, a_3W * s_relative);
+    const real_t t64 = CLOSEDFORM_C(1.0) / (t63 + cf_abs(tilt));
+    const real_t t65 = L1 + cf_rounded(single, one, L_2W * s_relative);
+    const real_t drawn = t65 + cf_rounded(single, one, a_3W * c_relative);
+    const real_t t66 = v_2 * drawn * cf_sign(whole_alpha);
+    const real_t t67 = cf_rounded(single, one, v_1 * p_1) - cf_rounded(single, one, v_2 * t59);
+    const real_t t68 = t66 - cf_sign(-t60) * t67;
+    const real_t t69 = cf_rarely(single, spent_alpha, t64 * (size * cf_abs(t68)), CLOSEDFORM_C(0.0));
+    const int t70 = -(CLOSEDFORM_FEASIBILITY * (t38 + t69)) <= room_alpha;
+    const real_t t71 = size * size * size * size / CLOSEDFORM_C(10000000000.0);
+    const real_t t72 = CLOSEDFORM_C(2.0) * (t71 + cf_rounded(single, one, t68 * t68));
+    const real_t t73 = t68 * (room_alpha - cf_abs(-room_alpha)) / t72;
+    const real_t turn_alpha = cf_rarely(single, spent_alpha, t73, CLOSEDFORM_C(0.0));
+    const real_t t74 = CLOSEDFORM_C(1.0) / L1;
+    const real_t t75 = cf_rounded(single, one, t74 * (drawn * turn_alpha));
+    const real_t lean_alpha = cf_rarely(single, spent_alpha, turn_alpha - t75, CLOSEDFORM_C(0.0));
+    const real_t t76 = p_1 - cf_rounded(single, one, t59 * lean_alpha);
+    const real_t p_1_alpha = cf_rarely(single, spent_alpha, t76, p_1);
     const real_t part_beta = L1 * p_1_alpha;
-    const real_t t70 = turn_alpha - lean_alpha;
-    const real_t v_1_alpha = cf_rarely(single, spent_alpha, v_1 - v_2 * t70, v_1);
+    const real_t t77 = turn_alpha - lean_alpha;
+    const real_t v_1_alpha = cf_rarely(single, spent_alpha, v_1 - cf_rounded(single, one, v_2 * t77), v_1);
     const real_t whole_beta = L1 * v_1_alpha;
-    const real_t t71 = cf_abs(part_beta) - cf_abs(whole_beta);
-    const real_t t72 = cf_max(t71 * CLOSEDFORM_C(9.094947017729282e-13), -t71);
-    const int spent_beta = t72 <= t59;
-    const real_t v_2_alpha = cf_rarely(single, spent_alpha, v_2 + v_1 * t70, v_2);
-    const real_t t73 = L1 - drawn;
-    const real_t t74 = cf_rarely(single, spent_alpha, t56 + p_1 * lean_alpha, t56);
-    const real_t t75 = drawn * v_2_alpha * cf_sign(whole_beta) - t73 * t74 * cf_sign(part_beta);
-    const real_t t76 = cf_rarely(single, spent_beta, t62 * (size * cf_abs(t75)), CLOSEDFORM_C(0.0));
-    const int t77 = -(CLOSEDFORM_FEASIBILITY * (t35 + t76)) <= -t71;
-    const real_t t78 = cf_abs(higher);
-    const real_t t79 = cf_abs(ahead);
-    const real_t t80 = d + t78 + t79;
-    const real_t t81 = -(CLOSEDFORM_FEASIBILITY * t80);
-    const real_t t82 = t75 * (t71 + cf_abs(t71)) / (CLOSEDFORM_C(2.0) * (t67 + t75 * t75));
-    const real_t turn_beta = cf_rarely(single, spent_beta, -t82, CLOSEDFORM_C(0.0));
-    const real_t lean_beta = cf_rarely(single, spent_beta, turn_beta - t69 * (drawn * turn_beta), CLOSEDFORM_C(0.0));
-    const real_t t83 = turn_beta - lean_beta;
-    const real_t v_1_beta = cf_rarely(single, spent_beta, v_1_alpha - v_2_alpha * t83, v_1_alpha);
+    const real_t t78 = cf_abs(part_beta) - cf_abs(whole_beta);
+    const real_t t79 = cf_max(t78 * CLOSEDFORM_C(9.094947017729282e-13), -t78);
+    const int spent_beta = t79 <= t62;
+    const real_t v_2_alpha = cf_rarely(single, spent_alpha, v_2 + cf_rounded(single, one, v_1 * t77), v_2);
+    const real_t t80 = L1 - drawn;
+    const real_t t81 = t59 + cf_rounded(single, one, p_1 * lean_alpha);
+    const real_t t82 = cf_rarely(single, spent_alpha, t81, t59);
+    const real_t t83 = drawn * v_2_alpha * cf_sign(whole_beta) - t80 * t82 * cf_sign(part_beta);
+    const real_t t84 = cf_rarely(single, spent_beta, t64 * (size * cf_abs(t83)), CLOSEDFORM_C(0.0));
+    const int t85 = -(CLOSEDFORM_FEASIBILITY * (t38 + t84)) <= -t78;
+    const real_t t86 = cf_abs(higher);
+    const real_t t87 = cf_abs(ahead);
+    const real_t t88 = d + t86 + t87;
+    const real_t t89 = -(CLOSEDFORM_FEASIBILITY * t88);
+    const real_t t90 = CLOSEDFORM_C(2.0) * (t71 + cf_rounded(single, one, t83 * t83));
+    const real_t turn_beta = cf_rarely(single, spent_beta, -(t83 * (t78 + cf_abs(t78)) / t90), CLOSEDFORM_C(0.0));
+    const real_t t91 = cf_rounded(single, one, t74 * (drawn * turn_beta));
+    const real_t lean_beta = cf_rarely(single, spent_beta, turn_beta - t91, CLOSEDFORM_C(0.0));
+    const real_t t92 = turn_beta - lean_beta;
+    const real_t t93 = v_1_alpha - cf_rounded(single, one, v_2_alpha * t92);
+    const real_t v_1_beta = cf_rarely(single, spent_beta, t93, v_1_alpha);
     const real_t sigma_uv = cf_sign(-(L1 * v_1_beta));
-    const real_t p_1_beta = cf_rarely(single, spent_beta, p_1_alpha - t74 * lean_beta, p_1_alpha);
-    const real_t t84 = sigma_uv * p_1_beta;
-    const real_t t85 = v_1_beta * sigma_uv;
-    const int t86 = t34 & t66 & t77 & (t81 <= t84 - t85) & (t81 <= -(t85 + t84));
-    const real_t v_2_beta = cf_rarely(single, spent_beta, v_2_alpha + v_1_alpha * t83, v_2_alpha);
-    const real_t t87 = cf_abs(v_2_beta);
-    const real_t t88 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * t87);
-    const int parallel = -t85 <= t88;
-    const real_t whole_y = cf_rarely(single, parallel, L1 + t87, -t85);
-    const real_t t89 = cf_rarely(single, spent_beta, t74 + p_1_alpha * lean_beta, t74);
-    const real_t t90 = cf_rarely(single, parallel, t89 * cf_sign(v_2_beta), t84);
-    const real_t t91 = whole_y + t90;
-    const real_t t92 = whole_y - t90;
-    const real_t t93 = d * CLOSEDFORM_C(16.0) + t78 * CLOSEDFORM_C(16.0);
-    const real_t t94 = CLOSEDFORM_VANISHING * (t93 + CLOSEDFORM_C(16.0) * t79);
-    const real_t t95 = CLOSEDFORM_VANISHING * t94;
-    const real_t below_beta_0 = cf_max(t91, t95);
-    const real_t above_beta_0 = cf_max(t92, t95);
-    const real_t t96 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0);
-    const real_t t97 = t89 - v_2_beta * t96;
-    const real_t left_along = L1 - cf_abs(t97);
-    const real_t t98 = left_along * CLOSEDFORM_C(9.094947017729282e-13);
-    const real_t t99 = CLOSEDFORM_VANISHING * t80;
-    const int spent_along = cf_max(-t98, left_along) <= t99;
-    const real_t t100 = L1 / CLOSEDFORM_C(1000000000.0);
-    const real_t t101 = cf_rarely(single, spent_along, t87 / (t100 - t85), CLOSEDFORM_C(0.0));
-    const real_t t102 = CLOSEDFORM_FEASIBILITY * (t80 * (CLOSEDFORM_C(1.0) + t101));
-    const int t103 = t86 & (t81 <= t91) & (t81 <= t92) & (-t102 <= left_along);
-    const real_t t104 = left_along * CLOSEDFORM_C(0.5) - cf_abs(left_along) * CLOSEDFORM_C(0.5);
-    const real_t t105 = v_2_beta * t104 / (t85 * t85 + v_2_beta * v_2_beta);
-    const real_t t106 = cf_rarely(single, spent_along, t90 + whole_y * (t105 * cf_sign(-t97)), t90);
-    const real_t t107 = whole_y + t106;
-    const real_t t108 = whole_y - t106;
-    const real_t below_beta = cf_max(t107, t95);
-    const real_t above_beta = cf_max(t108, t95);
-    const real_t t109 = below_beta - above_beta;
-    const real_t t110 = v_2_beta * (t109 / (below_beta + above_beta));
-    const real_t t111 = t89 - t110;
-    const real_t t112 = L1 + t111;
-    const int t113 = t103 & (t81 <= t107) & (t81 <= t108) & (t81 <= t112);
-    const real_t t114 = L1 - t111;
-    const int unreachable = !(t113 & (t81 <= t114));
-    const real_t t115 = cf_poison(single, invalid | unreachable);
-    const real_t below_alpha = cf_max(t112, t95);
-    const real_t above_alpha = cf_max(t114, t95);
-    const real_t t116 = CLOSEDFORM_C(2.0) * cf_sqrt(below_alpha * above_alpha);
-    const real_t t117 = CLOSEDFORM_C(2.0) * cf_sqrt(below_beta * above_beta);
-    const real_t t118 = cf_wrap(principal_pitch);
-    const real_t c_relative_front_elbow_down = t40 - t42;
-    const real_t s_relative_front_elbow_down = t43 + t44;
-    const real_t v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down;
+    const real_t t94 = p_1_alpha - cf_rounded(single, one, t82 * lean_beta);
+    const real_t p_1_beta = cf_rarely(single, spent_beta, t94, p_1_alpha);
+    const real_t t95 = sigma_uv * p_1_beta;
+    const real_t t96 = v_1_beta * sigma_uv;
+    const int t97 = t36 & t70 & t85 & (t89 <= t95 - t96) & (t89 <= -(t96 + t95));
+    const real_t t98 = v_2_alpha + cf_rounded(single, one, v_1_alpha * t92);
+    const real_t v_2_beta = cf_rarely(single, spent_beta, t98, v_2_alpha);
+    const real_t t99 = cf_abs(v_2_beta);
+    const real_t t100 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * t99);
+    const int parallel = -t96 <= t100;
+    const real_t whole_y = cf_rarely(single, parallel, L1 + t99, -t96);
+    const real_t t101 = cf_rounded(single, one, p_1_alpha * lean_beta);
+    const real_t t102 = cf_rarely(single, spent_beta, t82 + t101, t82);
+    const real_t t103 = cf_rarely(single, parallel, t102 * cf_sign(v_2_beta), t95);
+    const real_t t104 = whole_y + t103;
+    const real_t t105 = whole_y - t103;
+    const real_t t106 = d * CLOSEDFORM_C(16.0) + t86 * CLOSEDFORM_C(16.0);
+    const real_t t107 = CLOSEDFORM_VANISHING * (t106 + CLOSEDFORM_C(16.0) * t87);
+    const real_t t108 = CLOSEDFORM_VANISHING * t107;
+    const real_t below_beta_0 = cf_max(t104, t108);
+    const real_t above_beta_0 = cf_max(t105, t108);
+    const real_t t109 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0);
+    const real_t t110 = t102 - cf_rounded(single, one, v_2_beta * t109);
+    const real_t left_along = L1 - cf_abs(t110);
+    const real_t t111 = left_along * CLOSEDFORM_C(9.094947017729282e-13);
+    const real_t t112 = CLOSEDFORM_VANISHING * t88;
+    const int spent_along = cf_max(-t111, left_along) <= t112;
+    const real_t t113 = L1 / CLOSEDFORM_C(1000000000.0);
+    const real_t t114 = cf_rarely(single, spent_along, t99 / (t113 - t96), CLOSEDFORM_C(0.0));
+    const real_t t115 = CLOSEDFORM_FEASIBILITY * (t88 * (CLOSEDFORM_C(1.0) + t114));
+    const int t116 = t97 & (t89 <= t104) & (t89 <= t105) & (-t115 <= left_along);
+    const real_t t117 = left_along * CLOSEDFORM_C(0.5) - cf_abs(left_along) * CLOSEDFORM_C(0.5);
+    const real_t t118 = cf_rounded(single, one, t96 * t96) + cf_rounded(single, one, v_2_beta * v_2_beta);
+    const real_t t119 = cf_rounded(single, one, whole_y * (v_2_beta * t117 / t118 * cf_sign(-t110)));
+    const real_t t120 = cf_rarely(single, spent_along, t103 + t119, t103);
+    const real_t t121 = whole_y + t120;
+    const real_t t122 = whole_y - t120;
+    const real_t below_beta = cf_max(t121, t108);
+    const real_t above_beta = cf_max(t122, t108);
+    const real_t t123 = below_beta - above_beta;
+    const real_t t124 = cf_rounded(single, one, v_2_beta * (t123 / (below_beta + above_beta)));
+    const real_t t125 = t102 - t124;
+    const real_t t126 = L1 + t125;
+    const int t127 = t116 & (t89 <= t121) & (t89 <= t122) & (t89 <= t126);
+    const real_t t128 = L1 - t125;
+    const int unreachable = !(t127 & (t89 <= t128));
+    const real_t t129 = cf_poison(single, invalid | unreachable);
+    const real_t below_alpha = cf_max(t126, t108);
+    const real_t above_alpha = cf_max(t128, t108);
+    const real_t t130 = CLOSEDFORM_C(2.0) * cf_sqrt(below_alpha * above_alpha);
+    const real_t t131 = CLOSEDFORM_C(2.0) * cf_sqrt(below_beta * above_beta);
+    const real_t t132 = cf_wrap(principal_pitch);
+    const real_t c_relative_front_elbow_down = t43 - t45;
+    const real_t t133 = cf_rounded(single, one, L2 * c_relative_front_elbow_down);
+    const real_t s_relative_front_elbow_down = t46 + t47;
+    const real_t t134 = cf_rounded(single, one, a3 * s_relative_front_elbow_down);
+    const real_t v_1_front_elbow_down = t133 - t134;
     const real_t whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down;
-    const real_t t119 = cf_abs(whole_alpha_front_elbow_down);
-    const real_t v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down;
-    const real_t out_front_elbow_down = t47 + t48;
-    const real_t t120 = t49 - t50;
-    const real_t t121 = out_front_elbow_down * out_front_elbow_down + t120 * t120;
-    const real_t t122 = CLOSEDFORM_C(1.0) / cf_sqrt(t121);
-    const real_t t123 = out_front_elbow_down * t122;
-    const real_t ctheta2A_front_elbow_down = cf_select(folded, CLOSEDFORM_C(1.0), t123);
-    const real_t t124 = cf_select(folded, CLOSEDFORM_C(0.0), t120 * t122);
-    const real_t t125 = higher * t124;
-    const real_t p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - t125;
-    const real_t t126 = ahead * t124;
-    const real_t t127 = t126 + higher * ctheta2A_front_elbow_down;
-    const real_t t128 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t127;
-    const real_t room_alpha_front_elbow_down = t119 - cf_abs(t128);
-    const real_t t129 = room_alpha_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_alpha_front_elbow_down = cf_max(-t129, room_alpha_front_elbow_down) <= t59;
-    const real_t tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down;
-    const real_t t130 = CLOSEDFORM_C(1.0) / (t60 + cf_abs(tilt_front_elbow_down));
-    const real_t drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down;
-    const real_t t131 = v_2_front_elbow_down * drawn_front_elbow_down;
-    const real_t t132 = t131 * cf_sign(whole_alpha_front_elbow_down);
-    const real_t t133 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t127;
-    const real_t t134 = t132 - cf_sign(-t128) * t133;
-    const real_t t135 = cf_rarely(single, spent_alpha_front_elbow_down, t130 * (size * cf_abs(t134)), CLOSEDFORM_C(0.0));
-    const int t136 = -(CLOSEDFORM_FEASIBILITY * (t35 + t135)) <= room_alpha_front_elbow_down;
-    const real_t t137 = room_alpha_front_elbow_down - cf_abs(-room_alpha_front_elbow_down);
-    const real_t t138 = t134 * t137 / (CLOSEDFORM_C(2.0) * (t67 + t134 * t134));
-    const real_t turn_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, t138, CLOSEDFORM_C(0.0));
-    const real_t t139 = drawn_front_elbow_down * turn_alpha_front_elbow_down;
-    const real_t lean_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t69 * t139, CLOSEDFORM_C(0.0));
-    const real_t t140 = p_1_front_elbow_down + t127 * lean_alpha_front_elbow_down;
-    const real_t p_1_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, t140, p_1_front_elbow_down);
+    const real_t t135 = cf_abs(whole_alpha_front_elbow_down);
+    const real_t t136 = cf_rounded(single, one, L2 * s_relative_front_elbow_down);
+    const real_t t137 = cf_rounded(single, one, a3 * c_relative_front_elbow_down);
+    const real_t v_2_front_elbow_down = t136 + t137;
+    const real_t out_front_elbow_down = t50 + t51;
+    const real_t t138 = cf_rounded(single, one, out_front_elbow_down * out_front_elbow_down);
+    const real_t t139 = t53 - t54;
+    const real_t norm_front_elbow_down = cf_sqrt(t138 + cf_rounded(single, one, t139 * t139));
+    const real_t t140 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded, norm_front_elbow_down);
+    const real_t t141 = out_front_elbow_down * t140;
+    const real_t ctheta2A_front_elbow_down = cf_select(folded, CLOSEDFORM_C(1.0), t141);
+    const real_t t142 = cf_rounded(single, one, ahead * ctheta2A_front_elbow_down);
+    const real_t t143 = cf_select(folded, CLOSEDFORM_C(0.0), t139 * t140);
+    const real_t t144 = cf_rounded(single, one, higher * t143);
+    const real_t p_1_front_elbow_down = t142 - t144;
+    const real_t t145 = cf_rounded(single, one, v_2_front_elbow_down * p_1_front_elbow_down);
+    const real_t t146 = cf_rounded(single, one, ahead * t143);
+    const real_t t147 = cf_rounded(single, one, higher * ctheta2A_front_elbow_down);
+    const real_t t148 = t146 + t147;
+    const real_t t149 = cf_rounded(single, one, v_1_front_elbow_down * t148);
+    const real_t t150 = t145 - t149;
+    const real_t room_alpha_front_elbow_down = t135 - cf_abs(t150);
+    const real_t t151 = room_alpha_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_alpha_front_elbow_down = cf_max(-t151, room_alpha_front_elbow_down) <= t62;
+    const real_t t152 = cf_rounded(single, one, L_2W * c_relative_front_elbow_down);
+    const real_t t153 = cf_rounded(single, one, a_3W * s_relative_front_elbow_down);
+    const real_t t154 = CLOSEDFORM_C(1.0) / (t63 + cf_abs(t152 - t153));
+    const real_t t155 = cf_rounded(single, one, L_2W * s_relative_front_elbow_down);
+    const real_t t156 = cf_rounded(single, one, a_3W * c_relative_front_elbow_down);
+    const real_t drawn_front_elbow_down = L1 + t155 + t156;
+    const real_t t157 = v_2_front_elbow_down * drawn_front_elbow_down;
+    const real_t t158 = t157 * cf_sign(whole_alpha_front_elbow_down);
+    const real_t t159 = cf_rounded(single, one, v_1_front_elbow_down * p_1_front_elbow_down);
+    const real_t t160 = cf_rounded(single, one, v_2_front_elbow_down * t148);
+    const real_t t161 = t158 - cf_sign(-t150) * (t159 + t160);
+    const real_t t162 = cf_rarely(single, spent_alpha_front_elbow_down, t154 * (size * cf_abs(t161)), CLOSEDFORM_C(0.0));
+    const int t163 = -(CLOSEDFORM_FEASIBILITY * (t38 + t162)) <= room_alpha_front_elbow_down;
+    const real_t t164 = room_alpha_front_elbow_down - cf_abs(-room_alpha_front_elbow_down);
+    const real_t t165 = CLOSEDFORM_C(2.0) * (t71 + cf_rounded(single, one, t161 * t161));
+    const real_t turn_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, t161 * t164 / t165, CLOSEDFORM_C(0.0));
+    const real_t t166 = drawn_front_elbow_down * turn_alpha_front_elbow_down;
+    const real_t t167 = turn_alpha_front_elbow_down - cf_rounded(single, one, t74 * t166);
+    const real_t lean_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, t167, CLOSEDFORM_C(0.0));
+    const real_t t168 = cf_rounded(single, one, t148 * lean_alpha_front_elbow_down);
+    const real_t p_1_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, p_1_front_elbow_down + t168, p_1_front_elbow_down);
     const real_t part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down;
-    const real_t t141 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down;
-    const real_t t142 = v_1_front_elbow_down - v_2_front_elbow_down * t141;
-    const real_t v_1_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, t142, v_1_front_elbow_down);
+    const real_t t169 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down;
+    const real_t t170 = cf_rounded(single, one, v_2_front_elbow_down * t169);
+    const real_t v_1_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, v_1_front_elbow_down - t170, v_1_front_elbow_down);
     const real_t whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down;
-    const real_t t143 = cf_abs(part_beta_front_elbow_down) - cf_abs(whole_beta_front_elbow_down);
-    const real_t t144 = cf_max(t143 * CLOSEDFORM_C(9.094947017729282e-13), -t143);
-    const int spent_beta_front_elbow_down = t144 <= t59;
-    const real_t t145 = v_2_front_elbow_down + v_1_front_elbow_down * t141;
-    const real_t v_2_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, t145, v_2_front_elbow_down);
-    const real_t t146 = drawn_front_elbow_down * v_2_alpha_front_elbow_down;
-    const real_t t147 = L1 - drawn_front_elbow_down;
-    const real_t t148 = p_1_front_elbow_down * lean_alpha_front_elbow_down;
-    const real_t t149 = cf_rarely(single, spent_alpha_front_elbow_down, t127 - t148, t127);
-    const real_t t150 = t147 * t149 * cf_sign(part_beta_front_elbow_down);
-    const real_t t151 = t146 * cf_sign(whole_beta_front_elbow_down) + t150;
-    const real_t t152 = cf_rarely(single, spent_beta_front_elbow_down, t130 * (size * cf_abs(t151)), CLOSEDFORM_C(0.0));
-    const int t153 = -(CLOSEDFORM_FEASIBILITY * (t35 + t152)) <= -t143;
-    const real_t t154 = t151 * (t143 + cf_abs(t143)) / (CLOSEDFORM_C(2.0) * (t67 + t151 * t151));
-    const real_t turn_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, -t154, CLOSEDFORM_C(0.0));
-    const real_t t155 = drawn_front_elbow_down * turn_beta_front_elbow_down;
-    const real_t lean_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, turn_beta_front_elbow_down - t69 * t155, CLOSEDFORM_C(0.0));
-    const real_t t156 = turn_beta_front_elbow_down - lean_beta_front_elbow_down;
-    const real_t t157 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t156;
-    const real_t v_1_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, t157, v_1_alpha_front_elbow_down);
+    const real_t t171 = cf_abs(part_beta_front_elbow_down) - cf_abs(whole_beta_front_elbow_down);
+    const real_t t172 = cf_max(t171 * CLOSEDFORM_C(9.094947017729282e-13), -t171);
+    const int spent_beta_front_elbow_down = t172 <= t62;
+    const real_t t173 = cf_rounded(single, one, v_1_front_elbow_down * t169);
+    const real_t v_2_alpha_front_elbow_down = cf_rarely(single, spent_alpha_front_elbow_down, v_2_front_elbow_down + t173, v_2_front_elbow_down);
+    const real_t t174 = drawn_front_elbow_down * v_2_alpha_front_elbow_down;
+    const real_t t175 = L1 - drawn_front_elbow_down;
+    const real_t t176 = cf_rounded(single, one, p_1_front_elbow_down * lean_alpha_front_elbow_down);
+    const real_t t177 = cf_rarely(single, spent_alpha_front_elbow_down, t148 - t176, t148);
+    const real_t t178 = t175 * t177 * cf_sign(part_beta_front_elbow_down);
+    const real_t t179 = t174 * cf_sign(whole_beta_front_elbow_down) + t178;
+    const real_t t180 = cf_rarely(single, spent_beta_front_elbow_down, t154 * (size * cf_abs(t179)), CLOSEDFORM_C(0.0));
+    const int t181 = -(CLOSEDFORM_FEASIBILITY * (t38 + t180)) <= -t171;
+    const real_t t182 = CLOSEDFORM_C(2.0) * (t71 + cf_rounded(single, one, t179 * t179));
+    const real_t turn_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, -(t179 * (t171 + cf_abs(t171)) / t182), CLOSEDFORM_C(0.0));
+    const real_t t183 = drawn_front_elbow_down * turn_beta_front_elbow_down;
+    const real_t t184 = turn_beta_front_elbow_down - cf_rounded(single, one, t74 * t183);
+    const real_t lean_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, t184, CLOSEDFORM_C(0.0));
+    const real_t t185 = turn_beta_front_elbow_down - lean_beta_front_elbow_down;
+    const real_t t186 = cf_rounded(single, one, v_2_alpha_front_elbow_down * t185);
+    const real_t v_1_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, v_1_alpha_front_elbow_down - t186, v_1_alpha_front_elbow_down);
     const real_t sigma_uv_front_elbow_down = cf_sign(-(L1 * v_1_beta_front_elbow_down));
-    const real_t t158 = p_1_alpha_front_elbow_down + t149 * lean_beta_front_elbow_down;
-    const real_t p_1_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, t158, p_1_alpha_front_elbow_down);
-    const real_t t159 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down;
-    const real_t t160 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down;
-    const int t161 = t34 & t136 & t153 & (t81 <= t159 - t160) & (t81 <= -(t160 + t159));
-    const real_t t162 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t156;
-    const real_t v_2_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, t162, v_2_alpha_front_elbow_down);
-    const real_t t163 = cf_abs(v_2_beta_front_elbow_down);
-    const real_t t164 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * t163);
-    const int parallel_front_elbow_down = -t160 <= t164;
-    const real_t whole_y_front_elbow_down = cf_rarely(single, parallel_front_elbow_down, L1 + t163, -t160);
-    const real_t t165 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down;
-    const real_t t166 = cf_rarely(single, spent_beta_front_elbow_down, t149 - t165, t149);
-    const real_t t167 = cf_rarely(single, parallel_front_elbow_down, -(t166 * cf_sign(v_2_beta_front_elbow_down)), t159);
-    const real_t t168 = whole_y_front_elbow_down + t167;
-    const real_t t169 = whole_y_front_elbow_down - t167;
-    const real_t below_beta_0_front_elbow_down = cf_max(t168, t95);
-    const real_t above_beta_0_front_elbow_down = cf_max(t169, t95);
-    const real_t t170 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down;
+    const real_t t187 = cf_rounded(single, one, t177 * lean_beta_front_elbow_down);
+    const real_t p_1_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, p_1_alpha_front_elbow_down + t187, p_1_alpha_front_elbow_down);
+    const real_t t188 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down;
+    const real_t t189 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down;
+    const int t190 = t36 & t163 & t181 & (t89 <= t188 - t189) & (t89 <= -(t189 + t188));
+    const real_t t191 = cf_rounded(single, one, v_1_alpha_front_elbow_down * t185);
+    const real_t v_2_beta_front_elbow_down = cf_rarely(single, spent_beta_front_elbow_down, v_2_alpha_front_elbow_down + t191, v_2_alpha_front_elbow_down);
+    const real_t t192 = cf_abs(v_2_beta_front_elbow_down);
+    const real_t t193 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * t192);
+    const int parallel_front_elbow_down = -t189 <= t193;
+    const real_t whole_y_front_elbow_down = cf_rarely(single, parallel_front_elbow_down, L1 + t192, -t189);
+    const real_t t194 = cf_rounded(single, one, p_1_alpha_front_elbow_down * lean_beta_front_elbow_down);
+    const real_t t195 = cf_rarely(single, spent_beta_front_elbow_down, t177 - t194, t177);
+    const real_t t196 = cf_rarely(single, parallel_front_elbow_down, -(t195 * cf_sign(v_2_beta_front_elbow_down)), t188);
+    const real_t t197 = whole_y_front_elbow_down + t196;
+    const real_t t198 = whole_y_front_elbow_down - t196;
+    const real_t below_beta_0_front_elbow_down = cf_max(t197, t108);
+    const real_t above_beta_0_front_elbow_down = cf_max(t198, t108);
+    const real_t t199 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down;
     const real_t total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down;
-    const real_t t171 = v_2_beta_front_elbow_down * (t170 / total_beta_0_front_elbow_down);
-    const real_t rest_front_elbow_down = t166 + t171;
+    const real_t t200 = cf_rounded(single, one, v_2_beta_front_elbow_down * (t199 / total_beta_0_front_elbow_down));
+    const real_t rest_front_elbow_down = t195 + t200;
     const real_t left_along_front_elbow_down = L1 - cf_abs(-rest_front_elbow_down);
-    const real_t t172 = left_along_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_along_front_elbow_down = cf_max(-t172, left_along_front_elbow_down) <= t99;
-    const real_t t173 = cf_rarely(single, spent_along_front_elbow_down, t163 / (t100 - t160), CLOSEDFORM_C(0.0));
-    const real_t t174 = CLOSEDFORM_FEASIBILITY * (t80 * (CLOSEDFORM_C(1.0) + t173));
-    const int t175 = t161 & (t81 <= t168) & (t81 <= t169) & (-t174 <= left_along_front_elbow_down);
-    const real_t t176 = left_along_front_elbow_down * CLOSEDFORM_C(0.5);
-    const real_t t177 = cf_abs(left_along_front_elbow_down) * CLOSEDFORM_C(0.5);
-    const real_t t178 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down;
-    const real_t t179 = v_2_beta_front_elbow_down * (t176 - t177) / (t160 * t160 + t178);
-    const real_t t180 = whole_y_front_elbow_down * (t179 * cf_sign(rest_front_elbow_down));
-    const real_t t181 = cf_rarely(single, spent_along_front_elbow_down, t167 + t180, t167);
-    const real_t t182 = whole_y_front_elbow_down + t181;
-    const real_t t183 = whole_y_front_elbow_down - t181;
-    const real_t below_beta_front_elbow_down = cf_max(t182, t95);
-    const real_t above_beta_front_elbow_down = cf_max(t183, t95);
-    const real_t t184 = below_beta_front_elbow_down - above_beta_front_elbow_down;
+    const real_t t201 = left_along_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_along_front_elbow_down = cf_max(-t201, left_along_front_elbow_down) <= t112;
+    const real_t t202 = cf_rarely(single, spent_along_front_elbow_down, t192 / (t113 - t189), CLOSEDFORM_C(0.0));
+    const real_t t203 = CLOSEDFORM_FEASIBILITY * (t88 * (CLOSEDFORM_C(1.0) + t202));
+    const int t204 = t190 & (t89 <= t197) & (t89 <= t198) & (-t203 <= left_along_front_elbow_down);
+    const real_t t205 = left_along_front_elbow_down * CLOSEDFORM_C(0.5);
+    const real_t t206 = cf_abs(left_along_front_elbow_down) * CLOSEDFORM_C(0.5);
+    const real_t t207 = cf_rounded(single, one, v_2_beta_front_elbow_down * v_2_beta_front_elbow_down);
+    const real_t t208 = v_2_beta_front_elbow_down * (t205 - t206) / (cf_rounded(single, one, t189 * t189) + t207);
+    const real_t t209 = cf_rounded(single, one, whole_y_front_elbow_down * (t208 * cf_sign(rest_front_elbow_down)));
+    const real_t t210 = cf_rarely(single, spent_along_front_elbow_down, t196 + t209, t196);
+    const real_t t211 = whole_y_front_elbow_down + t210;
+    const real_t t212 = whole_y_front_elbow_down - t210;
+    const real_t below_beta_front_elbow_down = cf_max(t211, t108);
+    const real_t above_beta_front_elbow_down = cf_max(t212, t108);
+    const real_t t213 = below_beta_front_elbow_down - above_beta_front_elbow_down;
     const real_t total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down;
-    const real_t t185 = v_2_beta_front_elbow_down * (t184 / total_beta_front_elbow_down);
-    const real_t along_u_front_elbow_down = t166 + t185;
-    const real_t t186 = L1 - along_u_front_elbow_down;
-    const int t187 = t175 & (t81 <= t182) & (t81 <= t183) & (t81 <= t186);
-    const real_t t188 = L1 + along_u_front_elbow_down;
-    const int unreachable_2 = !(t187 & (t81 <= t188));
-    const real_t t189 = cf_poison(single, invalid | unreachable_2);
-    const real_t t190 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down;
-    const real_t below_alpha_front_elbow_down = cf_max(t186, t95);
-    const real_t above_alpha_front_elbow_down = cf_max(t188, t95);
-    const real_t t191 = below_alpha_front_elbow_down - above_alpha_front_elbow_down;
-    const real_t t192 = below_alpha_front_elbow_down * above_alpha_front_elbow_down;
-    const real_t t193 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down;
-    const real_t t194 = below_beta_front_elbow_down * above_beta_front_elbow_down;
-    const real_t ctheta2A_rear_elbow_up = cf_select(folded, CLOSEDFORM_C(1.0), t53);
-    const real_t p_1_rear_elbow_up = t54 + ahead * ctheta2A_rear_elbow_up;
-    const real_t t195 = t55 - higher * ctheta2A_rear_elbow_up;
-    const real_t t196 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t195;
-    const real_t room_alpha_rear_elbow_up = t119 - cf_abs(t196);
-    const real_t t197 = room_alpha_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_alpha_rear_elbow_up = cf_max(-t197, room_alpha_rear_elbow_up) <= t59;
-    const real_t t198 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t195;
-    const real_t t199 = t132 - cf_sign(-t196) * t198;
-    const real_t t200 = cf_rarely(single, spent_alpha_rear_elbow_up, t130 * (size * cf_abs(t199)), CLOSEDFORM_C(0.0));
-    const int t201 = -(CLOSEDFORM_FEASIBILITY * (t35 + t200)) <= room_alpha_rear_elbow_up;
-    const real_t t202 = room_alpha_rear_elbow_up - cf_abs(room_alpha_rear_elbow_up);
-    const real_t t203 = t199 * t202 / (CLOSEDFORM_C(2.0) * (t67 + t199 * t199));
-    const real_t turn_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, t203, CLOSEDFORM_C(0.0));
-    const real_t t204 = drawn_front_elbow_down * turn_alpha_rear_elbow_up;
-    const real_t lean_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t69 * t204, CLOSEDFORM_C(0.0));
-    const real_t t205 = p_1_rear_elbow_up - t195 * lean_alpha_rear_elbow_up;
-    const real_t p_1_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, t205, p_1_rear_elbow_up);
+    const real_t t214 = cf_rounded(single, one, v_2_beta_front_elbow_down * (t213 / total_beta_front_elbow_down));
+    const real_t along_u_front_elbow_down = t195 + t214;
+    const real_t t215 = L1 - along_u_front_elbow_down;
+    const int t216 = t204 & (t89 <= t211) & (t89 <= t212) & (t89 <= t215);
+    const real_t t217 = L1 + along_u_front_elbow_down;
+    const int unreachable_2 = !(t216 & (t89 <= t217));
+    const real_t t218 = cf_poison(single, invalid | unreachable_2);
+    const real_t t219 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down;
+    const real_t below_alpha_front_elbow_down = cf_max(t215, t108);
+    const real_t above_alpha_front_elbow_down = cf_max(t217, t108);
+    const real_t t220 = below_alpha_front_elbow_down - above_alpha_front_elbow_down;
+    const real_t t221 = below_alpha_front_elbow_down * above_alpha_front_elbow_down;
+    const real_t t222 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down;
+    const real_t t223 = below_beta_front_elbow_down * above_beta_front_elbow_down;
+    const real_t ctheta2A_rear_elbow_up = cf_select(folded, CLOSEDFORM_C(1.0), t56);
+    const real_t t224 = cf_rounded(single, one, ahead * ctheta2A_rear_elbow_up);
+    const real_t p_1_rear_elbow_up = t57 + t224;
+    const real_t t225 = cf_rounded(single, one, v_2_front_elbow_down * p_1_rear_elbow_up);
+    const real_t t226 = cf_rounded(single, one, higher * ctheta2A_rear_elbow_up);
+    const real_t t227 = t58 - t226;
+    const real_t t228 = cf_rounded(single, one, v_1_front_elbow_down * t227);
+    const real_t t229 = t225 + t228;
+    const real_t room_alpha_rear_elbow_up = t135 - cf_abs(t229);
+    const real_t t230 = room_alpha_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_alpha_rear_elbow_up = cf_max(-t230, room_alpha_rear_elbow_up) <= t62;
+    const real_t t231 = cf_rounded(single, one, v_1_front_elbow_down * p_1_rear_elbow_up);
+    const real_t t232 = cf_rounded(single, one, v_2_front_elbow_down * t227);
+    const real_t t233 = t158 - cf_sign(-t229) * (t231 - t232);
+    const real_t t234 = cf_rarely(single, spent_alpha_rear_elbow_up, t154 * (size * cf_abs(t233)), CLOSEDFORM_C(0.0));
+    const int t235 = -(CLOSEDFORM_FEASIBILITY * (t38 + t234)) <= room_alpha_rear_elbow_up;
+    const real_t t236 = room_alpha_rear_elbow_up - cf_abs(room_alpha_rear_elbow_up);
+    const real_t t237 = CLOSEDFORM_C(2.0) * (t71 + cf_rounded(single, one, t233 * t233));
+    const real_t turn_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, t233 * t236 / t237, CLOSEDFORM_C(0.0));
+    const real_t t238 = drawn_front_elbow_down * turn_alpha_rear_elbow_up;
+    const real_t t239 = turn_alpha_rear_elbow_up - cf_rounded(single, one, t74 * t238);
+    const real_t lean_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, t239, CLOSEDFORM_C(0.0));
+    const real_t t240 = cf_rounded(single, one, t227 * lean_alpha_rear_elbow_up);
+    const real_t p_1_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, p_1_rear_elbow_up - t240, p_1_rear_elbow_up);
     const real_t part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up;
-    const real_t t206 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up;
-    const real_t t207 = v_1_front_elbow_down - v_2_front_elbow_down * t206;
-    const real_t v_1_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, t207, v_1_front_elbow_down);
+    const real_t t241 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up;
+    const real_t t242 = cf_rounded(single, one, v_2_front_elbow_down * t241);
+    const real_t v_1_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, v_1_front_elbow_down - t242, v_1_front_elbow_down);
     const real_t whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up;
-    const real_t t208 = cf_abs(part_beta_rear_elbow_up) - cf_abs(whole_beta_rear_elbow_up);
-    const real_t t209 = cf_max(t208 * CLOSEDFORM_C(9.094947017729282e-13), -t208);
-    const int spent_beta_rear_elbow_up = t209 <= t59;
-    const real_t t210 = v_2_front_elbow_down + v_1_front_elbow_down * t206;
-    const real_t v_2_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, t210, v_2_front_elbow_down);
-    const real_t t211 = drawn_front_elbow_down * v_2_alpha_rear_elbow_up;
-    const real_t t212 = t195 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up;
-    const real_t t213 = cf_rarely(single, spent_alpha_rear_elbow_up, t212, t195);
-    const real_t t214 = t147 * t213 * cf_sign(part_beta_rear_elbow_up);
-    const real_t t215 = t211 * cf_sign(whole_beta_rear_elbow_up) - t214;
-    const real_t t216 = cf_rarely(single, spent_beta_rear_elbow_up, t130 * (size * cf_abs(t215)), CLOSEDFORM_C(0.0));
-    const int t217 = -(CLOSEDFORM_FEASIBILITY * (t35 + t216)) <= -t208;
-    const real_t t218 = t215 * (t208 + cf_abs(t208)) / (CLOSEDFORM_C(2.0) * (t67 + t215 * t215));
-    const real_t turn_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, -t218, CLOSEDFORM_C(0.0));
-    const real_t t219 = drawn_front_elbow_down * turn_beta_rear_elbow_up;
-    const real_t lean_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t69 * t219, CLOSEDFORM_C(0.0));
-    const real_t t220 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up;
-    const real_t t221 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t220;
-    const real_t v_1_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, t221, v_1_alpha_rear_elbow_up);
+    const real_t t243 = cf_abs(part_beta_rear_elbow_up) - cf_abs(whole_beta_rear_elbow_up);
+    const real_t t244 = cf_max(t243 * CLOSEDFORM_C(9.094947017729282e-13), -t243);
+    const int spent_beta_rear_elbow_up = t244 <= t62;
+    const real_t t245 = cf_rounded(single, one, v_1_front_elbow_down * t241);
+    const real_t v_2_alpha_rear_elbow_up = cf_rarely(single, spent_alpha_rear_elbow_up, v_2_front_elbow_down + t245, v_2_front_elbow_down);
+    const real_t t246 = drawn_front_elbow_down * v_2_alpha_rear_elbow_up;
+    const real_t t247 = cf_rounded(single, one, p_1_rear_elbow_up * lean_alpha_rear_elbow_up);
+    const real_t t248 = cf_rarely(single, spent_alpha_rear_elbow_up, t227 + t247, t227);
+    const real_t t249 = t175 * t248 * cf_sign(part_beta_rear_elbow_up);
+    const real_t t250 = t246 * cf_sign(whole_beta_rear_elbow_up) - t249;
+    const real_t t251 = cf_rarely(single, spent_beta_rear_elbow_up, t154 * (size * cf_abs(t250)), CLOSEDFORM_C(0.0));
+    const int t252 = -(CLOSEDFORM_FEASIBILITY * (t38 + t251)) <= -t243;
+    const real_t t253 = CLOSEDFORM_C(2.0) * (t71 + cf_rounded(single, one, t250 * t250));
+    const real_t turn_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, -(t250 * (t243 + cf_abs(t243)) / t253), CLOSEDFORM_C(0.0));
+    const real_t t254 = drawn_front_elbow_down * turn_beta_rear_elbow_up;
+    const real_t t255 = turn_beta_rear_elbow_up - cf_rounded(single, one, t74 * t254);
+    const real_t lean_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, t255, CLOSEDFORM_C(0.0));
+    const real_t t256 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up;
+    const real_t t257 = cf_rounded(single, one, v_2_alpha_rear_elbow_up * t256);
+    const real_t v_1_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, v_1_alpha_rear_elbow_up - t257, v_1_alpha_rear_elbow_up);
     const real_t sigma_uv_rear_elbow_up = cf_sign(-(L1 * v_1_beta_rear_elbow_up));
-    const real_t t222 = p_1_alpha_rear_elbow_up - t213 * lean_beta_rear_elbow_up;
-    const real_t p_1_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, t222, p_1_alpha_rear_elbow_up);
-    const real_t t223 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up;
-    const real_t t224 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up;
-    const int t225 = t34 & t201 & t217 & (t81 <= t223 - t224) & (t81 <= -(t224 + t223));
-    const real_t t226 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t220;
-    const real_t v_2_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, t226, v_2_alpha_rear_elbow_up);
-    const real_t t227 = cf_abs(v_2_beta_rear_elbow_up);
-    const real_t t228 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * t227);
-    const int parallel_rear_elbow_up = -t224 <= t228;
-    const real_t whole_y_rear_elbow_up = cf_rarely(single, parallel_rear_elbow_up, L1 + t227, -t224);
-    const real_t t229 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up;
-    const real_t t230 = cf_rarely(single, spent_beta_rear_elbow_up, t213 + t229, t213);
-    const real_t t231 = cf_rarely(single, parallel_rear_elbow_up, t230 * cf_sign(v_2_beta_rear_elbow_up), t223);
-    const real_t t232 = whole_y_rear_elbow_up + t231;
-    const real_t t233 = whole_y_rear_elbow_up - t231;
-    const real_t below_beta_0_rear_elbow_up = cf_max(t232, t95);
-    const real_t above_beta_0_rear_elbow_up = cf_max(t233, t95);
-    const real_t t234 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up;
+    const real_t t258 = cf_rounded(single, one, t248 * lean_beta_rear_elbow_up);
+    const real_t p_1_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, p_1_alpha_rear_elbow_up - t258, p_1_alpha_rear_elbow_up);
+    const real_t t259 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up;
+    const real_t t260 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up;
+    const int t261 = t36 & t235 & t252 & (t89 <= t259 - t260) & (t89 <= -(t260 + t259));
+    const real_t t262 = cf_rounded(single, one, v_1_alpha_rear_elbow_up * t256);
+    const real_t v_2_beta_rear_elbow_up = cf_rarely(single, spent_beta_rear_elbow_up, v_2_alpha_rear_elbow_up + t262, v_2_alpha_rear_elbow_up);
+    const real_t t263 = cf_abs(v_2_beta_rear_elbow_up);
+    const real_t t264 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * t263);
+    const int parallel_rear_elbow_up = -t260 <= t264;
+    const real_t whole_y_rear_elbow_up = cf_rarely(single, parallel_rear_elbow_up, L1 + t263, -t260);
+    const real_t t265 = cf_rounded(single, one, p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up);
+    const real_t t266 = cf_rarely(single, spent_beta_rear_elbow_up, t248 + t265, t248);
+    const real_t t267 = cf_rarely(single, parallel_rear_elbow_up, t266 * cf_sign(v_2_beta_rear_elbow_up), t259);
+    const real_t t268 = whole_y_rear_elbow_up + t267;
+    const real_t t269 = whole_y_rear_elbow_up - t267;
+    const real_t below_beta_0_rear_elbow_up = cf_max(t268, t108);
+    const real_t above_beta_0_rear_elbow_up = cf_max(t269, t108);
+    const real_t t270 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up;
     const real_t total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up;
-    const real_t t235 = v_2_beta_rear_elbow_up * (t234 / total_beta_0_rear_elbow_up);
-    const real_t t236 = t230 - t235;
-    const real_t left_along_rear_elbow_up = L1 - cf_abs(t236);
-    const real_t t237 = left_along_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_along_rear_elbow_up = cf_max(-t237, left_along_rear_elbow_up) <= t99;
-    const real_t t238 = cf_rarely(single, spent_along_rear_elbow_up, t227 / (t100 - t224), CLOSEDFORM_C(0.0));
-    const real_t t239 = CLOSEDFORM_FEASIBILITY * (t80 * (CLOSEDFORM_C(1.0) + t238));
-    const int t240 = t225 & (t81 <= t232) & (t81 <= t233) & (-t239 <= left_along_rear_elbow_up);
-    const real_t t241 = cf_abs(left_along_rear_elbow_up) * CLOSEDFORM_C(0.5);
-    const real_t t242 = left_along_rear_elbow_up * CLOSEDFORM_C(0.5) - t241;
-    const real_t t243 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up;
-    const real_t t244 = v_2_beta_rear_elbow_up * t242 / (t224 * t224 + t243);
-    const real_t t245 = whole_y_rear_elbow_up * (t244 * cf_sign(-t236));
-    const real_t t246 = cf_rarely(single, spent_along_rear_elbow_up, t231 + t245, t231);
-    const real_t t247 = whole_y_rear_elbow_up + t246;
-    const real_t t248 = whole_y_rear_elbow_up - t246;
-    const real_t below_beta_rear_elbow_up = cf_max(t247, t95);
-    const real_t above_beta_rear_elbow_up = cf_max(t248, t95);
-    const real_t t249 = below_beta_rear_elbow_up - above_beta_rear_elbow_up;
+    const real_t t271 = cf_rounded(single, one, v_2_beta_rear_elbow_up * (t270 / total_beta_0_rear_elbow_up));
+    const real_t t272 = t266 - t271;
+    const real_t left_along_rear_elbow_up = L1 - cf_abs(t272);
+    const real_t t273 = left_along_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_along_rear_elbow_up = cf_max(-t273, left_along_rear_elbow_up) <= t112;
+    const real_t t274 = cf_rarely(single, spent_along_rear_elbow_up, t263 / (t113 - t260), CLOSEDFORM_C(0.0));
+    const real_t t275 = CLOSEDFORM_FEASIBILITY * (t88 * (CLOSEDFORM_C(1.0) + t274));
+    const int t276 = t261 & (t89 <= t268) & (t89 <= t269) & (-t275 <= left_along_rear_elbow_up);
+    const real_t t277 = cf_abs(left_along_rear_elbow_up) * CLOSEDFORM_C(0.5);
+    const real_t t278 = left_along_rear_elbow_up * CLOSEDFORM_C(0.5) - t277;
+    const real_t t279 = cf_rounded(single, one, v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up);
+    const real_t t280 = v_2_beta_rear_elbow_up * t278 / (cf_rounded(single, one, t260 * t260) + t279);
+    const real_t t281 = cf_rounded(single, one, whole_y_rear_elbow_up * (t280 * cf_sign(-t272)));
+    const real_t t282 = cf_rarely(single, spent_along_rear_elbow_up, t267 + t281, t267);
+    const real_t t283 = whole_y_rear_elbow_up + t282;
+    const real_t t284 = whole_y_rear_elbow_up - t282;
+    const real_t below_beta_rear_elbow_up = cf_max(t283, t108);
+    const real_t above_beta_rear_elbow_up = cf_max(t284, t108);
+    const real_t t285 = below_beta_rear_elbow_up - above_beta_rear_elbow_up;
     const real_t total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up;
-    const real_t t250 = v_2_beta_rear_elbow_up * (t249 / total_beta_rear_elbow_up);
-    const real_t t251 = t230 - t250;
-    const real_t t252 = L1 + t251;
-    const int t253 = t240 & (t81 <= t247) & (t81 <= t248) & (t81 <= t252);
-    const real_t t254 = L1 - t251;
-    const int unreachable_3 = !(t253 & (t81 <= t254));
-    const real_t t255 = cf_poison(single, invalid | unreachable_3);
-    const real_t t256 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up;
-    const real_t below_alpha_rear_elbow_up = cf_max(t252, t95);
-    const real_t above_alpha_rear_elbow_up = cf_max(t254, t95);
-    const real_t t257 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up;
-    const real_t t258 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up;
-    const real_t t259 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up;
-    const real_t t260 = below_beta_rear_elbow_up * above_beta_rear_elbow_up;
-    const real_t ctheta2A_rear_elbow_down = cf_select(folded, CLOSEDFORM_C(1.0), -t123);
-    const real_t t261 = t125 - ahead * ctheta2A_rear_elbow_down;
-    const real_t t262 = t126 + higher * ctheta2A_rear_elbow_down;
-    const real_t part_alpha_rear_elbow_down = v_2 * t261 + v_1 * t262;
-    const real_t room_alpha_rear_elbow_down = t45 - cf_abs(-part_alpha_rear_elbow_down);
-    const real_t t263 = room_alpha_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_alpha_rear_elbow_down = cf_max(-t263, room_alpha_rear_elbow_down) <= t59;
-    const real_t t264 = cf_sign(part_alpha_rear_elbow_down) * (v_1 * t261 - v_2 * t262);
-    const real_t t265 = t63 + t264;
-    const real_t t266 = cf_rarely(single, spent_alpha_rear_elbow_down, t62 * (size * cf_abs(t265)), CLOSEDFORM_C(0.0));
-    const int t267 = -(CLOSEDFORM_FEASIBILITY * (t35 + t266)) <= room_alpha_rear_elbow_down;
-    const real_t t268 = room_alpha_rear_elbow_down - cf_abs(room_alpha_rear_elbow_down);
-    const real_t t269 = t265 * t268 / (CLOSEDFORM_C(2.0) * (t67 + t265 * t265));
-    const real_t turn_alpha_rear_elbow_down = cf_rarely(single, spent_alpha_rear_elbow_down, t269, CLOSEDFORM_C(0.0));
-    const real_t t270 = turn_alpha_rear_elbow_down - t69 * (drawn * turn_alpha_rear_elbow_down);
-    const real_t lean_alpha_rear_elbow_down = cf_rarely(single, spent_alpha_rear_elbow_down, t270, CLOSEDFORM_C(0.0));
-    const real_t t271 = cf_rarely(single, spent_alpha_rear_elbow_down, t261 - t262 * lean_alpha_rear_elbow_down, t261);
-    const real_t part_beta_rear_elbow_down = -(L1 * t271);
-    const real_t t272 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down;
-    const real_t v_1_alpha_rear_elbow_down = cf_rarely(single, spent_alpha_rear_elbow_down, v_1 - v_2 * t272, v_1);
+    const real_t t286 = cf_rounded(single, one, v_2_beta_rear_elbow_up * (t285 / total_beta_rear_elbow_up));
+    const real_t t287 = t266 - t286;
+    const real_t t288 = L1 + t287;
+    const int t289 = t276 & (t89 <= t283) & (t89 <= t284) & (t89 <= t288);
+    const real_t t290 = L1 - t287;
+    const int unreachable_3 = !(t289 & (t89 <= t290));
+    const real_t t291 = cf_poison(single, invalid | unreachable_3);
+    const real_t t292 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up;
+    const real_t below_alpha_rear_elbow_up = cf_max(t288, t108);
+    const real_t above_alpha_rear_elbow_up = cf_max(t290, t108);
+    const real_t t293 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up;
+    const real_t t294 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up;
+    const real_t t295 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up;
+    const real_t t296 = below_beta_rear_elbow_up * above_beta_rear_elbow_up;
+    const real_t ctheta2A_rear_elbow_down = cf_select(folded, CLOSEDFORM_C(1.0), -t141);
+    const real_t t297 = cf_rounded(single, one, ahead * ctheta2A_rear_elbow_down);
+    const real_t t298 = t144 - t297;
+    const real_t t299 = cf_rounded(single, one, higher * ctheta2A_rear_elbow_down);
+    const real_t t300 = t146 + t299;
+    const real_t part_alpha_rear_elbow_down = cf_rounded(single, one, v_2 * t298) + cf_rounded(single, one, v_1 * t300);
+    const real_t room_alpha_rear_elbow_down = t48 - cf_abs(-part_alpha_rear_elbow_down);
+    const real_t t301 = room_alpha_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_alpha_rear_elbow_down = cf_max(-t301, room_alpha_rear_elbow_down) <= t62;
+    const real_t t302 = cf_rounded(single, one, v_1 * t298) - cf_rounded(single, one, v_2 * t300);
+    const real_t t303 = t66 + cf_sign(part_alpha_rear_elbow_down) * t302;
+    const real_t t304 = cf_rarely(single, spent_alpha_rear_elbow_down, t64 * (size * cf_abs(t303)), CLOSEDFORM_C(0.0));
+    const int t305 = -(CLOSEDFORM_FEASIBILITY * (t38 + t304)) <= room_alpha_rear_elbow_down;
+    const real_t t306 = room_alpha_rear_elbow_down - cf_abs(room_alpha_rear_elbow_down);
+    const real_t t307 = CLOSEDFORM_C(2.0) * (t71 + cf_rounded(single, one, t303 * t303));
+    const real_t turn_alpha_rear_elbow_down = cf_rarely(single, spent_alpha_rear_elbow_down, t303 * t306 / t307, CLOSEDFORM_C(0.0));
+    const real_t t308 = cf_rounded(single, one, t74 * (drawn * turn_alpha_rear_elbow_down));
+    const real_t lean_alpha_rear_elbow_down = cf_rarely(single, spent_alpha_rear_elbow_down, turn_alpha_rear_elbow_down - t308, CLOSEDFORM_C(0.0));
+    const real_t t309 = cf_rounded(single, one, t300 * lean_alpha_rear_elbow_down);
+    const real_t t310 = cf_rarely(single, spent_alpha_rear_elbow_down, t298 - t309, t298);
+    const real_t part_beta_rear_elbow_down = -(L1 * t310);
+    const real_t t311 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down;
+    const real_t v_1_alpha_rear_elbow_down = cf_rarely(single, spent_alpha_rear_elbow_down, v_1 - cf_rounded(single, one, v_2 * t311), v_1);
     const real_t whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down;
-    const real_t t273 = cf_abs(part_beta_rear_elbow_down) - cf_abs(whole_beta_rear_elbow_down);
-    const real_t t274 = cf_max(t273 * CLOSEDFORM_C(9.094947017729282e-13), -t273);
-    const int spent_beta_rear_elbow_down = t274 <= t59;
-    const real_t v_2_alpha_rear_elbow_down = cf_rarely(single, spent_alpha_rear_elbow_down, v_2 + v_1 * t272, v_2);
-    const real_t t275 = drawn * v_2_alpha_rear_elbow_down * cf_sign(whole_beta_rear_elbow_down);
-    const real_t t276 = cf_rarely(single, spent_alpha_rear_elbow_down, t262 + t261 * lean_alpha_rear_elbow_down, t262);
-    const real_t t277 = t73 * t276 * cf_sign(part_beta_rear_elbow_down);
-    const real_t t278 = t275 + t277;
-    const real_t t279 = cf_rarely(single, spent_beta_rear_elbow_down, t62 * (size * cf_abs(t278)), CLOSEDFORM_C(0.0));
-    const int t280 = -(CLOSEDFORM_FEASIBILITY * (t35 + t279)) <= -t273;
-    const real_t t281 = t278 * (t273 + cf_abs(t273)) / (CLOSEDFORM_C(2.0) * (t67 + t278 * t278));
-    const real_t turn_beta_rear_elbow_down = cf_rarely(single, spent_beta_rear_elbow_down, -t281, CLOSEDFORM_C(0.0));
-    const real_t t282 = turn_beta_rear_elbow_down - t69 * (drawn * turn_beta_rear_elbow_down);
-    const real_t lean_beta_rear_elbow_down = cf_rarely(single, spent_beta_rear_elbow_down, t282, CLOSEDFORM_C(0.0));
-    const real_t t283 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down;
-    const real_t t284 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t283;
-    const real_t v_1_beta_rear_elbow_down = cf_rarely(single, spent_beta_rear_elbow_down, t284, v_1_alpha_rear_elbow_down);
+    const real_t t312 = cf_abs(part_beta_rear_elbow_down) - cf_abs(whole_beta_rear_elbow_down);
+    const real_t t313 = cf_max(t312 * CLOSEDFORM_C(9.094947017729282e-13), -t312);
+    const int spent_beta_rear_elbow_down = t313 <= t62;
+    const real_t v_2_alpha_rear_elbow_down = cf_rarely(single, spent_alpha_rear_elbow_down, v_2 + cf_rounded(single, one, v_1 * t311), v_2);
+    const real_t t314 = drawn * v_2_alpha_rear_elbow_down * cf_sign(whole_beta_rear_elbow_down);
+    const real_t t315 = cf_rounded(single, one, t298 * lean_alpha_rear_elbow_down);
+    const real_t t316 = cf_rarely(single, spent_alpha_rear_elbow_down, t300 + t315, t300);
+    const real_t t317 = t80 * t316 * cf_sign(part_beta_rear_elbow_down);
+    const real_t t318 = t314 + t317;
+    const real_t t319 = cf_rarely(single, spent_beta_rear_elbow_down, t64 * (size * cf_abs(t318)), CLOSEDFORM_C(0.0));
+    const int t320 = -(CLOSEDFORM_FEASIBILITY * (t38 + t319)) <= -t312;
+    const real_t t321 = CLOSEDFORM_C(2.0) * (t71 + cf_rounded(single, one, t318 * t318));
+    const real_t turn_beta_rear_elbow_down = cf_rarely(single, spent_beta_rear_elbow_down, -(t318 * (t312 + cf_abs(t312)) / t321), CLOSEDFORM_C(0.0));
+    const real_t t322 = cf_rounded(single, one, t74 * (drawn * turn_beta_rear_elbow_down));
+    const real_t lean_beta_rear_elbow_down = cf_rarely(single, spent_beta_rear_elbow_down, turn_beta_rear_elbow_down - t322, CLOSEDFORM_C(0.0));
+    const real_t t323 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down;
+    const real_t t324 = cf_rounded(single, one, v_2_alpha_rear_elbow_down * t323);
+    const real_t v_1_beta_rear_elbow_down = cf_rarely(single, spent_beta_rear_elbow_down, v_1_alpha_rear_elbow_down - t324, v_1_alpha_rear_elbow_down);
     const real_t sigma_uv_rear_elbow_down = cf_sign(-(L1 * v_1_beta_rear_elbow_down));
-    const real_t t285 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down;
-    const real_t t286 = cf_rarely(single, spent_beta_rear_elbow_down, t271 - t276 * lean_beta_rear_elbow_down, t271);
-    const real_t p_across_u_rear_elbow_down = sigma_uv_rear_elbow_down * t286;
-    const int t287 = t34 & t267 & t280 & (t81 <= -(t285 + p_across_u_rear_elbow_down));
-    const int t288 = t287 & (t81 <= p_across_u_rear_elbow_down - t285);
-    const real_t t289 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t283;
-    const real_t v_2_beta_rear_elbow_down = cf_rarely(single, spent_beta_rear_elbow_down, t289, v_2_alpha_rear_elbow_down);
-    const real_t t290 = cf_abs(v_2_beta_rear_elbow_down);
-    const real_t t291 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * t290);
-    const int parallel_rear_elbow_down = -t285 <= t291;
-    const real_t whole_y_rear_elbow_down = cf_rarely(single, parallel_rear_elbow_down, L1 + t290, -t285);
-    const real_t t292 = cf_rarely(single, spent_beta_rear_elbow_down, t276 + t271 * lean_beta_rear_elbow_down, t276);
-    const real_t part_y_rear_elbow_down = cf_rarely(single, parallel_rear_elbow_down, t292 * cf_sign(v_2_beta_rear_elbow_down), p_across_u_rear_elbow_down);
-    const real_t t293 = whole_y_rear_elbow_down - part_y_rear_elbow_down;
-    const real_t t294 = whole_y_rear_elbow_down + part_y_rear_elbow_down;
-    const real_t below_beta_0_rear_elbow_down = cf_max(t293, t95);
-    const real_t above_beta_0_rear_elbow_down = cf_max(t294, t95);
-    const real_t t295 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down;
+    const real_t t325 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down;
+    const real_t t326 = cf_rounded(single, one, t316 * lean_beta_rear_elbow_down);
+    const real_t t327 = cf_rarely(single, spent_beta_rear_elbow_down, t310 - t326, t310);
+    const real_t p_across_u_rear_elbow_down = sigma_uv_rear_elbow_down * t327;
+    const int t328 = t36 & t305 & t320 & (t89 <= -(t325 + p_across_u_rear_elbow_down));
+    const int t329 = t328 & (t89 <= p_across_u_rear_elbow_down - t325);
+    const real_t t330 = cf_rounded(single, one, v_1_alpha_rear_elbow_down * t323);
+    const real_t v_2_beta_rear_elbow_down = cf_rarely(single, spent_beta_rear_elbow_down, v_2_alpha_rear_elbow_down + t330, v_2_alpha_rear_elbow_down);
+    const real_t t331 = cf_abs(v_2_beta_rear_elbow_down);
+    const real_t t332 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * t331);
+    const int parallel_rear_elbow_down = -t325 <= t332;
+    const real_t whole_y_rear_elbow_down = cf_rarely(single, parallel_rear_elbow_down, L1 + t331, -t325);
+    const real_t t333 = cf_rounded(single, one, t310 * lean_beta_rear_elbow_down);
+    const real_t t334 = cf_rarely(single, spent_beta_rear_elbow_down, t316 + t333, t316);
+    const real_t part_y_rear_elbow_down = cf_rarely(single, parallel_rear_elbow_down, t334 * cf_sign(v_2_beta_rear_elbow_down), p_across_u_rear_elbow_down);
+    const real_t t335 = whole_y_rear_elbow_down - part_y_rear_elbow_down;
+    const real_t t336 = whole_y_rear_elbow_down + part_y_rear_elbow_down;
+    const real_t below_beta_0_rear_elbow_down = cf_max(t335, t108);
+    const real_t above_beta_0_rear_elbow_down = cf_max(t336, t108);
+    const real_t t337 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down;
     const real_t total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down;
-    const real_t t296 = v_2_beta_rear_elbow_down * (t295 / total_beta_0_rear_elbow_down);
-    const real_t rest_rear_elbow_down = t292 + t296;
+    const real_t t338 = cf_rounded(single, one, v_2_beta_rear_elbow_down * (t337 / total_beta_0_rear_elbow_down));
+    const real_t rest_rear_elbow_down = t334 + t338;
     const real_t left_along_rear_elbow_down = L1 - cf_abs(-rest_rear_elbow_down);
-    const real_t t297 = left_along_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_along_rear_elbow_down = cf_max(-t297, left_along_rear_elbow_down) <= t99;
-    const real_t t298 = cf_rarely(single, spent_along_rear_elbow_down, t290 / (t100 - t285), CLOSEDFORM_C(0.0));
-    const real_t t299 = CLOSEDFORM_FEASIBILITY * (t80 * (CLOSEDFORM_C(1.0) + t298));
-    const int t300 = t288 & (t81 <= t293) & (t81 <= t294) & (-t299 <= left_along_rear_elbow_down);
-    const real_t t301 = left_along_rear_elbow_down * CLOSEDFORM_C(0.5);
-    const real_t t302 = cf_abs(left_along_rear_elbow_down) * CLOSEDFORM_C(0.5);
-    const real_t t303 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down;
-    const real_t t304 = v_2_beta_rear_elbow_down * (t301 - t302) / (t285 * t285 + t303);
-    const real_t t305 = whole_y_rear_elbow_down * (t304 * cf_sign(rest_rear_elbow_down));
-    const real_t eased_rear_elbow_down = cf_rarely(single, spent_along_rear_elbow_down, part_y_rear_elbow_down - t305, part_y_rear_elbow_down);
-    const real_t t306 = whole_y_rear_elbow_down - eased_rear_elbow_down;
-    const real_t t307 = whole_y_rear_elbow_down + eased_rear_elbow_down;
-    const real_t below_beta_rear_elbow_down = cf_max(t306, t95);
-    const real_t above_beta_rear_elbow_down = cf_max(t307, t95);
-    const real_t t308 = below_beta_rear_elbow_down - above_beta_rear_elbow_down;
+    const real_t t339 = left_along_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_along_rear_elbow_down = cf_max(-t339, left_along_rear_elbow_down) <= t112;
+    const real_t t340 = cf_rarely(single, spent_along_rear_elbow_down, t331 / (t113 - t325), CLOSEDFORM_C(0.0));
+    const real_t t341 = CLOSEDFORM_FEASIBILITY * (t88 * (CLOSEDFORM_C(1.0) + t340));
+    const int t342 = t329 & (t89 <= t335) & (t89 <= t336) & (-t341 <= left_along_rear_elbow_down);
+    const real_t t343 = left_along_rear_elbow_down * CLOSEDFORM_C(0.5);
+    const real_t t344 = cf_abs(left_along_rear_elbow_down) * CLOSEDFORM_C(0.5);
+    const real_t t345 = cf_rounded(single, one, v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down);
+    const real_t t346 = v_2_beta_rear_elbow_down * (t343 - t344) / (cf_rounded(single, one, t325 * t325) + t345);
+    const real_t t347 = cf_rounded(single, one, whole_y_rear_elbow_down * (t346 * cf_sign(rest_rear_elbow_down)));
+    const real_t eased_rear_elbow_down = cf_rarely(single, spent_along_rear_elbow_down, part_y_rear_elbow_down - t347, part_y_rear_elbow_down);
+    const real_t t348 = whole_y_rear_elbow_down - eased_rear_elbow_down;
+    const real_t t349 = whole_y_rear_elbow_down + eased_rear_elbow_down;
+    const real_t below_beta_rear_elbow_down = cf_max(t348, t108);
+    const real_t above_beta_rear_elbow_down = cf_max(t349, t108);
+    const real_t t350 = below_beta_rear_elbow_down - above_beta_rear_elbow_down;
     const real_t total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down;
-    const real_t t309 = v_2_beta_rear_elbow_down * (t308 / total_beta_rear_elbow_down);
-    const real_t along_u_rear_elbow_down = t292 + t309;
-    const real_t t310 = L1 - along_u_rear_elbow_down;
-    const int t311 = t300 & (t81 <= t306) & (t81 <= t307) & (t81 <= t310);
-    const real_t t312 = L1 + along_u_rear_elbow_down;
-    const int unreachable_4 = !(t311 & (t81 <= t312));
-    const real_t t313 = cf_poison(single, invalid | unreachable_4);
-    const real_t t314 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down;
-    const real_t below_alpha_rear_elbow_down = cf_max(t310, t95);
-    const real_t above_alpha_rear_elbow_down = cf_max(t312, t95);
-    const real_t t315 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down;
-    const real_t t316 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down;
-    const real_t t317 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down;
-    const real_t t318 = below_beta_rear_elbow_down * above_beta_rear_elbow_down;
-    const int t319 = (wrist <= al * CLOSEDFORM_DETERMINED) | nowhere;
-    const int t320 = t319 | folded | short_2;
-    const real_t t321 = cf_status(single, invalid, unreachable, t320 | parallel);
-    const real_t t322 = cf_status(single, invalid, unreachable_2, t320 | parallel_front_elbow_down);
-    const real_t t323 = cf_status(single, invalid, unreachable_3, t320 | parallel_rear_elbow_up);
-    const real_t t324 = cf_status(single, invalid, unreachable_4, t320 | parallel_rear_elbow_down);
-    const real_t opposite[24] = { x_2, CLOSEDFORM_C(2.0) * onward, up, lean_alpha + lean_beta, below_alpha - above_alpha, s_lag, t41, turn_alpha + turn_beta, t109, -t120, t190, t191, t193, t184, up, t256, t257, t259, t249, -t120, t314, t315, t317, t308 };
-    const real_t adjacent[24] = { y, above - below, -out_rear_elbow_up, CLOSEDFORM_C(1.0), t116, c_lag, t37, CLOSEDFORM_C(1.0), t117, out_front_elbow_down, CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t192), CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t194), out_rear_elbow_up, CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t258), CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t260), -out_front_elbow_down, CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t316), CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t318) };
+    const real_t t351 = cf_rounded(single, one, v_2_beta_rear_elbow_down * (t350 / total_beta_rear_elbow_down));
+    const real_t along_u_rear_elbow_down = t334 + t351;
+    const real_t t352 = L1 - along_u_rear_elbow_down;
+    const int t353 = t342 & (t89 <= t348) & (t89 <= t349) & (t89 <= t352);
+    const real_t t354 = L1 + along_u_rear_elbow_down;
+    const int unreachable_4 = !(t353 & (t89 <= t354));
+    const real_t t355 = cf_poison(single, invalid | unreachable_4);
+    const real_t t356 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down;
+    const real_t below_alpha_rear_elbow_down = cf_max(t352, t108);
+    const real_t above_alpha_rear_elbow_down = cf_max(t354, t108);
+    const real_t t357 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down;
+    const real_t t358 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down;
+    const real_t t359 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down;
+    const real_t t360 = below_beta_rear_elbow_down * above_beta_rear_elbow_down;
+    const int t361 = (wrist <= al * CLOSEDFORM_DETERMINED) | nowhere;
+    const int t362 = t361 | folded | short_2;
+    const real_t t363 = cf_status(single, invalid, unreachable, t362 | parallel);
+    const real_t t364 = cf_status(single, invalid, unreachable_2, t362 | parallel_front_elbow_down);
+    const real_t t365 = cf_status(single, invalid, unreachable_3, t362 | parallel_rear_elbow_up);
+    const real_t t366 = cf_status(single, invalid, unreachable_4, t362 | parallel_rear_elbow_down);
+    const real_t opposite[24] = { x_2, CLOSEDFORM_C(2.0) * onward, up, lean_alpha + lean_beta, below_alpha - above_alpha, s_lag, t44, turn_alpha + turn_beta, t123, -t139, t219, t220, t222, t213, up, t292, t293, t295, t285, -t139, t356, t357, t359, t350 };
+    const real_t adjacent[24] = { y, above - below, -out_rear_elbow_up, CLOSEDFORM_C(1.0), t130, c_lag, t40, CLOSEDFORM_C(1.0), t131, out_front_elbow_down, CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t221), CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t223), out_rear_elbow_up, CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t294), CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t296), -out_front_elbow_down, CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t358), CLOSEDFORM_C(1.0), CLOSEDFORM_C(2.0) * cf_sqrt(t360) };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);
@@ -1651,78 +1893,80 @@ CF_INLINE void h6ar_ik_whole_kernel(const int single, const h6ar_params *params,
         angles[22] = cf_atan2(opposite[22], adjacent[22]);
         angles[23] = cf_atan2(opposite[23], adjacent[23]);
     }
-    const real_t t325 = cf_select(nowhere, CLOSEDFORM_C(0.0), angles[0] - angles[1]);
-    const real_t t326 = cf_wrap(-t325);
-    const real_t t327 = cf_select(folded, CLOSEDFORM_C(0.0), angles[2]);
-    const real_t t328 = t327 + angles[3];
-    const real_t t329 = cf_select(short_2, CLOSEDFORM_C(0.0), angles[6]);
-    const real_t t330 = angles[5] - t329;
-    const real_t t331 = t330 - (angles[3] - angles[7]);
-    const real_t t332 = angles[4] - angles[8];
-    const real_t t333 = cf_select(folded, CLOSEDFORM_C(0.0), angles[9]);
-    const real_t t334 = t333 + angles[10];
-    const real_t t335 = angles[5] + t329;
-    const real_t t336 = t335 - (angles[10] - angles[12]);
-    const real_t t337 = angles[11] - angles[13];
-    const real_t t338 = cf_select(nowhere, CLOSEDFORM_C(0.0), angles[0] + angles[1]);
-    const real_t t339 = cf_wrap(-t338);
-    const real_t t340 = cf_select(folded, CLOSEDFORM_C(0.0), angles[14]);
-    const real_t t341 = t340 + angles[15];
-    const real_t t342 = t335 - (angles[15] - angles[17]);
-    const real_t t343 = angles[16] - angles[18];
-    const real_t t344 = cf_select(folded, CLOSEDFORM_C(0.0), angles[19]);
-    const real_t t345 = t344 + angles[20];
-    const real_t t346 = t330 - (angles[20] - angles[22]);
-    const real_t t347 = angles[21] - angles[23];
-    q[0] = t326 + t115;
-    q[1] = cf_wrap(t328 - angles[4]) + t115;
-    q[2] = cf_wrap(t331 + t332) + t115;
-    q[3] = cf_wrap(t328 + angles[4]) + t115;
-    q[4] = cf_wrap(t331 - t332) + t115;
-    q[5] = t118 + t115;
-    q[6] = t326 + t189;
-    q[7] = cf_wrap(t334 - angles[11]) + t189;
-    q[8] = cf_wrap(t336 + t337) + t189;
-    q[9] = cf_wrap(t334 + angles[11]) + t189;
-    q[10] = cf_wrap(t336 - t337) + t189;
-    q[11] = t118 + t189;
-    q[12] = t339 + t255;
-    q[13] = cf_wrap(t341 - angles[16]) + t255;
-    q[14] = cf_wrap(t342 + t343) + t255;
-    q[15] = cf_wrap(t341 + angles[16]) + t255;
-    q[16] = cf_wrap(t342 - t343) + t255;
-    q[17] = t118 + t255;
-    q[18] = t339 + t313;
-    q[19] = cf_wrap(t345 - angles[21]) + t313;
-    q[20] = cf_wrap(t346 + t347) + t313;
-    q[21] = cf_wrap(t345 + angles[21]) + t313;
-    q[22] = cf_wrap(t346 - t347) + t313;
-    q[23] = t118 + t313;
-    status[0] = t321;
-    status[1] = t322;
-    status[2] = t323;
-    status[3] = t324;
+    const real_t t367 = cf_select(nowhere, CLOSEDFORM_C(0.0), angles[0] - angles[1]);
+    const real_t t368 = cf_wrap(-t367);
+    const real_t t369 = cf_select(folded, CLOSEDFORM_C(0.0), angles[2]);
+    const real_t t370 = t369 + angles[3];
+    const real_t t371 = cf_select(short_2, CLOSEDFORM_C(0.0), angles[6]);
+    const real_t t372 = angles[5] - t371;
+    const real_t t373 = t372 - (angles[3] - angles[7]);
+    const real_t t374 = angles[4] - angles[8];
+    const real_t t375 = cf_select(folded, CLOSEDFORM_C(0.0), angles[9]);
+    const real_t t376 = t375 + angles[10];
+    const real_t t377 = angles[5] + t371;
+    const real_t t378 = t377 - (angles[10] - angles[12]);
+    const real_t t379 = angles[11] - angles[13];
+    const real_t t380 = cf_select(nowhere, CLOSEDFORM_C(0.0), angles[0] + angles[1]);
+    const real_t t381 = cf_wrap(-t380);
+    const real_t t382 = cf_select(folded, CLOSEDFORM_C(0.0), angles[14]);
+    const real_t t383 = t382 + angles[15];
+    const real_t t384 = t377 - (angles[15] - angles[17]);
+    const real_t t385 = angles[16] - angles[18];
+    const real_t t386 = cf_select(folded, CLOSEDFORM_C(0.0), angles[19]);
+    const real_t t387 = t386 + angles[20];
+    const real_t t388 = t372 - (angles[20] - angles[22]);
+    const real_t t389 = angles[21] - angles[23];
+    q[0] = t368 + t129;
+    q[1] = cf_wrap(t370 - angles[4]) + t129;
+    q[2] = cf_wrap(t373 + t374) + t129;
+    q[3] = cf_wrap(t370 + angles[4]) + t129;
+    q[4] = cf_wrap(t373 - t374) + t129;
+    q[5] = t132 + t129;
+    q[6] = t368 + t218;
+    q[7] = cf_wrap(t376 - angles[11]) + t218;
+    q[8] = cf_wrap(t378 + t379) + t218;
+    q[9] = cf_wrap(t376 + angles[11]) + t218;
+    q[10] = cf_wrap(t378 - t379) + t218;
+    q[11] = t132 + t218;
+    q[12] = t381 + t291;
+    q[13] = cf_wrap(t383 - angles[16]) + t291;
+    q[14] = cf_wrap(t384 + t385) + t291;
+    q[15] = cf_wrap(t383 + angles[16]) + t291;
+    q[16] = cf_wrap(t384 - t385) + t291;
+    q[17] = t132 + t291;
+    q[18] = t381 + t355;
+    q[19] = cf_wrap(t387 - angles[21]) + t355;
+    q[20] = cf_wrap(t388 + t389) + t355;
+    q[21] = cf_wrap(t387 + angles[21]) + t355;
+    q[22] = cf_wrap(t388 - t389) + t355;
+    q[23] = t132 + t355;
+    status[0] = t363;
+    status[1] = t364;
+    status[2] = t365;
+    status[3] = t366;
 }
 
 CLOSEDFORM_DISPATCHED
 CF_APART void h6ar_ik_whole(const h6ar_params *params, const real_t x[6],
     real_t q[24], uint8_t status[4])
 {
+    const real_t one = cf_one();
     real_t sines[4], cosines[4], turned[4];
     const real_t lanes[4] = { x[4], x[5], x[3] };
     cf_turned_lanes(4, lanes, sines, cosines, turned);
     const real_t principals[1] = { turned[1] };
     real_t status_real[4];
-    h6ar_ik_whole_kernel(1, params, x, sines, cosines, principals, q, status_real);
+    h6ar_ik_whole_kernel(1, one, params, x, sines, cosines, principals, q, status_real);
     for (size_t i = 0; i < 4; ++i)
         status[i] = (uint8_t)status_real[i];
 }
 
 /* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void h6ar_ik_common_kernel(const int single, const h6ar_params *params,
-    const real_t x[6], const real_t *sines,
-    const real_t *cosines, const real_t *principals,
-    real_t q[24], real_t status[4], real_t rare[1])
+CF_INLINE void h6ar_ik_common_kernel(const int single, const real_t one,
+    const h6ar_params *params, const real_t x[6],
+    const real_t *sines, const real_t *cosines,
+    const real_t *principals, real_t q[24],
+    real_t status[4], real_t rare[1])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -1746,272 +1990,283 @@ CF_INLINE void h6ar_ik_common_kernel(const int single, const h6ar_params *params
     const real_t s_psi = sines[2];
     const real_t c_psi = cosines[2];
     const real_t principal_pitch = principals[0];
-    const real_t h = cf_sqrt(x_2 * x_2 + y * y);
-    const real_t t1 = lp * s_pitch;
-    const real_t t2 = (gs + al) * c_psi - d;
-    const real_t t3 = d - c_psi * (gs - al);
-    const real_t t4 = cf_max(t2, CLOSEDFORM_C(0.0)) * cf_max(t3, CLOSEDFORM_C(0.0));
-    const real_t t5 = CLOSEDFORM_C(1.0) / c_psi;
-    const real_t wrist = cf_sqrt(t4) * t5;
-    const real_t t6 = loff + lp * c_pitch + wrist;
-    const real_t t7 = s_psi * t6;
-    const real_t t8 = s_phi * t1 - c_phi * t7;
-    const real_t t9 = h + t8;
-    const real_t below = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = h - t8;
-    const real_t above = cf_max(t10, CLOSEDFORM_C(0.0));
+    const real_t t1 = cf_rounded(single, one, x_2 * x_2) + cf_rounded(single, one, y * y);
+    const real_t h = cf_sqrt(t1);
+    const real_t t2 = lp * s_pitch;
+    const real_t t3 = cf_rounded(single, one, (gs + al) * c_psi) - d;
+    const real_t t4 = d - cf_rounded(single, one, c_psi * (gs - al));
+    const real_t t5 = cf_max(t3, CLOSEDFORM_C(0.0)) * cf_max(t4, CLOSEDFORM_C(0.0));
+    const real_t t6 = CLOSEDFORM_C(1.0) / c_psi;
+    const real_t wrist = cf_rounded(single, one, cf_sqrt(t5) * t6);
+    const real_t t7 = loff + cf_rounded(single, one, lp * c_pitch) + wrist;
+    const real_t t8 = s_psi * t7;
+    const real_t t9 = cf_rounded(single, one, s_phi * t2) - cf_rounded(single, one, c_phi * t8);
+    const real_t t10 = h + t9;
+    const real_t below = cf_max(t10, CLOSEDFORM_C(0.0));
+    const real_t t11 = h - t9;
+    const real_t above = cf_max(t11, CLOSEDFORM_C(0.0));
     const real_t onward = cf_sqrt(below * above);
-    const int t11 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
-    const int t12 = t11 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
-    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
-    const int t16 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) + cf_nought(psi) + cf_nought(phi) + cf_nought(pitch) == 0;
-    const real_t t17 = cf_select(CLOSEDFORM_C(0.0) < L1 * d * (L2 + a3), CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0));
-    const int t18 = cf_abs(t17) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t15 & (CLOSEDFORM_C(0.0) <= lp) & t16 & t18);
-    const real_t t19 = CLOSEDFORM_FEASIBILITY * (d * CLOSEDFORM_C(0.5));
-    const int t20 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t19 <= t2);
-    const real_t t21 = L1 + L2;
-    const real_t t22 = -(CLOSEDFORM_FEASIBILITY * t21);
-    const int t23 = t20 & (-t19 <= t3) & (t22 <= t9) & (t22 <= t10);
-    const real_t L_2W = L2 + c_psi * t6;
-    const real_t a_3W = a3 + c_phi * t1 + s_phi * t7;
-    const real_t fore = cf_sqrt(L_2W * L_2W + a_3W * a_3W);
-    const real_t t24 = L1 + fore;
-    const real_t t25 = CLOSEDFORM_C(2.0) * fore;
-    const real_t t26 = CLOSEDFORM_FEASIBILITY * (t24 * (L1 * CLOSEDFORM_C(2.0) + t25));
-    const real_t t27 = t24 * t24;
-    const real_t t28 = z - d1;
-    const real_t square = t28 * t28 + onward * onward;
-    const real_t t29 = t27 - square;
-    const real_t t30 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + fore * CLOSEDFORM_C(1.1368683772161603e-13);
-    const real_t t31 = L1 - fore;
-    const real_t t32 = t24 * (t30 + CLOSEDFORM_C(2.0) * cf_abs(t31));
-    const real_t t33 = square - t31 * t31;
-    const int t34 = t23 & (-t26 <= t29) & (-(CLOSEDFORM_FEASIBILITY * t32) <= t33);
-    const real_t play_alpha = d * (L1 + cf_sqrt(L2 * L2 + a3 * a3));
-    const real_t t35 = -(CLOSEDFORM_FEASIBILITY * play_alpha);
-    const real_t M = cf_max(t33, CLOSEDFORM_C(0.0));
-    const real_t N = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t36 = CLOSEDFORM_C(1.0) / (M + N);
-    const real_t t37 = M - N;
-    const real_t t38 = t36 * t37;
-    const real_t t39 = CLOSEDFORM_C(1.0) / fore;
-    const real_t c_lag = a_3W * t39;
-    const real_t t40 = t38 * c_lag;
-    const real_t t41 = CLOSEDFORM_C(2.0) * cf_sqrt(M * N);
-    const real_t s_bend_front_elbow_down = t36 * t41;
-    const real_t s_lag = L_2W * t39;
-    const real_t t42 = s_bend_front_elbow_down * s_lag;
-    const real_t t43 = t40 + t42;
-    const real_t t44 = t38 * s_lag;
-    const real_t t45 = s_bend_front_elbow_down * c_lag;
-    const real_t t46 = t44 - t45;
-    const real_t t47 = L2 * t43 - a3 * t46;
-    const real_t whole_alpha = L1 * t47;
-    const real_t t48 = cf_abs(whole_alpha);
-    const real_t ahead = d * s_psi * t5;
-    const real_t t49 = fore * s_bend_front_elbow_down;
-    const real_t t50 = onward * t49;
-    const real_t ahead_1 = t31 + t25 * M * t36;
-    const real_t t51 = t28 * ahead_1;
-    const real_t up = t50 + t51;
-    const real_t t52 = t28 * t49;
-    const real_t t53 = onward * ahead_1;
-    const real_t out_rear_elbow_up = t52 - t53;
-    const real_t t54 = out_rear_elbow_up * out_rear_elbow_up + up * up;
-    const real_t t55 = CLOSEDFORM_C(1.0) / cf_sqrt(t54);
-    const real_t stheta2A = up * t55;
-    const real_t t56 = ahead * stheta2A;
+    const int t12 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
+    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
+    const int t17 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) + cf_nought(psi) + cf_nought(phi) + cf_nought(pitch) == 0;
+    const real_t t18 = cf_select(CLOSEDFORM_C(0.0) < L1 * d * (L2 + a3), CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0));
+    const int t19 = cf_abs(t18) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t16 & (CLOSEDFORM_C(0.0) <= lp) & t17 & t19);
+    const real_t t20 = CLOSEDFORM_FEASIBILITY * (d * CLOSEDFORM_C(0.5));
+    const int t21 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t20 <= t3);
+    const real_t t22 = L1 + L2;
+    const real_t t23 = -(CLOSEDFORM_FEASIBILITY * t22);
+    const int t24 = t21 & (-t20 <= t4) & (t23 <= t10) & (t23 <= t11);
+    const real_t L_2W = L2 + cf_rounded(single, one, c_psi * t7);
+    const real_t a_3W = a3 + cf_rounded(single, one, c_phi * t2) + cf_rounded(single, one, s_phi * t8);
+    const real_t t25 = cf_rounded(single, one, L_2W * L_2W) + cf_rounded(single, one, a_3W * a_3W);
+    const real_t fore = cf_sqrt(t25);
+    const real_t t26 = L1 + fore;
+    const real_t t27 = CLOSEDFORM_C(2.0) * fore;
+    const real_t t28 = CLOSEDFORM_FEASIBILITY * (t26 * (L1 * CLOSEDFORM_C(2.0) + t27));
+    const real_t t29 = cf_rounded(single, one, t26 * t26);
+    const real_t t30 = z - d1;
+    const real_t square = cf_rounded(single, one, t30 * t30) + cf_rounded(single, one, onward * onward);
+    const real_t t31 = t29 - square;
+    const real_t t32 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + fore * CLOSEDFORM_C(1.1368683772161603e-13);
+    const real_t t33 = L1 - fore;
+    const real_t t34 = t26 * (t32 + CLOSEDFORM_C(2.0) * cf_abs(t33));
+    const real_t t35 = square - cf_rounded(single, one, t33 * t33);
+    const int t36 = t24 & (-t28 <= t31) & (-(CLOSEDFORM_FEASIBILITY * t34) <= t35);
+    const real_t t37 = cf_rounded(single, one, L2 * L2) + cf_rounded(single, one, a3 * a3);
+    const real_t play_alpha = d * (L1 + cf_sqrt(t37));
+    const real_t t38 = -(CLOSEDFORM_FEASIBILITY * play_alpha);
+    const real_t M = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t N = cf_max(t31, CLOSEDFORM_C(0.0));
+    const real_t t39 = CLOSEDFORM_C(1.0) / (M + N);
+    const real_t t40 = M - N;
+    const real_t t41 = t39 * t40;
+    const real_t t42 = CLOSEDFORM_C(1.0) / fore;
+    const real_t c_lag = a_3W * t42;
+    const real_t t43 = cf_rounded(single, one, t41 * c_lag);
+    const real_t t44 = CLOSEDFORM_C(2.0) * cf_sqrt(M * N);
+    const real_t s_bend_front_elbow_down = t39 * t44;
+    const real_t s_lag = L_2W * t42;
+    const real_t t45 = cf_rounded(single, one, s_bend_front_elbow_down * s_lag);
+    const real_t t46 = t43 + t45;
+    const real_t t47 = cf_rounded(single, one, t41 * s_lag);
+    const real_t t48 = cf_rounded(single, one, s_bend_front_elbow_down * c_lag);
+    const real_t t49 = t47 - t48;
+    const real_t t50 = cf_rounded(single, one, L2 * t46) - cf_rounded(single, one, a3 * t49);
+    const real_t whole_alpha = L1 * t50;
+    const real_t t51 = cf_abs(whole_alpha);
+    const real_t ahead = d * s_psi * t6;
+    const real_t t52 = fore * s_bend_front_elbow_down;
+    const real_t t53 = cf_rounded(single, one, onward * t52);
+    const real_t ahead_1 = t33 + cf_rounded(single, one, t27 * M * t39);
+    const real_t t54 = cf_rounded(single, one, t30 * ahead_1);
+    const real_t up = t53 + t54;
+    const real_t t55 = cf_rounded(single, one, t30 * t52);
+    const real_t t56 = cf_rounded(single, one, onward * ahead_1);
+    const real_t out_rear_elbow_up = t55 - t56;
+    const real_t t57 = cf_rounded(single, one, out_rear_elbow_up * out_rear_elbow_up);
+    const real_t norm = cf_sqrt(t57 + cf_rounded(single, one, up * up));
+    const real_t t58 = CLOSEDFORM_C(1.0) / norm;
+    const real_t stheta2A = up * t58;
+    const real_t t59 = cf_rounded(single, one, ahead * stheta2A);
     const real_t higher = d * s_phi / c_phi;
-    const real_t t57 = out_rear_elbow_up * t55;
-    const real_t t58 = higher * t57;
-    const real_t t59 = t56 + t58;
-    const real_t v_2 = L2 * t46 + a3 * t43;
-    const real_t t60 = ahead * t57;
-    const real_t t61 = higher * stheta2A;
-    const real_t t62 = t60 - t61;
-    const real_t room_alpha = t48 - cf_abs(t47 * t59 - v_2 * t62);
-    const real_t room_beta = t48 - cf_abs(-(L1 * t62));
-    const int t63 = t34 & (t35 <= room_alpha) & (t35 <= room_beta);
-    const real_t t64 = cf_abs(higher);
-    const real_t t65 = cf_abs(ahead);
-    const real_t play_along = d + t64 + t65;
-    const real_t t66 = -(CLOSEDFORM_FEASIBILITY * play_along);
+    const real_t t60 = out_rear_elbow_up * t58;
+    const real_t t61 = cf_rounded(single, one, higher * t60);
+    const real_t t62 = t59 + t61;
+    const real_t v_2 = cf_rounded(single, one, L2 * t49) + cf_rounded(single, one, a3 * t46);
+    const real_t t63 = cf_rounded(single, one, ahead * t60);
+    const real_t t64 = cf_rounded(single, one, higher * stheta2A);
+    const real_t t65 = t63 - t64;
+    const real_t t66 = cf_rounded(single, one, t50 * t62) - cf_rounded(single, one, v_2 * t65);
+    const real_t room_alpha = t51 - cf_abs(t66);
+    const real_t room_beta = t51 - cf_abs(-(L1 * t65));
+    const int t67 = t36 & (t38 <= room_alpha) & (t38 <= room_beta);
+    const real_t t68 = cf_abs(higher);
+    const real_t t69 = cf_abs(ahead);
+    const real_t play_along = d + t68 + t69;
+    const real_t t70 = -(CLOSEDFORM_FEASIBILITY * play_along);
     const real_t sigma_uv = cf_sign(-whole_alpha);
-    const real_t t67 = t47 * sigma_uv;
-    const real_t p_across_u = sigma_uv * t62;
-    const real_t t68 = -(t67 + p_across_u);
-    const int t69 = t66 <= t68;
-    const real_t t70 = p_across_u - t67;
-    const int t71 = t66 <= t70;
-    const real_t t72 = d * CLOSEDFORM_C(16.0) + t64 * CLOSEDFORM_C(16.0);
-    const real_t t73 = CLOSEDFORM_VANISHING * (t72 + CLOSEDFORM_C(16.0) * t65);
-    const real_t t74 = CLOSEDFORM_VANISHING * t73;
-    const real_t below_beta_0 = cf_max(t68, t74);
-    const real_t above_beta_0 = cf_max(t70, t74);
-    const real_t t75 = below_beta_0 - above_beta_0;
-    const real_t t76 = t59 - v_2 * (t75 / (below_beta_0 + above_beta_0));
-    const real_t left_along = L1 - cf_abs(t76);
-    const int t77 = t63 & t69 & t71 & t69 & t71 & (t66 <= left_along);
-    const real_t t78 = L1 + t76;
-    const real_t t79 = L1 - t76;
-    const int t80 = t77 & t69 & t71 & (t66 <= t78) & (t66 <= t79);
-    const int unreachable = !t80;
-    const real_t t81 = cf_poison(single, invalid | unreachable);
-    const real_t below_alpha = cf_max(t78, t74);
-    const real_t above_alpha = cf_max(t79, t74);
-    const real_t t82 = CLOSEDFORM_C(2.0) * cf_sqrt(below_alpha * above_alpha);
-    const real_t t83 = CLOSEDFORM_C(2.0) * cf_sqrt(below_beta_0 * above_beta_0);
-    const real_t t84 = cf_wrap(principal_pitch);
-    const real_t t85 = t40 - t42;
-    const real_t t86 = t44 + t45;
-    const real_t t87 = L2 * t85 - a3 * t86;
-    const real_t whole_alpha_front_elbow_down = L1 * t87;
-    const real_t t88 = cf_abs(whole_alpha_front_elbow_down);
-    const real_t v_2_front_elbow_down = L2 * t86 + a3 * t85;
-    const real_t out_front_elbow_down = t52 + t53;
-    const real_t t89 = t50 - t51;
-    const real_t t90 = out_front_elbow_down * out_front_elbow_down + t89 * t89;
-    const real_t t91 = CLOSEDFORM_C(1.0) / cf_sqrt(t90);
-    const real_t ctheta2A_front_elbow_down = out_front_elbow_down * t91;
-    const real_t t92 = ahead * ctheta2A_front_elbow_down;
-    const real_t t93 = t89 * t91;
-    const real_t t94 = higher * t93;
-    const real_t p_1_front_elbow_down = t92 - t94;
-    const real_t t95 = ahead * t93;
-    const real_t t96 = higher * ctheta2A_front_elbow_down;
-    const real_t t97 = t95 + t96;
-    const real_t t98 = v_2_front_elbow_down * p_1_front_elbow_down - t87 * t97;
-    const real_t room_alpha_front_elbow_down = t88 - cf_abs(t98);
-    const real_t room_beta_front_elbow_down = t88 - cf_abs(L1 * p_1_front_elbow_down);
-    const int t99 = t34 & (t35 <= room_alpha_front_elbow_down) & (t35 <= room_beta_front_elbow_down);
+    const real_t t71 = t50 * sigma_uv;
+    const real_t p_across_u = sigma_uv * t65;
+    const real_t t72 = -(t71 + p_across_u);
+    const int t73 = t70 <= t72;
+    const real_t t74 = p_across_u - t71;
+    const int t75 = t70 <= t74;
+    const real_t t76 = d * CLOSEDFORM_C(16.0) + t68 * CLOSEDFORM_C(16.0);
+    const real_t t77 = CLOSEDFORM_VANISHING * (t76 + CLOSEDFORM_C(16.0) * t69);
+    const real_t t78 = CLOSEDFORM_VANISHING * t77;
+    const real_t below_beta_0 = cf_max(t72, t78);
+    const real_t above_beta_0 = cf_max(t74, t78);
+    const real_t t79 = below_beta_0 - above_beta_0;
+    const real_t t80 = cf_rounded(single, one, v_2 * (t79 / (below_beta_0 + above_beta_0)));
+    const real_t t81 = t62 - t80;
+    const real_t left_along = L1 - cf_abs(t81);
+    const int t82 = t67 & t73 & t75 & t73 & t75 & (t70 <= left_along);
+    const real_t t83 = L1 + t81;
+    const real_t t84 = L1 - t81;
+    const int t85 = t82 & t73 & t75 & (t70 <= t83) & (t70 <= t84);
+    const int unreachable = !t85;
+    const real_t t86 = cf_poison(single, invalid | unreachable);
+    const real_t below_alpha = cf_max(t83, t78);
+    const real_t above_alpha = cf_max(t84, t78);
+    const real_t t87 = CLOSEDFORM_C(2.0) * cf_sqrt(below_alpha * above_alpha);
+    const real_t t88 = CLOSEDFORM_C(2.0) * cf_sqrt(below_beta_0 * above_beta_0);
+    const real_t t89 = cf_wrap(principal_pitch);
+    const real_t t90 = t43 - t45;
+    const real_t t91 = t47 + t48;
+    const real_t t92 = cf_rounded(single, one, L2 * t90) - cf_rounded(single, one, a3 * t91);
+    const real_t whole_alpha_front_elbow_down = L1 * t92;
+    const real_t t93 = cf_abs(whole_alpha_front_elbow_down);
+    const real_t v_2_front_elbow_down = cf_rounded(single, one, L2 * t91) + cf_rounded(single, one, a3 * t90);
+    const real_t out_front_elbow_down = t55 + t56;
+    const real_t t94 = cf_rounded(single, one, out_front_elbow_down * out_front_elbow_down);
+    const real_t t95 = t53 - t54;
+    const real_t norm_front_elbow_down = cf_sqrt(t94 + cf_rounded(single, one, t95 * t95));
+    const real_t t96 = CLOSEDFORM_C(1.0) / norm_front_elbow_down;
+    const real_t ctheta2A_front_elbow_down = out_front_elbow_down * t96;
+    const real_t t97 = cf_rounded(single, one, ahead * ctheta2A_front_elbow_down);
+    const real_t t98 = t95 * t96;
+    const real_t t99 = cf_rounded(single, one, higher * t98);
+    const real_t p_1_front_elbow_down = t97 - t99;
+    const real_t t100 = cf_rounded(single, one, v_2_front_elbow_down * p_1_front_elbow_down);
+    const real_t t101 = cf_rounded(single, one, ahead * t98);
+    const real_t t102 = cf_rounded(single, one, higher * ctheta2A_front_elbow_down);
+    const real_t t103 = t101 + t102;
+    const real_t t104 = cf_abs(t100 - cf_rounded(single, one, t92 * t103));
+    const real_t room_alpha_front_elbow_down = t93 - t104;
+    const real_t room_beta_front_elbow_down = t93 - cf_abs(L1 * p_1_front_elbow_down);
+    const int t105 = t36 & (t38 <= room_alpha_front_elbow_down) & (t38 <= room_beta_front_elbow_down);
     const real_t sigma_uv_front_elbow_down = cf_sign(-whole_alpha_front_elbow_down);
-    const real_t t100 = sigma_uv_front_elbow_down * p_1_front_elbow_down;
-    const real_t t101 = t87 * sigma_uv_front_elbow_down;
-    const real_t t102 = t100 - t101;
-    const int t103 = t66 <= t102;
-    const real_t t104 = -(t101 + t100);
-    const int t105 = t66 <= t104;
-    const real_t below_beta_0_front_elbow_down = cf_max(t102, t74);
-    const real_t above_beta_0_front_elbow_down = cf_max(t104, t74);
-    const real_t t106 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down;
+    const real_t t106 = sigma_uv_front_elbow_down * p_1_front_elbow_down;
+    const real_t t107 = t92 * sigma_uv_front_elbow_down;
+    const real_t t108 = t106 - t107;
+    const int t109 = t70 <= t108;
+    const real_t t110 = -(t107 + t106);
+    const int t111 = t70 <= t110;
+    const real_t below_beta_0_front_elbow_down = cf_max(t108, t78);
+    const real_t above_beta_0_front_elbow_down = cf_max(t110, t78);
+    const real_t t112 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down;
     const real_t total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down;
-    const real_t t107 = v_2_front_elbow_down * (t106 / total_beta_0_front_elbow_down);
-    const real_t along_u_front_elbow_down = t97 + t107;
+    const real_t t113 = cf_rounded(single, one, v_2_front_elbow_down * (t112 / total_beta_0_front_elbow_down));
+    const real_t along_u_front_elbow_down = t103 + t113;
     const real_t left_along_front_elbow_down = L1 - cf_abs(-along_u_front_elbow_down);
-    const int t108 = t99 & t103 & t105 & t103 & t105 & (t66 <= left_along_front_elbow_down);
-    const real_t t109 = L1 - along_u_front_elbow_down;
-    const real_t t110 = L1 + along_u_front_elbow_down;
-    const int t111 = t108 & t103 & t105 & (t66 <= t109) & (t66 <= t110);
-    const int unreachable_2 = !t111;
-    const real_t t112 = cf_poison(single, invalid | unreachable_2);
-    const real_t below_alpha_front_elbow_down = cf_max(t109, t74);
-    const real_t above_alpha_front_elbow_down = cf_max(t110, t74);
-    const real_t t113 = below_alpha_front_elbow_down - above_alpha_front_elbow_down;
-    const real_t t114 = below_alpha_front_elbow_down * above_alpha_front_elbow_down;
-    const real_t t115 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down;
-    const real_t t116 = t60 + t61;
-    const real_t t117 = t56 - t58;
-    const real_t t118 = cf_abs(v_2_front_elbow_down * t116 + t87 * t117);
-    const real_t room_alpha_rear_elbow_up = t88 - t118;
-    const real_t room_beta_rear_elbow_up = t88 - cf_abs(L1 * t116);
-    const int t119 = t34 & (t35 <= room_alpha_rear_elbow_up) & (t35 <= room_beta_rear_elbow_up);
-    const real_t t120 = sigma_uv_front_elbow_down * t116;
-    const real_t t121 = t120 - t101;
-    const int t122 = t66 <= t121;
-    const real_t t123 = -(t101 + t120);
-    const int t124 = t66 <= t123;
-    const real_t below_beta_0_rear_elbow_up = cf_max(t121, t74);
-    const real_t above_beta_0_rear_elbow_up = cf_max(t123, t74);
-    const real_t t125 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up;
+    const int t114 = t105 & t109 & t111 & t109 & t111 & (t70 <= left_along_front_elbow_down);
+    const real_t t115 = L1 - along_u_front_elbow_down;
+    const real_t t116 = L1 + along_u_front_elbow_down;
+    const int t117 = t114 & t109 & t111 & (t70 <= t115) & (t70 <= t116);
+    const int unreachable_2 = !t117;
+    const real_t t118 = cf_poison(single, invalid | unreachable_2);
+    const real_t below_alpha_front_elbow_down = cf_max(t115, t78);
+    const real_t above_alpha_front_elbow_down = cf_max(t116, t78);
+    const real_t t119 = below_alpha_front_elbow_down - above_alpha_front_elbow_down;
+    const real_t t120 = below_alpha_front_elbow_down * above_alpha_front_elbow_down;
+    const real_t t121 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down;
+    const real_t t122 = t63 + t64;
+    const real_t t123 = cf_rounded(single, one, v_2_front_elbow_down * t122);
+    const real_t t124 = t59 - t61;
+    const real_t t125 = cf_abs(t123 + cf_rounded(single, one, t92 * t124));
+    const real_t room_alpha_rear_elbow_up = t93 - t125;
+    const real_t room_beta_rear_elbow_up = t93 - cf_abs(L1 * t122);
+    const int t126 = t36 & (t38 <= room_alpha_rear_elbow_up) & (t38 <= room_beta_rear_elbow_up);
+    const real_t t127 = sigma_uv_front_elbow_down * t122;
+    const real_t t128 = t127 - t107;
+    const int t129 = t70 <= t128;
+    const real_t t130 = -(t107 + t127);
+    const int t131 = t70 <= t130;
+    const real_t below_beta_0_rear_elbow_up = cf_max(t128, t78);
+    const real_t above_beta_0_rear_elbow_up = cf_max(t130, t78);
+    const real_t t132 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up;
     const real_t total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up;
-    const real_t t126 = v_2_front_elbow_down * (t125 / total_beta_0_rear_elbow_up);
-    const real_t t127 = t117 - t126;
-    const real_t left_along_rear_elbow_up = L1 - cf_abs(t127);
-    const int t128 = t119 & t122 & t124 & t122 & t124 & (t66 <= left_along_rear_elbow_up);
-    const real_t t129 = L1 + t127;
-    const real_t t130 = L1 - t127;
-    const int t131 = t128 & t122 & t124 & (t66 <= t129) & (t66 <= t130);
-    const int unreachable_3 = !t131;
-    const real_t t132 = cf_poison(single, invalid | unreachable_3);
-    const real_t below_alpha_rear_elbow_up = cf_max(t129, t74);
-    const real_t above_alpha_rear_elbow_up = cf_max(t130, t74);
-    const real_t t133 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up;
-    const real_t t134 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up;
-    const real_t t135 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up;
-    const real_t t136 = t92 + t94;
-    const real_t t137 = t95 - t96;
-    const real_t room_alpha_rear_elbow_down = t48 - cf_abs(-(v_2 * t136 + t47 * t137));
-    const real_t room_beta_rear_elbow_down = t48 - cf_abs(-(L1 * t136));
-    const int t138 = t34 & (t35 <= room_alpha_rear_elbow_down) & (t35 <= room_beta_rear_elbow_down);
-    const real_t p_across_u_rear_elbow_down = sigma_uv * t136;
-    const real_t t139 = -(t67 + p_across_u_rear_elbow_down);
-    const int t140 = t66 <= t139;
-    const real_t t141 = p_across_u_rear_elbow_down - t67;
-    const int t142 = t66 <= t141;
-    const real_t below_beta_0_rear_elbow_down = cf_max(t139, t74);
-    const real_t above_beta_0_rear_elbow_down = cf_max(t141, t74);
-    const real_t t143 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down;
+    const real_t t133 = cf_rounded(single, one, v_2_front_elbow_down * (t132 / total_beta_0_rear_elbow_up));
+    const real_t t134 = t124 - t133;
+    const real_t left_along_rear_elbow_up = L1 - cf_abs(t134);
+    const int t135 = t126 & t129 & t131 & t129 & t131 & (t70 <= left_along_rear_elbow_up);
+    const real_t t136 = L1 + t134;
+    const real_t t137 = L1 - t134;
+    const int t138 = t135 & t129 & t131 & (t70 <= t136) & (t70 <= t137);
+    const int unreachable_3 = !t138;
+    const real_t t139 = cf_poison(single, invalid | unreachable_3);
+    const real_t below_alpha_rear_elbow_up = cf_max(t136, t78);
+    const real_t above_alpha_rear_elbow_up = cf_max(t137, t78);
+    const real_t t140 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up;
+    const real_t t141 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up;
+    const real_t t142 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up;
+    const real_t t143 = t97 + t99;
+    const real_t t144 = t101 - t102;
+    const real_t t145 = cf_rounded(single, one, v_2 * t143) + cf_rounded(single, one, t50 * t144);
+    const real_t room_alpha_rear_elbow_down = t51 - cf_abs(-t145);
+    const real_t room_beta_rear_elbow_down = t51 - cf_abs(-(L1 * t143));
+    const int t146 = t36 & (t38 <= room_alpha_rear_elbow_down) & (t38 <= room_beta_rear_elbow_down);
+    const real_t p_across_u_rear_elbow_down = sigma_uv * t143;
+    const real_t t147 = -(t71 + p_across_u_rear_elbow_down);
+    const int t148 = t70 <= t147;
+    const real_t t149 = p_across_u_rear_elbow_down - t71;
+    const int t150 = t70 <= t149;
+    const real_t below_beta_0_rear_elbow_down = cf_max(t147, t78);
+    const real_t above_beta_0_rear_elbow_down = cf_max(t149, t78);
+    const real_t t151 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down;
     const real_t total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down;
-    const real_t along_u_rear_elbow_down = t137 + v_2 * (t143 / total_beta_0_rear_elbow_down);
+    const real_t t152 = cf_rounded(single, one, v_2 * (t151 / total_beta_0_rear_elbow_down));
+    const real_t along_u_rear_elbow_down = t144 + t152;
     const real_t left_along_rear_elbow_down = L1 - cf_abs(-along_u_rear_elbow_down);
-    const int t144 = t138 & t140 & t142 & t140 & t142 & (t66 <= left_along_rear_elbow_down);
-    const real_t t145 = L1 - along_u_rear_elbow_down;
-    const real_t t146 = L1 + along_u_rear_elbow_down;
-    const int t147 = t144 & t140 & t142 & (t66 <= t145) & (t66 <= t146);
-    const int unreachable_4 = !t147;
-    const real_t t148 = cf_poison(single, invalid | unreachable_4);
-    const real_t below_alpha_rear_elbow_down = cf_max(t145, t74);
-    const real_t above_alpha_rear_elbow_down = cf_max(t146, t74);
-    const real_t t149 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down;
-    const real_t t150 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down;
-    const real_t t151 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down;
-    const int t152 = wrist <= al * CLOSEDFORM_DETERMINED;
-    const real_t t153 = cf_status(single, invalid, unreachable, t152);
-    const real_t t154 = cf_status(single, invalid, unreachable_2, t152);
-    const real_t t155 = cf_status(single, invalid, unreachable_3, t152);
-    const real_t t156 = cf_status(single, invalid, unreachable_4, t152);
-    const int t157 = (h <= t21 * CLOSEDFORM_VANISHING) | (L1 * fore <= CLOSEDFORM_VANISHING * t27);
-    const real_t t158 = CLOSEDFORM_VANISHING * t24;
-    const int folded = cf_abs(t28) + cf_abs(onward) <= t158;
-    const real_t t159 = room_alpha * CLOSEDFORM_C(9.094947017729282e-13);
-    const real_t t160 = CLOSEDFORM_VANISHING * play_alpha;
-    const int spent_alpha = cf_max(-t159, room_alpha) <= t160;
-    const real_t t161 = room_beta * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_beta = cf_max(-t161, room_beta) <= t160;
-    const int t162 = t157 | folded | (fore <= t158) | spent_alpha | spent_beta;
-    const real_t t163 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * cf_abs(v_2));
-    const real_t t164 = left_along * CLOSEDFORM_C(9.094947017729282e-13);
-    const real_t t165 = CLOSEDFORM_VANISHING * play_along;
-    const int spent_along = cf_max(-t164, left_along) <= t165;
-    const real_t t166 = room_alpha_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_alpha_front_elbow_down = cf_max(-t166, room_alpha_front_elbow_down) <= t160;
-    const int t167 = t162 | (-t67 <= t163) | spent_along | spent_alpha_front_elbow_down;
-    const real_t t168 = room_beta_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_beta_front_elbow_down = cf_max(-t168, room_beta_front_elbow_down) <= t160;
-    const real_t t169 = CLOSEDFORM_C(64.0) * cf_abs(v_2_front_elbow_down);
-    const int t170 = t167 | spent_beta_front_elbow_down | (-t101 <= CLOSEDFORM_VANISHING * t169);
-    const real_t t171 = left_along_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_along_front_elbow_down = cf_max(-t171, left_along_front_elbow_down) <= t165;
-    const real_t t172 = room_alpha_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_alpha_rear_elbow_up = cf_max(-t172, room_alpha_rear_elbow_up) <= t160;
-    const int t173 = t170 | spent_along_front_elbow_down | spent_alpha_rear_elbow_up;
-    const real_t t174 = room_beta_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_beta_rear_elbow_up = cf_max(-t174, room_beta_rear_elbow_up) <= t160;
-    const real_t t175 = left_along_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_along_rear_elbow_up = cf_max(-t175, left_along_rear_elbow_up) <= t165;
-    const int t176 = t173 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up;
-    const real_t t177 = room_alpha_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_alpha_rear_elbow_down = cf_max(-t177, room_alpha_rear_elbow_down) <= t160;
-    const real_t t178 = room_beta_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_beta_rear_elbow_down = cf_max(-t178, room_beta_rear_elbow_down) <= t160;
-    const int t179 = t176 | spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down;
-    const real_t t180 = left_along_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_along_rear_elbow_down = cf_max(-t180, left_along_rear_elbow_down) <= t165;
-    const real_t opposite[24] = { CLOSEDFORM_C(2.0) * onward, x_2, CLOSEDFORM_C(0.0), up, below_alpha - above_alpha, t75, t41, L_2W, -t89, t113, t106, up, t133, t125, -t89, t149, t143 };
-    const real_t adjacent[24] = { above - below, y, CLOSEDFORM_C(1.0), -out_rear_elbow_up, t82, t83, t37, a_3W, out_front_elbow_down, CLOSEDFORM_C(2.0) * cf_sqrt(t114), CLOSEDFORM_C(2.0) * cf_sqrt(t115), out_rear_elbow_up, CLOSEDFORM_C(2.0) * cf_sqrt(t134), CLOSEDFORM_C(2.0) * cf_sqrt(t135), -out_front_elbow_down, CLOSEDFORM_C(2.0) * cf_sqrt(t150), CLOSEDFORM_C(2.0) * cf_sqrt(t151) };
+    const int t153 = t146 & t148 & t150 & t148 & t150 & (t70 <= left_along_rear_elbow_down);
+    const real_t t154 = L1 - along_u_rear_elbow_down;
+    const real_t t155 = L1 + along_u_rear_elbow_down;
+    const int t156 = t153 & t148 & t150 & (t70 <= t154) & (t70 <= t155);
+    const int unreachable_4 = !t156;
+    const real_t t157 = cf_poison(single, invalid | unreachable_4);
+    const real_t below_alpha_rear_elbow_down = cf_max(t154, t78);
+    const real_t above_alpha_rear_elbow_down = cf_max(t155, t78);
+    const real_t t158 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down;
+    const real_t t159 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down;
+    const real_t t160 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down;
+    const int t161 = wrist <= al * CLOSEDFORM_DETERMINED;
+    const real_t t162 = cf_status(single, invalid, unreachable, t161);
+    const real_t t163 = cf_status(single, invalid, unreachable_2, t161);
+    const real_t t164 = cf_status(single, invalid, unreachable_3, t161);
+    const real_t t165 = cf_status(single, invalid, unreachable_4, t161);
+    const int t166 = (h <= t22 * CLOSEDFORM_VANISHING) | (L1 * fore <= CLOSEDFORM_VANISHING * t29);
+    const real_t t167 = CLOSEDFORM_VANISHING * t26;
+    const int folded = cf_abs(t30) + cf_abs(onward) <= t167;
+    const real_t t168 = room_alpha * CLOSEDFORM_C(9.094947017729282e-13);
+    const real_t t169 = CLOSEDFORM_VANISHING * play_alpha;
+    const int spent_alpha = cf_max(-t168, room_alpha) <= t169;
+    const real_t t170 = room_beta * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_beta = cf_max(-t170, room_beta) <= t169;
+    const int t171 = t166 | folded | (fore <= t167) | spent_alpha | spent_beta;
+    const real_t t172 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * cf_abs(v_2));
+    const real_t t173 = left_along * CLOSEDFORM_C(9.094947017729282e-13);
+    const real_t t174 = CLOSEDFORM_VANISHING * play_along;
+    const int spent_along = cf_max(-t173, left_along) <= t174;
+    const real_t t175 = room_alpha_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_alpha_front_elbow_down = cf_max(-t175, room_alpha_front_elbow_down) <= t169;
+    const int t176 = t171 | (-t71 <= t172) | spent_along | spent_alpha_front_elbow_down;
+    const real_t t177 = room_beta_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_beta_front_elbow_down = cf_max(-t177, room_beta_front_elbow_down) <= t169;
+    const real_t t178 = CLOSEDFORM_C(64.0) * cf_abs(v_2_front_elbow_down);
+    const int t179 = t176 | spent_beta_front_elbow_down | (-t107 <= CLOSEDFORM_VANISHING * t178);
+    const real_t t180 = left_along_front_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_along_front_elbow_down = cf_max(-t180, left_along_front_elbow_down) <= t174;
+    const real_t t181 = room_alpha_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_alpha_rear_elbow_up = cf_max(-t181, room_alpha_rear_elbow_up) <= t169;
+    const int t182 = t179 | spent_along_front_elbow_down | spent_alpha_rear_elbow_up;
+    const real_t t183 = room_beta_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_beta_rear_elbow_up = cf_max(-t183, room_beta_rear_elbow_up) <= t169;
+    const real_t t184 = left_along_rear_elbow_up * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_along_rear_elbow_up = cf_max(-t184, left_along_rear_elbow_up) <= t174;
+    const int t185 = t182 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up;
+    const real_t t186 = room_alpha_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_alpha_rear_elbow_down = cf_max(-t186, room_alpha_rear_elbow_down) <= t169;
+    const real_t t187 = room_beta_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_beta_rear_elbow_down = cf_max(-t187, room_beta_rear_elbow_down) <= t169;
+    const int t188 = t185 | spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down;
+    const real_t t189 = left_along_rear_elbow_down * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_along_rear_elbow_down = cf_max(-t189, left_along_rear_elbow_down) <= t174;
+    const real_t opposite[24] = { CLOSEDFORM_C(2.0) * onward, x_2, CLOSEDFORM_C(0.0), up, below_alpha - above_alpha, t79, t44, L_2W, -t95, t119, t112, up, t140, t132, -t95, t158, t151 };
+    const real_t adjacent[24] = { above - below, y, CLOSEDFORM_C(1.0), -out_rear_elbow_up, t87, t88, t40, a_3W, out_front_elbow_down, CLOSEDFORM_C(2.0) * cf_sqrt(t120), CLOSEDFORM_C(2.0) * cf_sqrt(t121), out_rear_elbow_up, CLOSEDFORM_C(2.0) * cf_sqrt(t141), CLOSEDFORM_C(2.0) * cf_sqrt(t142), -out_front_elbow_down, CLOSEDFORM_C(2.0) * cf_sqrt(t159), CLOSEDFORM_C(2.0) * cf_sqrt(t160) };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);
@@ -2034,47 +2289,47 @@ CF_INLINE void h6ar_ik_common_kernel(const int single, const h6ar_params *params
         angles[15] = cf_atan2(opposite[15], adjacent[15]);
         angles[16] = cf_atan2(opposite[16], adjacent[16]);
     }
-    const real_t t181 = cf_wrap(angles[0] - angles[1]);
-    const real_t t182 = angles[2] + angles[3];
-    const real_t t183 = angles[4] - angles[5];
-    const real_t t184 = angles[6] - angles[7];
-    const real_t t185 = angles[2] + angles[8];
-    const real_t t186 = angles[6] + angles[7];
-    const real_t t187 = angles[9] - angles[10];
-    const real_t t188 = cf_wrap(-(angles[1] + angles[0]));
-    const real_t t189 = angles[2] + angles[11];
-    const real_t t190 = angles[12] - angles[13];
-    const real_t t191 = angles[2] + angles[14];
-    const real_t t192 = angles[15] - angles[16];
-    q[0] = t181 + t81;
-    q[1] = cf_wrap(t182 - angles[4]) + t81;
-    q[2] = cf_wrap(t183 - t184) + t81;
-    q[3] = cf_wrap(t182 + angles[4]) + t81;
-    q[4] = cf_wrap(-(t184 + t183)) + t81;
-    q[5] = t84 + t81;
-    q[6] = t181 + t112;
-    q[7] = cf_wrap(t185 - angles[9]) + t112;
-    q[8] = cf_wrap(t186 + t187) + t112;
-    q[9] = cf_wrap(t185 + angles[9]) + t112;
-    q[10] = cf_wrap(t186 - t187) + t112;
-    q[11] = t84 + t112;
-    q[12] = t188 + t132;
-    q[13] = cf_wrap(t189 - angles[12]) + t132;
-    q[14] = cf_wrap(t186 + t190) + t132;
-    q[15] = cf_wrap(t189 + angles[12]) + t132;
-    q[16] = cf_wrap(t186 - t190) + t132;
-    q[17] = t84 + t132;
-    q[18] = t188 + t148;
-    q[19] = cf_wrap(t191 - angles[15]) + t148;
-    q[20] = cf_wrap(t192 - t184) + t148;
-    q[21] = cf_wrap(t191 + angles[15]) + t148;
-    q[22] = cf_wrap(-(t184 + t192)) + t148;
-    q[23] = t84 + t148;
-    status[0] = t153;
-    status[1] = t154;
-    status[2] = t155;
-    status[3] = t156;
-    rare[0] = (t179 | spent_along_rear_elbow_down) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t190 = cf_wrap(angles[0] - angles[1]);
+    const real_t t191 = angles[2] + angles[3];
+    const real_t t192 = angles[4] - angles[5];
+    const real_t t193 = angles[6] - angles[7];
+    const real_t t194 = angles[2] + angles[8];
+    const real_t t195 = angles[6] + angles[7];
+    const real_t t196 = angles[9] - angles[10];
+    const real_t t197 = cf_wrap(-(angles[1] + angles[0]));
+    const real_t t198 = angles[2] + angles[11];
+    const real_t t199 = angles[12] - angles[13];
+    const real_t t200 = angles[2] + angles[14];
+    const real_t t201 = angles[15] - angles[16];
+    q[0] = t190 + t86;
+    q[1] = cf_wrap(t191 - angles[4]) + t86;
+    q[2] = cf_wrap(t192 - t193) + t86;
+    q[3] = cf_wrap(t191 + angles[4]) + t86;
+    q[4] = cf_wrap(-(t193 + t192)) + t86;
+    q[5] = t89 + t86;
+    q[6] = t190 + t118;
+    q[7] = cf_wrap(t194 - angles[9]) + t118;
+    q[8] = cf_wrap(t195 + t196) + t118;
+    q[9] = cf_wrap(t194 + angles[9]) + t118;
+    q[10] = cf_wrap(t195 - t196) + t118;
+    q[11] = t89 + t118;
+    q[12] = t197 + t139;
+    q[13] = cf_wrap(t198 - angles[12]) + t139;
+    q[14] = cf_wrap(t195 + t199) + t139;
+    q[15] = cf_wrap(t198 + angles[12]) + t139;
+    q[16] = cf_wrap(t195 - t199) + t139;
+    q[17] = t89 + t139;
+    q[18] = t197 + t157;
+    q[19] = cf_wrap(t200 - angles[15]) + t157;
+    q[20] = cf_wrap(t201 - t193) + t157;
+    q[21] = cf_wrap(t200 + angles[15]) + t157;
+    q[22] = cf_wrap(-(t193 + t201)) + t157;
+    q[23] = t89 + t157;
+    status[0] = t162;
+    status[1] = t163;
+    status[2] = t164;
+    status[3] = t165;
+    rare[0] = (t188 | spent_along_rear_elbow_down) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void h6ar_ik_common_batch(size_t n, const h6ar_params *params,
@@ -2085,6 +2340,7 @@ CF_INLINE void h6ar_ik_common_batch(size_t n, const h6ar_params *params,
 {
     (void)rare_stride;
     const h6ar_params local = *params;
+    const real_t one = cf_one();
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
@@ -2104,7 +2360,7 @@ CF_INLINE void h6ar_ik_common_batch(size_t n, const h6ar_params *params,
             real_t q_i[24];
             real_t status_i[4];
             real_t rare_i[1];
-            h6ar_ik_common_kernel(0, &local, x_i, sines_i, cosines_i, principals_i, q_i, status_i, rare_i);
+            h6ar_ik_common_kernel(0, one, &local, x_i, sines_i, cosines_i, principals_i, q_i, status_i, rare_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -2154,11 +2410,11 @@ CF_INLINE void h6ar_ik_common_batch(size_t n, const h6ar_params *params,
 }
 
 /* One branch of that; all of them are the lanes of vectors. */
-CF_INLINE void h6ar_ik_branch_kernel(const int single, const h6ar_params *params,
-    const real_t x[6], const real_t signs[2],
-    const real_t *sines, const real_t *cosines,
-    const real_t *principals, real_t q[6],
-    real_t status[1], real_t rare[1])
+CF_INLINE void h6ar_ik_branch_kernel(const int single, const real_t one,
+    const h6ar_params *params, const real_t x[6],
+    const real_t signs[2], const real_t *sines,
+    const real_t *cosines, const real_t *principals,
+    real_t q[6], real_t status[1], real_t rare[1])
 {
     const real_t L1 = params->L1;
     const real_t L2 = params->L2;
@@ -2184,128 +2440,134 @@ CF_INLINE void h6ar_ik_branch_kernel(const int single, const h6ar_params *params
     const real_t s_psi = sines[2];
     const real_t c_psi = cosines[2];
     const real_t principal_pitch = principals[0];
-    const real_t h = cf_sqrt(x_2 * x_2 + y * y);
-    const real_t t1 = lp * s_pitch;
-    const real_t t2 = (gs + al) * c_psi - d;
-    const real_t t3 = d - c_psi * (gs - al);
-    const real_t t4 = cf_max(t2, CLOSEDFORM_C(0.0)) * cf_max(t3, CLOSEDFORM_C(0.0));
-    const real_t t5 = CLOSEDFORM_C(1.0) / c_psi;
-    const real_t wrist = cf_sqrt(t4) * t5;
-    const real_t t6 = loff + lp * c_pitch + wrist;
-    const real_t t7 = s_psi * t6;
-    const real_t t8 = s_phi * t1 - c_phi * t7;
-    const real_t t9 = h + t8;
-    const real_t below = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = h - t8;
-    const real_t above = cf_max(t10, CLOSEDFORM_C(0.0));
-    const real_t t11 = cf_sqrt(below * above);
-    const int t12 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
-    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
-    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
-    const int t17 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) + cf_nought(psi) + cf_nought(phi) + cf_nought(pitch) == 0;
-    const real_t t18 = cf_select(CLOSEDFORM_C(0.0) < L1 * d * (L2 + a3), CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0));
-    const int t19 = cf_abs(t18) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t16 & (CLOSEDFORM_C(0.0) <= lp) & t17 & t19);
-    const real_t t20 = CLOSEDFORM_FEASIBILITY * (d * CLOSEDFORM_C(0.5));
-    const int t21 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t20 <= t2);
-    const real_t t22 = L1 + L2;
-    const real_t t23 = -(CLOSEDFORM_FEASIBILITY * t22);
-    const int t24 = t21 & (-t20 <= t3) & (t23 <= t9) & (t23 <= t10);
-    const real_t L_2W = L2 + c_psi * t6;
-    const real_t a_3W = a3 + c_phi * t1 + s_phi * t7;
-    const real_t fore = cf_sqrt(L_2W * L_2W + a_3W * a_3W);
-    const real_t t25 = L1 + fore;
-    const real_t t26 = CLOSEDFORM_C(2.0) * fore;
-    const real_t t27 = CLOSEDFORM_FEASIBILITY * (t25 * (L1 * CLOSEDFORM_C(2.0) + t26));
-    const real_t t28 = t25 * t25;
-    const real_t t29 = z - d1;
-    const real_t onward = sigma_waist * t11;
-    const real_t square = t29 * t29 + onward * onward;
-    const real_t t30 = t28 - square;
-    const real_t t31 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + fore * CLOSEDFORM_C(1.1368683772161603e-13);
-    const real_t t32 = L1 - fore;
-    const real_t t33 = t25 * (t31 + CLOSEDFORM_C(2.0) * cf_abs(t32));
-    const real_t t34 = square - t32 * t32;
-    const int t35 = t24 & (-t27 <= t30) & (-(CLOSEDFORM_FEASIBILITY * t33) <= t34);
-    const real_t play_alpha = d * (L1 + cf_sqrt(L2 * L2 + a3 * a3));
-    const real_t t36 = -(CLOSEDFORM_FEASIBILITY * play_alpha);
-    const real_t M = cf_max(t34, CLOSEDFORM_C(0.0));
-    const real_t N = cf_max(t30, CLOSEDFORM_C(0.0));
-    const real_t t37 = CLOSEDFORM_C(1.0) / (M + N);
-    const real_t t38 = M - N;
-    const real_t t39 = t37 * t38;
-    const real_t t40 = CLOSEDFORM_C(1.0) / fore;
-    const real_t c_lag = a_3W * t40;
-    const real_t t41 = sigma_waist * sigma_elbow;
-    const real_t t42 = CLOSEDFORM_C(2.0) * cf_sqrt(M * N);
-    const real_t t43 = t37 * (t41 * t42);
-    const real_t s_lag = L_2W * t40;
-    const real_t t44 = t39 * c_lag + t43 * s_lag;
-    const real_t t45 = t39 * s_lag - t43 * c_lag;
-    const real_t t46 = L2 * t44 - a3 * t45;
-    const real_t whole_alpha = L1 * t46;
-    const real_t t47 = cf_abs(whole_alpha);
-    const real_t ahead = d * s_psi * t5;
-    const real_t t48 = fore * t43;
-    const real_t ahead_1 = t32 + t26 * M * t37;
-    const real_t up = onward * t48 + t29 * ahead_1;
-    const real_t t49 = t29 * t48 - onward * ahead_1;
-    const real_t t50 = CLOSEDFORM_C(1.0) / cf_sqrt(t49 * t49 + up * up);
-    const real_t stheta2A = up * t50;
+    const real_t t1 = cf_rounded(single, one, x_2 * x_2) + cf_rounded(single, one, y * y);
+    const real_t h = cf_sqrt(t1);
+    const real_t t2 = lp * s_pitch;
+    const real_t t3 = cf_rounded(single, one, (gs + al) * c_psi) - d;
+    const real_t t4 = d - cf_rounded(single, one, c_psi * (gs - al));
+    const real_t t5 = cf_max(t3, CLOSEDFORM_C(0.0)) * cf_max(t4, CLOSEDFORM_C(0.0));
+    const real_t t6 = CLOSEDFORM_C(1.0) / c_psi;
+    const real_t wrist = cf_rounded(single, one, cf_sqrt(t5) * t6);
+    const real_t t7 = loff + cf_rounded(single, one, lp * c_pitch) + wrist;
+    const real_t t8 = s_psi * t7;
+    const real_t t9 = cf_rounded(single, one, s_phi * t2) - cf_rounded(single, one, c_phi * t8);
+    const real_t t10 = h + t9;
+    const real_t below = cf_max(t10, CLOSEDFORM_C(0.0));
+    const real_t t11 = h - t9;
+    const real_t above = cf_max(t11, CLOSEDFORM_C(0.0));
+    const real_t t12 = cf_sqrt(below * above);
+    const int t13 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t15 = t14 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
+    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
+    const int t18 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) + cf_nought(psi) + cf_nought(phi) + cf_nought(pitch) == 0;
+    const real_t t19 = cf_select(CLOSEDFORM_C(0.0) < L1 * d * (L2 + a3), CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0));
+    const int t20 = cf_abs(t19) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t17 & (CLOSEDFORM_C(0.0) <= lp) & t18 & t20);
+    const real_t t21 = CLOSEDFORM_FEASIBILITY * (d * CLOSEDFORM_C(0.5));
+    const int t22 = (-CLOSEDFORM_FEASIBILITY <= c_phi) & (-t21 <= t3);
+    const real_t t23 = L1 + L2;
+    const real_t t24 = -(CLOSEDFORM_FEASIBILITY * t23);
+    const int t25 = t22 & (-t21 <= t4) & (t24 <= t10) & (t24 <= t11);
+    const real_t L_2W = L2 + cf_rounded(single, one, c_psi * t7);
+    const real_t a_3W = a3 + cf_rounded(single, one, c_phi * t2) + cf_rounded(single, one, s_phi * t8);
+    const real_t t26 = cf_rounded(single, one, L_2W * L_2W) + cf_rounded(single, one, a_3W * a_3W);
+    const real_t fore = cf_sqrt(t26);
+    const real_t t27 = L1 + fore;
+    const real_t t28 = CLOSEDFORM_C(2.0) * fore;
+    const real_t t29 = CLOSEDFORM_FEASIBILITY * (t27 * (L1 * CLOSEDFORM_C(2.0) + t28));
+    const real_t t30 = cf_rounded(single, one, t27 * t27);
+    const real_t t31 = z - d1;
+    const real_t onward = sigma_waist * t12;
+    const real_t square = cf_rounded(single, one, t31 * t31) + cf_rounded(single, one, onward * onward);
+    const real_t t32 = t30 - square;
+    const real_t t33 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + fore * CLOSEDFORM_C(1.1368683772161603e-13);
+    const real_t t34 = L1 - fore;
+    const real_t t35 = t27 * (t33 + CLOSEDFORM_C(2.0) * cf_abs(t34));
+    const real_t t36 = square - cf_rounded(single, one, t34 * t34);
+    const int t37 = t25 & (-t29 <= t32) & (-(CLOSEDFORM_FEASIBILITY * t35) <= t36);
+    const real_t t38 = cf_rounded(single, one, L2 * L2) + cf_rounded(single, one, a3 * a3);
+    const real_t play_alpha = d * (L1 + cf_sqrt(t38));
+    const real_t t39 = -(CLOSEDFORM_FEASIBILITY * play_alpha);
+    const real_t M = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t N = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t t40 = CLOSEDFORM_C(1.0) / (M + N);
+    const real_t t41 = M - N;
+    const real_t t42 = t40 * t41;
+    const real_t t43 = CLOSEDFORM_C(1.0) / fore;
+    const real_t c_lag = a_3W * t43;
+    const real_t t44 = sigma_waist * sigma_elbow;
+    const real_t t45 = CLOSEDFORM_C(2.0) * cf_sqrt(M * N);
+    const real_t t46 = t40 * (t44 * t45);
+    const real_t s_lag = L_2W * t43;
+    const real_t t47 = cf_rounded(single, one, t42 * c_lag) + cf_rounded(single, one, t46 * s_lag);
+    const real_t t48 = cf_rounded(single, one, t42 * s_lag) - cf_rounded(single, one, t46 * c_lag);
+    const real_t t49 = cf_rounded(single, one, L2 * t47) - cf_rounded(single, one, a3 * t48);
+    const real_t whole_alpha = L1 * t49;
+    const real_t t50 = cf_abs(whole_alpha);
+    const real_t ahead = d * s_psi * t6;
+    const real_t t51 = fore * t46;
+    const real_t ahead_1 = t34 + cf_rounded(single, one, t28 * M * t40);
+    const real_t up = cf_rounded(single, one, onward * t51) + cf_rounded(single, one, t31 * ahead_1);
+    const real_t t52 = cf_rounded(single, one, t31 * t51) - cf_rounded(single, one, onward * ahead_1);
+    const real_t t53 = cf_rounded(single, one, t52 * t52) + cf_rounded(single, one, up * up);
+    const real_t t54 = CLOSEDFORM_C(1.0) / cf_sqrt(t53);
+    const real_t stheta2A = up * t54;
     const real_t higher = d * s_phi / c_phi;
-    const real_t t51 = t49 * t50;
-    const real_t t52 = ahead * stheta2A + higher * t51;
-    const real_t v_2 = L2 * t45 + a3 * t44;
-    const real_t t53 = ahead * t51 - higher * stheta2A;
-    const real_t room_alpha = t47 - cf_abs(t46 * t52 - v_2 * t53);
-    const real_t room_beta = t47 - cf_abs(-(L1 * t53));
-    const int t54 = t35 & (t36 <= room_alpha) & (t36 <= room_beta);
-    const real_t t55 = cf_abs(higher);
-    const real_t t56 = cf_abs(ahead);
-    const real_t play_along = d + t55 + t56;
-    const real_t t57 = -(CLOSEDFORM_FEASIBILITY * play_along);
+    const real_t t55 = t52 * t54;
+    const real_t t56 = cf_rounded(single, one, ahead * stheta2A) + cf_rounded(single, one, higher * t55);
+    const real_t v_2 = cf_rounded(single, one, L2 * t48) + cf_rounded(single, one, a3 * t47);
+    const real_t t57 = cf_rounded(single, one, ahead * t55) - cf_rounded(single, one, higher * stheta2A);
+    const real_t t58 = cf_rounded(single, one, t49 * t56) - cf_rounded(single, one, v_2 * t57);
+    const real_t room_alpha = t50 - cf_abs(t58);
+    const real_t room_beta = t50 - cf_abs(-(L1 * t57));
+    const int t59 = t37 & (t39 <= room_alpha) & (t39 <= room_beta);
+    const real_t t60 = cf_abs(higher);
+    const real_t t61 = cf_abs(ahead);
+    const real_t play_along = d + t60 + t61;
+    const real_t t62 = -(CLOSEDFORM_FEASIBILITY * play_along);
     const real_t sigma_uv = cf_sign(-whole_alpha);
-    const real_t t58 = t46 * sigma_uv;
-    const real_t p_across_u = sigma_uv * t53;
-    const real_t t59 = -(t58 + p_across_u);
-    const int t60 = t57 <= t59;
-    const real_t t61 = p_across_u - t58;
-    const int t62 = t57 <= t61;
-    const real_t t63 = d * CLOSEDFORM_C(16.0) + t55 * CLOSEDFORM_C(16.0);
-    const real_t t64 = CLOSEDFORM_VANISHING * (t63 + CLOSEDFORM_C(16.0) * t56);
-    const real_t t65 = CLOSEDFORM_VANISHING * t64;
-    const real_t below_beta_0 = cf_max(t59, t65);
-    const real_t above_beta_0 = cf_max(t61, t65);
-    const real_t t66 = below_beta_0 - above_beta_0;
-    const real_t t67 = t52 - v_2 * (t66 / (below_beta_0 + above_beta_0));
-    const real_t left_along = L1 - cf_abs(t67);
-    const int t68 = t54 & t60 & t62 & t60 & t62 & (t57 <= left_along);
-    const real_t t69 = L1 + t67;
-    const real_t t70 = L1 - t67;
-    const int t71 = t68 & t60 & t62 & (t57 <= t69) & (t57 <= t70);
-    const int unreachable = !t71;
-    const real_t t72 = cf_poison(single, invalid | unreachable);
-    const real_t below_alpha = cf_max(t69, t65);
-    const real_t above_alpha = cf_max(t70, t65);
-    const real_t t73 = CLOSEDFORM_C(2.0) * cf_sqrt(below_alpha * above_alpha);
-    const real_t t74 = CLOSEDFORM_C(2.0) * cf_sqrt(below_beta_0 * above_beta_0);
-    const real_t t75 = cf_status(single, invalid, unreachable, wrist <= al * CLOSEDFORM_DETERMINED);
-    const int t76 = (h <= t22 * CLOSEDFORM_VANISHING) | (L1 * fore <= CLOSEDFORM_VANISHING * t28);
-    const real_t t77 = CLOSEDFORM_VANISHING * t25;
-    const int folded = cf_abs(t29) + cf_abs(onward) <= t77;
-    const real_t t78 = room_alpha * CLOSEDFORM_C(9.094947017729282e-13);
-    const real_t t79 = CLOSEDFORM_VANISHING * play_alpha;
-    const int spent_alpha = cf_max(-t78, room_alpha) <= t79;
-    const real_t t80 = room_beta * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_beta = cf_max(-t80, room_beta) <= t79;
-    const int t81 = t76 | folded | (fore <= t77) | spent_alpha | spent_beta;
-    const real_t t82 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * cf_abs(v_2));
-    const real_t t83 = left_along * CLOSEDFORM_C(9.094947017729282e-13);
-    const int spent_along = cf_max(-t83, left_along) <= CLOSEDFORM_VANISHING * play_along;
-    const real_t opposite[8] = { CLOSEDFORM_C(2.0) * t11, x_2, CLOSEDFORM_C(0.0), up, below_alpha - above_alpha, t66, t42, L_2W };
-    const real_t adjacent[8] = { above - below, y, CLOSEDFORM_C(1.0), -t49, t73, t74, t38, a_3W };
+    const real_t t63 = t49 * sigma_uv;
+    const real_t p_across_u = sigma_uv * t57;
+    const real_t t64 = -(t63 + p_across_u);
+    const int t65 = t62 <= t64;
+    const real_t t66 = p_across_u - t63;
+    const int t67 = t62 <= t66;
+    const real_t t68 = d * CLOSEDFORM_C(16.0) + t60 * CLOSEDFORM_C(16.0);
+    const real_t t69 = CLOSEDFORM_VANISHING * (t68 + CLOSEDFORM_C(16.0) * t61);
+    const real_t t70 = CLOSEDFORM_VANISHING * t69;
+    const real_t below_beta_0 = cf_max(t64, t70);
+    const real_t above_beta_0 = cf_max(t66, t70);
+    const real_t t71 = below_beta_0 - above_beta_0;
+    const real_t t72 = cf_rounded(single, one, v_2 * (t71 / (below_beta_0 + above_beta_0)));
+    const real_t t73 = t56 - t72;
+    const real_t left_along = L1 - cf_abs(t73);
+    const int t74 = t59 & t65 & t67 & t65 & t67 & (t62 <= left_along);
+    const real_t t75 = L1 + t73;
+    const real_t t76 = L1 - t73;
+    const int t77 = t74 & t65 & t67 & (t62 <= t75) & (t62 <= t76);
+    const int unreachable = !t77;
+    const real_t t78 = cf_poison(single, invalid | unreachable);
+    const real_t below_alpha = cf_max(t75, t70);
+    const real_t above_alpha = cf_max(t76, t70);
+    const real_t t79 = CLOSEDFORM_C(2.0) * cf_sqrt(below_alpha * above_alpha);
+    const real_t t80 = CLOSEDFORM_C(2.0) * cf_sqrt(below_beta_0 * above_beta_0);
+    const real_t t81 = cf_status(single, invalid, unreachable, wrist <= al * CLOSEDFORM_DETERMINED);
+    const int t82 = (h <= t23 * CLOSEDFORM_VANISHING) | (L1 * fore <= CLOSEDFORM_VANISHING * t30);
+    const real_t t83 = CLOSEDFORM_VANISHING * t27;
+    const int folded = cf_abs(t31) + cf_abs(onward) <= t83;
+    const real_t t84 = room_alpha * CLOSEDFORM_C(9.094947017729282e-13);
+    const real_t t85 = CLOSEDFORM_VANISHING * play_alpha;
+    const int spent_alpha = cf_max(-t84, room_alpha) <= t85;
+    const real_t t86 = room_beta * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_beta = cf_max(-t86, room_beta) <= t85;
+    const int t87 = t82 | folded | (fore <= t83) | spent_alpha | spent_beta;
+    const real_t t88 = CLOSEDFORM_VANISHING * (CLOSEDFORM_C(64.0) * cf_abs(v_2));
+    const real_t t89 = left_along * CLOSEDFORM_C(9.094947017729282e-13);
+    const int spent_along = cf_max(-t89, left_along) <= CLOSEDFORM_VANISHING * play_along;
+    const real_t opposite[8] = { CLOSEDFORM_C(2.0) * t12, x_2, CLOSEDFORM_C(0.0), up, below_alpha - above_alpha, t71, t45, L_2W };
+    const real_t adjacent[8] = { above - below, y, CLOSEDFORM_C(1.0), -t52, t79, t80, t41, a_3W };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -2319,18 +2581,18 @@ CF_INLINE void h6ar_ik_branch_kernel(const int single, const h6ar_params *params
         angles[6] = cf_atan2(opposite[6], adjacent[6]);
         angles[7] = cf_atan2(opposite[7], adjacent[7]);
     }
-    const real_t t84 = cf_wrap(sigma_waist * angles[0] - angles[1]) + t72;
-    const real_t t85 = angles[2] + angles[3];
-    const real_t t86 = angles[4] - angles[5];
-    const real_t t87 = t41 * angles[6] - angles[7];
-    q[0] = t84;
-    q[1] = cf_wrap(t85 - angles[4]) + t72;
-    q[2] = cf_wrap(t86 - t87) + t72;
-    q[3] = cf_wrap(t85 + angles[4]) + t72;
-    q[4] = cf_wrap(-(t87 + t86)) + t72;
-    q[5] = cf_wrap(principal_pitch) + t72;
-    status[0] = t75;
-    rare[0] = (t81 | (-t58 <= t82) | spent_along) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t90 = cf_wrap(sigma_waist * angles[0] - angles[1]) + t78;
+    const real_t t91 = angles[2] + angles[3];
+    const real_t t92 = angles[4] - angles[5];
+    const real_t t93 = t44 * angles[6] - angles[7];
+    q[0] = t90;
+    q[1] = cf_wrap(t91 - angles[4]) + t78;
+    q[2] = cf_wrap(t92 - t93) + t78;
+    q[3] = cf_wrap(t91 + angles[4]) + t78;
+    q[4] = cf_wrap(-(t93 + t92)) + t78;
+    q[5] = cf_wrap(principal_pitch) + t78;
+    status[0] = t81;
+    rare[0] = (t87 | (-t63 <= t88) | spent_along) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void h6ar_ik_branches(const h6ar_params *params, const real_t x[6],
@@ -2338,6 +2600,7 @@ CF_INLINE void h6ar_ik_branches(const h6ar_params *params, const real_t x[6],
 {
     static const real_t signs[2][4] = { { CLOSEDFORM_C(1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(-1.0) }, { CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0), CLOSEDFORM_C(1.0), CLOSEDFORM_C(-1.0) } };
     const h6ar_params local = *params;
+    const real_t one = cf_one();
     real_t sines[4], cosines[4], turned[4];
     const real_t lanes[4] = { x[4], x[5], x[3] };
     cf_turned_lanes(4, lanes, sines, cosines, turned);
@@ -2351,7 +2614,7 @@ CF_INLINE void h6ar_ik_branches(const h6ar_params *params, const real_t x[6],
         real_t q_i[6];
         real_t status_i[1];
         real_t rare_i[1];
-        h6ar_ik_branch_kernel(0, &local, x, signs_i, sines, cosines, principals, q_i, status_i, rare_i);
+        h6ar_ik_branch_kernel(0, one, &local, x, signs_i, sines, cosines, principals, q_i, status_i, rare_i);
         q_lanes[0][i] = q_i[0];
         q_lanes[1][i] = q_i[1];
         q_lanes[2][i] = q_i[2];
@@ -2378,9 +2641,56 @@ CLOSEDFORM_DISPATCHED
 void h6ar_ik(const h6ar_params *params, const real_t x[6],
     real_t q[24], uint8_t status[4])
 {
+    static const signed char x_degrees[6] = { 1, 1, 1, 0, 0, 0 };
+    real_t x_scaled[6];
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_max(cf_max(cf_abs(params->lp), cf_abs(x[0])), cf_max(cf_abs(x[1]), cf_abs(x[2]))));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d1 = CF_LIBM(ldexp)(params->d1, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+        cf_rescale(6, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
     uint8_t rare[1];
     h6ar_ik_branches(params, x, q, status, rare);
     if (CF_UNLIKELY(rare[0])) h6ar_ik_whole(params, x, q, status);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word h6ar_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void h6ar_ik_other_sizes(size_t n, const real_t dimensions,
+    const h6ar_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(h6ar_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[6];
+        for (size_t k = 0; k < 6; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[24];
+        uint8_t status_i[4];
+        h6ar_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 24; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 4; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2389,6 +2699,7 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params,
     real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -2402,7 +2713,13 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params,
             h6ar_ik_whole(params, x_i, q_i, status_i);
             for (size_t k = 0; k < 24; ++k) q[k * q_stride + i] = q_i[k];
             for (size_t k = 0; k < 4; ++k) status[k * status_stride + i] = status_i[k];
+
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= h6ar_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            h6ar_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 
@@ -2434,10 +2751,42 @@ CLOSEDFORM_DISPATCHED
 void h6ar_wrist_length(const h6ar_params *params, const real_t psi[1],
     const real_t phi[1], real_t l_W[1])
 {
+    static const signed char l_W_degrees[1] = { 1 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_abs(params->al));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { psi[0], phi[0] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     h6ar_wrist_length_kernel(1, params, psi, phi, cosines, l_W);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, l_W_degrees, exponent, l_W, l_W);
+    }
+}
+
+CF_RARE void h6ar_wrist_length_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *psi, size_t psi_stride,
+    const real_t *phi, size_t phi_stride,
+    real_t *l_W, size_t l_W_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t psi_i[1];
+        for (size_t k = 0; k < 1; ++k) psi_i[k] = psi[k * psi_stride + i];
+        real_t phi_i[1];
+        for (size_t k = 0; k < 1; ++k) phi_i[k] = phi[k * phi_stride + i];
+        real_t l_W_i[1];
+        h6ar_wrist_length(params, psi_i, phi_i, l_W_i);
+        for (size_t k = 0; k < 1; ++k) l_W[k * l_W_stride + i] = l_W_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2450,6 +2799,11 @@ void h6ar_wrist_length_batch(size_t n, const h6ar_params *params,
     (void)phi_stride;
     (void)l_W_stride;
     const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_abs(params->al));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_wrist_length_other_sizes(n, params, psi, psi_stride, phi, phi_stride, l_W, l_W_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];

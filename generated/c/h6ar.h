@@ -12,9 +12,9 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
- *   ik: 396 compare and select, 320 add, 24 atan2, 59 divide, 329 multiply, 1 reduce to a turn, 3
+ *   ik: 398 compare and select, 320 add, 24 atan2, 59 divide, 330 multiply, 1 reduce to a turn, 3
  *     sincos, 16 sqrt
- *   ik where nothing vanishes: 239 compare and select, 158 add, 17 atan2, 25 divide, 137 multiply,
+ *   ik where nothing vanishes: 240 compare and select, 158 add, 17 atan2, 25 divide, 138 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -245,6 +245,8 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
  *   straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),
  *   or their difference where it is folded, is determined by yaw and roll, alpha and beta being
  *   half the differences of the arms' angles; sines of equal size are returned.
+ * - SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al):
+ *   rounded joints do not hold the tip to 1e-12 there.
  * - INVALID: d, L1, or both L2 and a3 are zero.
  */
 void h6ar_ik(const h6ar_params *params, const real_t x[6],

@@ -12,9 +12,9 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
- *   ik: 341 compare and select, 342 add, 27 atan2, 40 divide, 455 multiply, 1 reduce to a turn, 3
+ *   ik: 346 compare and select, 342 add, 27 atan2, 40 divide, 456 multiply, 1 reduce to a turn, 3
  *     sincos, 16 sqrt
- *   ik where nothing vanishes: 253 compare and select, 250 add, 23 atan2, 27 divide, 332 multiply,
+ *   ik where nothing vanishes: 256 compare and select, 250 add, 23 atan2, 27 divide, 333 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
  *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -260,9 +260,11 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  * - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
  *   axis than L_theta, or an arm is out of reach.
  * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
- *   upper arm is returned beside that of the virtual arm), or a virtual arm that is folded or
- *   without length, up to what the joints can tell: they then hold the tip, yaw and roll to
- *   fewer digits.
+ *   upper arm is returned beside that of the virtual arm).
+ * - SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a
+ *   folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
+ *   distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and stretched
+ *   wrist links (l_W is less than 2^-10 al).
  * - INVALID: d, L1, or both L2 and a3 are zero.
  * - A straight right arm is returned bent by a few units in the last place, so that fk can read
  *   the side.

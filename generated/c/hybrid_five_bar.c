@@ -19,7 +19,7 @@
  */
 #include "hybrid_five_bar.h"
 
-CF_INLINE void hybrid_five_bar_fk_kernel(const int single,
+CF_INLINE void hybrid_five_bar_fk_kernel(const int single, const real_t one,
     const hybrid_five_bar_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t p[6], real_t status[2])
@@ -36,57 +36,91 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const int single,
     const real_t c2 = cosines[1];
     const real_t s3 = sines[2];
     const real_t c3 = cosines[2];
-    const real_t C_r = L1 * s2;
-    const real_t t1 = C_r - L1 * s3;
-    const real_t C_y = L1 * c2;
-    const real_t t2 = C_y - (L0 + L1 * c3);
-    const real_t apart = cf_sqrt(t1 * t1 + t2 * t2);
-    const real_t t3 = L0 + L1 + L2;
-    const real_t t4 = t3 * CLOSEDFORM_VANISHING;
-    const int coincide = apart <= t4;
+    const real_t C_r = cf_rounded(single, one, L1 * s2);
+    const real_t t1 = C_r - cf_rounded(single, one, L1 * s3);
+    const real_t C_y = cf_rounded(single, one, L1 * c2);
+    const real_t t2 = C_y - (L0 + cf_rounded(single, one, L1 * c3));
+    const real_t t3 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, t2 * t2);
+    const real_t apart = cf_sqrt(t3);
+    const real_t t4 = L0 + L1 + L2;
+    const real_t t5 = t4 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = CLOSEDFORM_C(1.0) / apart;
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 * t5);
-    const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
-    const real_t t8 = L2 * CLOSEDFORM_C(2.0);
-    const real_t t9 = t8 - apart;
-    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
-    const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t10);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 * t5));
-    const real_t t11 = height * n_1;
-    const real_t P_r = C_r - (t7 - t11);
-    const int t12 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
-    const int t13 = t12 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
-    const int t14 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int invalid = !(t13 & (CLOSEDFORM_C(0.0) <= L2) & t14);
-    const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t3) <= t9);
-    const real_t t15 = cf_poison(single, invalid | unreachable);
-    const real_t t16 = distance * n_1 * CLOSEDFORM_C(0.5);
-    const real_t t17 = height * t6;
-    const real_t P_r_right_of_CD = C_r - (t7 + t11);
-    const real_t t18 = cf_status(single, invalid, unreachable, coincide);
-    p[0] = -(c1 * P_r) + t15;
-    p[1] = C_y + (t16 + t17) + t15;
-    p[2] = s1 * P_r + t15;
-    p[3] = -(c1 * P_r_right_of_CD) + t15;
-    p[4] = C_y + (t16 - t17) + t15;
-    p[5] = s1 * P_r_right_of_CD + t15;
-    status[0] = t18;
-    status[1] = t18;
+    const real_t t6 = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, apart);
+    const real_t t7 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 * t6);
+    const real_t t8 = distance * t7 * CLOSEDFORM_C(0.5);
+    const real_t t9 = L2 * CLOSEDFORM_C(2.0);
+    const real_t t10 = t9 - apart;
+    const real_t slack = cf_max(t10, CLOSEDFORM_C(0.0));
+    const real_t t11 = cf_sqrt(slack * (apart + t9)) * CLOSEDFORM_C(0.5);
+    const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t11);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 * t6));
+    const real_t t12 = height * n_1;
+    const real_t P_r = C_r - (t8 - t12);
+    const int t13 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t15 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t14 & (CLOSEDFORM_C(0.0) <= L2) & t15);
+    const int unreachable = !(-(CLOSEDFORM_FEASIBILITY * t4) <= t10);
+    const real_t t16 = cf_poison(single, invalid | unreachable);
+    const real_t t17 = distance * n_1 * CLOSEDFORM_C(0.5);
+    const real_t t18 = height * t7;
+    const real_t P_r_right_of_CD = C_r - (t8 + t12);
+    const real_t t19 = cf_status(single, invalid, unreachable, coincide);
+    p[0] = -(c1 * P_r) + t16;
+    p[1] = C_y + (t17 + t18) + t16;
+    p[2] = s1 * P_r + t16;
+    p[3] = -(c1 * P_r_right_of_CD) + t16;
+    p[4] = C_y + (t17 - t18) + t16;
+    p[5] = s1 * P_r_right_of_CD + t16;
+    status[0] = t19;
+    status[1] = t19;
 }
 
 CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
     const real_t q[3], real_t p[6], uint8_t status[2])
 {
+    static const signed char p_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
+    const real_t one = cf_one();
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     real_t status_real[2];
-    hybrid_five_bar_fk_kernel(1, params, q, sines, cosines, p, status_real);
+    hybrid_five_bar_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, p_degrees, exponent, p, p);
+    }
+}
+
+CF_RARE void hybrid_five_bar_fk_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t p_i[6];
+        uint8_t status_i[2];
+        hybrid_five_bar_fk(params, q_i, p_i, status_i);
+        for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -96,6 +130,12 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
     uint8_t *status, size_t status_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
@@ -110,7 +150,7 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
             const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t p_i[6];
             real_t status_i[2];
-            hybrid_five_bar_fk_kernel(0, &local, q_i, sines_i, cosines_i, p_i, status_i);
+            hybrid_five_bar_fk_kernel(0, one, &local, q_i, sines_i, cosines_i, p_i, status_i);
             p[start + i] = p_i[0];
             p[p_stride + start + i] = p_i[1];
             p[2 * p_stride + start + i] = p_i[2];
@@ -151,9 +191,9 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int single,
     const real_t t4 = t3 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t4;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t5 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t5 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / cf_divisor(single, coincide, apart));
     const real_t t6 = distance * t5 * CLOSEDFORM_C(0.5);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 / apart));
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 / cf_divisor(single, coincide, apart)));
     const real_t t7 = L2 * CLOSEDFORM_C(2.0);
     const real_t t8 = t7 - apart;
     const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
@@ -192,10 +232,35 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params,
     const real_t q[3], real_t theta[4])
 {
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_passive_angles_kernel(1, params, q, sines, cosines, theta);
+}
+
+CF_RARE void hybrid_five_bar_passive_angles_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *theta, size_t theta_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t theta_i[4];
+        hybrid_five_bar_passive_angles(params, q_i, theta_i);
+        for (size_t k = 0; k < 4; ++k) theta[k * theta_stride + i] = theta_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -204,6 +269,11 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
     real_t *theta, size_t theta_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_passive_angles_other_sizes(n, params, q, q_stride, theta, theta_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -258,9 +328,9 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const int single,
     const real_t t13 = t4 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t13;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t14 = cf_select(coincide, CLOSEDFORM_C(0.0), t6 / apart);
+    const real_t t14 = cf_select(coincide, CLOSEDFORM_C(0.0), t6 / cf_divisor(single, coincide, apart));
     const real_t t15 = distance * t14 * CLOSEDFORM_C(0.5);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t7 / apart));
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t7 / cf_divisor(single, coincide, apart)));
     const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
     const real_t t16 = cf_sqrt(slack * (apart + t5)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), t16);
@@ -299,10 +369,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params,
     const real_t q[3], real_t A[18])
 {
+    static const signed char A_degrees[18] = { 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, A_degrees, exponent, A, A);
+    }
+}
+
+CF_RARE void hybrid_five_bar_jacobian_parallel_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t A_i[18];
+        hybrid_five_bar_jacobian_parallel(params, q_i, A_i);
+        for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -311,6 +410,11 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
     real_t *A, size_t A_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_jacobian_parallel_other_sizes(n, params, q, q_stride, A, A_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
@@ -372,9 +476,9 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const int single,
     const real_t t5 = t4 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / cf_divisor(single, coincide, apart));
     const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / cf_divisor(single, coincide, apart)));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
@@ -404,10 +508,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params,
     const real_t q[3], real_t B[6])
 {
+    static const signed char B_degrees[6] = { 2, 2, 2, 2, 2, 2 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_jacobian_serial_kernel(1, params, q, sines, cosines, B);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, B_degrees, exponent, B, B);
+    }
+}
+
+CF_RARE void hybrid_five_bar_jacobian_serial_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t B_i[6];
+        hybrid_five_bar_jacobian_serial(params, q_i, B_i);
+        for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -416,6 +549,11 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
     real_t *B, size_t B_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_jacobian_serial_other_sizes(n, params, q, q_stride, B, B_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -466,9 +604,9 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const int single,
     const real_t t5 = t4 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / cf_divisor(single, coincide, apart));
     const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / cf_divisor(single, coincide, apart)));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
@@ -522,10 +660,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_jacobian(const hybrid_five_bar_params *params,
     const real_t q[3], real_t J[18])
 {
+    static const signed char J_degrees[18] = { 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     hybrid_five_bar_jacobian_kernel(1, params, q, sines, cosines, J);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, J_degrees, exponent, J, J);
+    }
+}
+
+CF_RARE void hybrid_five_bar_jacobian_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t J_i[18];
+        hybrid_five_bar_jacobian(params, q_i, J_i);
+        for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -534,6 +701,11 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
     real_t *J, size_t J_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
+        hybrid_five_bar_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
@@ -595,9 +767,9 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const int single,
     const real_t t5 = t4 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / cf_divisor(single, coincide, apart));
     const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / cf_divisor(single, coincide, apart)));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
@@ -628,10 +800,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_determinant(const hybrid_five_bar_params *params,
     const real_t q[3], real_t det[2])
 {
+    static const signed char det_degrees[2] = { 3, 3 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_5) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_determinant_kernel(1, params, q, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void hybrid_five_bar_determinant_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[2];
+        hybrid_five_bar_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -640,6 +841,11 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
     real_t *det, size_t det_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_5) & CF_SIGN) != 0)) {
+        hybrid_five_bar_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -684,9 +890,9 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const int single,
     const real_t t5 = t4 * CLOSEDFORM_VANISHING;
     const int coincide = apart <= t5;
     const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
-    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / apart);
+    const real_t t6 = cf_select(coincide, CLOSEDFORM_C(0.0), t1 / cf_divisor(single, coincide, apart));
     const real_t t7 = distance * t6 * CLOSEDFORM_C(0.5);
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / apart));
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t3 / cf_divisor(single, coincide, apart)));
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
@@ -719,10 +925,39 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_singularities(const hybrid_five_bar_params *params,
     const real_t q[3], real_t factors[8])
 {
+    static const signed char factors_degrees[8] = { 1, 2, 2, 2, 1, 2, 2, 2 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_singularities_kernel(1, params, q, sines, cosines, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(8, factors_degrees, exponent, factors, factors);
+    }
+}
+
+CF_RARE void hybrid_five_bar_singularities_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[8];
+        hybrid_five_bar_singularities(params, q_i, factors_i);
+        for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -731,6 +966,11 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
     real_t *factors, size_t factors_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -797,10 +1037,35 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params,
     const real_t q[3], real_t kappa[2])
 {
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[2] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     hybrid_five_bar_condition_number_kernel(1, params, q, sines, cosines, kappa);
+}
+
+CF_RARE void hybrid_five_bar_condition_number_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t kappa_i[2];
+        hybrid_five_bar_condition_number(params, q_i, kappa_i);
+        for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -809,6 +1074,11 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
     real_t *kappa, size_t kappa_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_condition_number_other_sizes(n, params, q, q_stride, kappa, kappa_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -827,7 +1097,7 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
     }
 }
 
-CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
+CF_INLINE void hybrid_five_bar_ik_kernel(const int single, const real_t one,
     const hybrid_five_bar_params *params,
     const real_t x[3], real_t q[24], real_t status[8])
 {
@@ -837,7 +1107,7 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const real_t x_2 = x[0];
     const real_t y = x[1];
     const real_t z = x[2];
-    const real_t r2 = x_2 * x_2 + z * z;
+    const real_t r2 = cf_rounded(single, one, x_2 * x_2) + cf_rounded(single, one, z * z);
     const real_t r = cf_sqrt(r2);
     const real_t t1 = L1 + L2;
     const real_t t2 = CLOSEDFORM_VANISHING * (L0 + t1);
@@ -848,16 +1118,16 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const int invalid = !(t4 & (CLOSEDFORM_C(0.0) <= L2) & t5);
     const real_t t6 = L2 * CLOSEDFORM_C(2.0);
     const real_t t7 = CLOSEDFORM_FEASIBILITY * (t1 * (L1 * CLOSEDFORM_C(2.0) + t6));
-    const real_t t8 = t1 * t1;
-    const real_t square_c = r2 + y * y;
+    const real_t t8 = cf_rounded(single, one, t1 * t1);
+    const real_t square_c = r2 + cf_rounded(single, one, y * y);
     const real_t t9 = t8 - square_c;
     const real_t t10 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + L2 * CLOSEDFORM_C(1.1368683772161603e-13);
     const real_t t11 = L1 - L2;
     const real_t t12 = CLOSEDFORM_FEASIBILITY * (t1 * (t10 + CLOSEDFORM_C(2.0) * cf_abs(t11)));
-    const real_t t13 = t11 * t11;
+    const real_t t13 = cf_rounded(single, one, t11 * t11);
     const real_t t14 = square_c - t13;
     const real_t t15 = y - L0;
-    const real_t square_d = r2 + t15 * t15;
+    const real_t square_d = r2 + cf_rounded(single, one, t15 * t15);
     const real_t t16 = t8 - square_d;
     const real_t t17 = square_d - t13;
     const int t18 = (-t7 <= t9) & (-t12 <= t14) & (-t7 <= t16) & (-t12 <= t17);
@@ -885,23 +1155,23 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single,
     const real_t t28 = t15 * ahead_d;
     const real_t t29 = r * beyond_d;
     const int t30 = on_axis | at_A | at_B | (L1 <= t1 * CLOSEDFORM_VANISHING);
-    const real_t t31 = t1 * t11;
+    const real_t t31 = cf_rounded(single, one, t1 * t11);
     const real_t inner_c = square_c - t31;
     const real_t inner_d = square_d - t31;
-    const real_t t32 = inner_c * inner_d;
-    const real_t t33 = t21 * t26;
+    const real_t t32 = cf_rounded(single, one, inner_c * inner_d);
+    const real_t t33 = cf_rounded(single, one, t21 * t26);
     const real_t t34 = L0 * r;
-    const real_t t35 = (t32 + t33) * t34;
-    const real_t t36 = r2 + y * t15;
-    const real_t t37 = inner_d * t21;
-    const real_t t38 = inner_c * t26;
-    const real_t t39 = t36 * (t37 - t38);
+    const real_t t35 = cf_rounded(single, one, (t32 + t33) * t34);
+    const real_t t36 = r2 + cf_rounded(single, one, y * t15);
+    const real_t t37 = cf_rounded(single, one, inner_d * t21);
+    const real_t t38 = cf_rounded(single, one, inner_c * t26);
+    const real_t t39 = cf_rounded(single, one, t36 * (t37 - t38));
     const real_t t40 = square_c * square_d * CLOSEDFORM_C(4.0) * (L2 * L2);
     const real_t t41 = CLOSEDFORM_DETERMINED * t40;
     const int t42 = cf_abs(t35 - t39) <= t41;
     const real_t t43 = cf_status(single, invalid, unreachable, t30 | t42);
-    const real_t t44 = t36 * (t37 + t38);
-    const real_t t45 = (t32 - t33) * t34;
+    const real_t t44 = cf_rounded(single, one, t36 * (t37 + t38));
+    const real_t t45 = cf_rounded(single, one, (t32 - t33) * t34);
     const int t46 = cf_abs(t44 - t45) <= t41;
     const real_t t47 = cf_status(single, invalid, unreachable, t30 | t46);
     const int t48 = cf_abs(-(t44 + t45)) <= t41;
@@ -975,10 +1245,52 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
     const real_t x[3], real_t q[24], uint8_t status[8])
 {
+    static const signed char x_degrees[3] = { 1, 1, 1 };
+    real_t x_scaled[3];
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_max(cf_abs(params->L2), cf_abs(x[0]))), cf_max(cf_abs(x[1]), cf_abs(x[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
+    const real_t one = cf_one();
     real_t status_real[8];
-    hybrid_five_bar_ik_kernel(1, params, x, q, status_real);
+    hybrid_five_bar_ik_kernel(1, one, params, x, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word hybrid_five_bar_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_6);
+}
+
+CF_RARE void hybrid_five_bar_ik_other_sizes(size_t n, const real_t dimensions,
+    const hybrid_five_bar_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(hybrid_five_bar_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[3];
+        for (size_t k = 0; k < 3; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[24];
+        uint8_t status_i[8];
+        hybrid_five_bar_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 24; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -988,6 +1300,8 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
     uint8_t *status, size_t status_stride)
 {
     const hybrid_five_bar_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[8][CLOSEDFORM_BLOCK];
@@ -996,7 +1310,7 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
             const real_t x_i[3] = { x[start + i], x[x_stride + start + i], x[2 * x_stride + start + i] };
             real_t q_i[24];
             real_t status_i[8];
-            hybrid_five_bar_ik_kernel(0, &local, x_i, q_i, status_i);
+            hybrid_five_bar_ik_kernel(0, one, &local, x_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -1054,10 +1368,16 @@ void hybrid_five_bar_ik_batch(size_t n, const hybrid_five_bar_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[7 * status_stride + start + i] = (uint8_t)status_real[7][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= hybrid_five_bar_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            hybrid_five_bar_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 
-CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_params *params,
+CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const int single, const real_t one,
+    const hybrid_five_bar_params *params,
     const real_t p[3], real_t inside[1])
 {
     const real_t L0 = params->L0;
@@ -1072,16 +1392,16 @@ CF_INLINE void hybrid_five_bar_workspace_contains_kernel(const hybrid_five_bar_p
     const real_t t4 = L1 + L2;
     const real_t t5 = L1 * CLOSEDFORM_C(2.0) + L2 * CLOSEDFORM_C(2.0);
     const real_t t6 = -(CLOSEDFORM_FEASIBILITY * (t4 * t5));
-    const real_t t7 = t4 * t4;
-    const real_t r2 = x * x + z * z;
-    const real_t square_c = r2 + y * y;
+    const real_t t7 = cf_rounded(single, one, t4 * t4);
+    const real_t r2 = cf_rounded(single, one, x * x) + cf_rounded(single, one, z * z);
+    const real_t square_c = r2 + cf_rounded(single, one, y * y);
     const real_t t8 = L1 * CLOSEDFORM_C(1.1368683772161603e-13) + L2 * CLOSEDFORM_C(1.1368683772161603e-13);
     const real_t t9 = L1 - L2;
     const real_t t10 = CLOSEDFORM_FEASIBILITY * (t4 * (t8 + CLOSEDFORM_C(2.0) * cf_abs(t9)));
-    const real_t t11 = t9 * t9;
+    const real_t t11 = cf_rounded(single, one, t9 * t9);
     const int t12 = (t6 <= t7 - square_c) & (-t10 <= square_c - t11);
     const real_t t13 = y - L0;
-    const real_t square_d = r2 + t13 * t13;
+    const real_t square_d = r2 + cf_rounded(single, one, t13 * t13);
     const int t14 = t12 & (t6 <= t7 - square_d) & (-t10 <= square_d - t11);
     const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= L2) & t3)) | (!t14);
     inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
@@ -1091,10 +1411,49 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_workspace_contains(const hybrid_five_bar_params *params,
     const real_t p[3], uint8_t inside[1])
 {
+    static const signed char p_degrees[3] = { 1, 1, 1 };
+    real_t p_scaled[3];
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_max(cf_abs(params->L2), cf_abs(p[0]))), cf_max(cf_abs(p[1]), cf_abs(p[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, p_degrees, -exponent, p, p_scaled);
+        p = p_scaled;
+    }
+    const real_t one = cf_one();
     real_t inside_real[1];
-    hybrid_five_bar_workspace_contains_kernel(params, p, inside_real);
+    hybrid_five_bar_workspace_contains_kernel(1, one, params, p, inside_real);
     for (size_t i = 0; i < 1; ++i)
         inside[i] = (uint8_t)inside_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word hybrid_five_bar_workspace_contains_excess(const real_t dimensions,
+    const real_t *p, size_t p_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(p[i])), cf_max(cf_abs(p[p_stride + i]), cf_abs(p[2 * p_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void hybrid_five_bar_workspace_contains_other_sizes(size_t n, const real_t dimensions,
+    const hybrid_five_bar_params *params,
+    const real_t *p, size_t p_stride,
+    uint8_t *inside, size_t inside_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(hybrid_five_bar_workspace_contains_excess(dimensions, p, p_stride, i) & CF_SIGN)) continue;
+        real_t p_i[3];
+        for (size_t k = 0; k < 3; ++k) p_i[k] = p[k * p_stride + i];
+        uint8_t inside_i[1];
+        hybrid_five_bar_workspace_contains(params, p_i, inside_i);
+        for (size_t k = 0; k < 1; ++k) inside[k * inside_stride + i] = inside_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1104,6 +1463,8 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
 {
     (void)inside_stride;
     const hybrid_five_bar_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t inside_real[1][CLOSEDFORM_BLOCK];
@@ -1111,12 +1472,17 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
         for (size_t i = 0; i < length; ++i) {
             const real_t p_i[3] = { p[start + i], p[p_stride + start + i], p[2 * p_stride + start + i] };
             real_t inside_i[1];
-            hybrid_five_bar_workspace_contains_kernel(&local, p_i, inside_i);
+            hybrid_five_bar_workspace_contains_kernel(0, one, &local, p_i, inside_i);
             inside_real[0][i] = inside_i[0];
         }
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             inside[start + i] = (uint8_t)inside_real[0][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= hybrid_five_bar_workspace_contains_excess(dimensions, p + start, p_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            hybrid_five_bar_workspace_contains_other_sizes(length, dimensions, params, p + start, p_stride, inside + start, inside_stride);
     }
 }
 
@@ -1147,7 +1513,7 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const int single,
     const real_t t15 = m * CLOSEDFORM_C(16.0) * (t13 + t12 * CLOSEDFORM_C(3.0));
     const real_t t16 = CLOSEDFORM_C(3.141592653589793) * (t14 + t15);
     const int t17 = CLOSEDFORM_C(2.0) * cf_max(m, r) <= L0;
-    const real_t t18 = t12 * t13 * CLOSEDFORM_C(25.132741228718345) / L0;
+    const real_t t18 = t12 * t13 * CLOSEDFORM_C(25.132741228718345) / cf_divisor(single, t11, L0);
     const real_t t19 = t4 + t5;
     const real_t t20 = CLOSEDFORM_C(3.141592653589793) * (t19 * t19);
     const real_t t21 = t10 - r * r * r * CLOSEDFORM_C(8.377580409572783);
@@ -1164,7 +1530,33 @@ CLOSEDFORM_DISPATCHED
 void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params,
     real_t volume[1])
 {
+    static const signed char volume_degrees[1] = { 3 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
     hybrid_five_bar_workspace_volume_kernel(1, params, volume);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, volume_degrees, exponent, volume, volume);
+    }
+}
+
+CF_RARE void hybrid_five_bar_workspace_volume_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    real_t *volume, size_t volume_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t volume_i[1];
+        hybrid_five_bar_workspace_volume(params, volume_i);
+        for (size_t k = 0; k < 1; ++k) volume[k * volume_stride + i] = volume_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1173,6 +1565,11 @@ void hybrid_five_bar_workspace_volume_batch(size_t n, const hybrid_five_bar_para
 {
     (void)volume_stride;
     const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        hybrid_five_bar_workspace_volume_other_sizes(n, params, volume, volume_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT

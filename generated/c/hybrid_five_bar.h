@@ -13,7 +13,7 @@
  *   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 2 sqrt
  *   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 2 sqrt
  *   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 2 sqrt
- *   ik: 56 compare and select, 36 add, 6 atan2, 2 divide, 33 multiply, 3 sqrt
+ *   ik: 71 compare and select, 47 add, 6 atan2, 2 divide, 49 multiply, 3 sqrt
  *   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
  *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
  *
@@ -280,9 +280,11 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
  * - UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.
  * - SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is
  *   free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.
+ * - SINGULAR as well near a parallel singularity, where the sine of the angle between CP and DP
+ *   is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than 1e-12
+ *   of the lengths. If L0 = 0, equal signs of the last two entries put C on D.
  * - Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
- *   the loop still closes. fk loses them again near a parallel singularity.
- * - If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.
+ *   the loop still closes.
  */
 void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
     const real_t x[3], real_t q[24], uint8_t status[8]);

@@ -248,10 +248,38 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_determinant(const planar_2r_params *params, const real_t q[2],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 2 };
+    planar_2r_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
     cf_sincos_lanes(1, lanes, sines, cosines);
     planar_2r_determinant_kernel(params, sines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void planar_2r_determinant_other_sizes(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        planar_2r_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -261,6 +289,11 @@ void planar_2r_determinant_batch(size_t n, const planar_2r_params *params,
 {
     (void)det_stride;
     const planar_2r_params local = *params;
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        planar_2r_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -288,10 +321,38 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_manipulability(const planar_2r_params *params, const real_t q[2],
     real_t w[1])
 {
+    static const signed char w_degrees[1] = { 2 };
+    planar_2r_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
     cf_sincos_lanes(1, lanes, sines, cosines);
     planar_2r_manipulability_kernel(params, sines, w);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, w_degrees, exponent, w, w);
+    }
+}
+
+CF_RARE void planar_2r_manipulability_other_sizes(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *w, size_t w_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t w_i[1];
+        planar_2r_manipulability(params, q_i, w_i);
+        for (size_t k = 0; k < 1; ++k) w[k * w_stride + i] = w_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -301,6 +362,11 @@ void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params,
 {
     (void)w_stride;
     const planar_2r_params local = *params;
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        planar_2r_manipulability_other_sizes(n, params, q, q_stride, w, w_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -353,8 +419,9 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
     }
 }
 
-CF_INLINE void planar_2r_ik_kernel(const int single, const planar_2r_params *params,
-    const real_t x[2], real_t q[4], real_t status[2])
+CF_INLINE void planar_2r_ik_kernel(const int single, const real_t one,
+    const planar_2r_params *params, const real_t x[2],
+    real_t q[4], real_t status[2])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -362,11 +429,11 @@ CF_INLINE void planar_2r_ik_kernel(const int single, const planar_2r_params *par
     const real_t py = x[1];
     const real_t t1 = l1 + l2;
     const int at_base = cf_abs(px) + cf_abs(py) <= t1 * CLOSEDFORM_VANISHING;
-    const real_t t2 = t1 * t1;
+    const real_t t2 = cf_rounded(single, one, t1 * t1);
     const int no_link = l1 * l2 <= t2 * CLOSEDFORM_VANISHING;
-    const real_t r2 = px * px + py * py;
+    const real_t r2 = cf_rounded(single, one, px * px) + cf_rounded(single, one, py * py);
     const real_t t3 = l1 - l2;
-    const real_t t4 = r2 - t3 * t3;
+    const real_t t4 = r2 - cf_rounded(single, one, t3 * t3);
     const real_t M = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = t2 - r2;
     const real_t N = cf_max(t5, CLOSEDFORM_C(0.0));
@@ -413,10 +480,51 @@ CLOSEDFORM_DISPATCHED
 void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
     real_t q[4], uint8_t status[2])
 {
+    static const signed char x_degrees[2] = { 1, 1 };
+    real_t x_scaled[2];
+    planar_2r_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(x[0]), cf_abs(x[1])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
+    const real_t one = cf_one();
     real_t status_real[2];
-    planar_2r_ik_kernel(1, params, x, q, status_real);
+    planar_2r_ik_kernel(1, one, params, x, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word planar_2r_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_abs(x[x_stride + i])), CF_SIZES_4);
+}
+
+CF_RARE void planar_2r_ik_other_sizes(size_t n, const real_t dimensions,
+    const planar_2r_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(planar_2r_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[2];
+        for (size_t k = 0; k < 2; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[4];
+        uint8_t status_i[2];
+        planar_2r_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 4; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -426,6 +534,8 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
     uint8_t *status, size_t status_stride)
 {
     const planar_2r_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[2][CLOSEDFORM_BLOCK];
@@ -434,7 +544,7 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
             const real_t x_i[2] = { x[start + i], x[x_stride + start + i] };
             real_t q_i[4];
             real_t status_i[2];
-            planar_2r_ik_kernel(0, &local, x_i, q_i, status_i);
+            planar_2r_ik_kernel(0, one, &local, x_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -448,11 +558,17 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= planar_2r_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            planar_2r_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 
-CF_INLINE void planar_2r_ik_pose_kernel(const int single, const planar_2r_params *params,
-    const real_t T[16], real_t q[2], real_t status[1])
+CF_INLINE void planar_2r_ik_pose_kernel(const int single, const real_t one,
+    const planar_2r_params *params, const real_t T[16],
+    real_t q[2], real_t status[1])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -474,38 +590,44 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int single, const planar_2r_params
     const real_t T44 = T[15];
     const real_t t1 = l1 + l2;
     const int no_first_link = l1 <= t1 * CLOSEDFORM_VANISHING;
-    const real_t elbow_y = T24 - T21 * l2;
+    const real_t elbow_y = T24 - cf_rounded(single, one, T21 * l2);
     const real_t t2 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_first_link, l1);
     const real_t s1 = cf_select(no_first_link, CLOSEDFORM_C(0.0), elbow_y * t2);
-    const real_t elbow_x = T14 - T11 * l2;
+    const real_t elbow_x = T14 - cf_rounded(single, one, T11 * l2);
     const real_t c1 = cf_select(no_first_link, CLOSEDFORM_C(1.0), elbow_x * t2);
     const int t3 = cf_nought(l1) + cf_nought(l2) == 0;
     const int t4 = t3 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
     const int t5 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
-    const int t6 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
-    const int t7 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
-    const int t8 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
-    const real_t t9 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
-    const int t10 = cf_abs(t9) <= CLOSEDFORM_ROTATION;
-    const real_t t11 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
-    const int t12 = cf_abs(t11) <= CLOSEDFORM_ROTATION;
-    const int t13 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
-    const int t14 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
-    const int t15 = t4 & t5 & t6 & t7 & t8 & t10 & t12 & t13 & t14;
-    const int t16 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
-    const int t17 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
-    const int t18 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t15 & t16 & t17 & t18);
-    const real_t t19 = cf_sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
-    const real_t t20 = CLOSEDFORM_FEASIBILITY * t1;
-    const int t21 = cf_abs(l1 - t19) <= t20;
-    const int t22 = cf_abs(T34) <= t20;
-    const int t23 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
-    const int t24 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
-    const int t25 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
-    const int unreachable = !(t21 & t22 & t23 & t24 & t25);
-    const real_t t26 = cf_poison(single, invalid | unreachable);
-    const real_t t27 = cf_status(single, invalid, unreachable, no_first_link);
+    const real_t t6 = T13 - cf_rounded(single, one, T21 * T32) + cf_rounded(single, one, T22 * T31);
+    const int t7 = cf_abs(t6) <= CLOSEDFORM_ROTATION;
+    const real_t t8 = T23 + cf_rounded(single, one, T11 * T32) - cf_rounded(single, one, T12 * T31);
+    const int t9 = cf_abs(t8) <= CLOSEDFORM_ROTATION;
+    const real_t t10 = T33 - cf_rounded(single, one, T11 * T22) + cf_rounded(single, one, T12 * T21);
+    const int t11 = cf_abs(t10) <= CLOSEDFORM_ROTATION;
+    const real_t t12 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, T11 * T11);
+    const real_t t13 = t12 - cf_rounded(single, one, T21 * T21) - cf_rounded(single, one, T31 * T31);
+    const int t14 = cf_abs(t13) <= CLOSEDFORM_ROTATION;
+    const real_t t15 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, T12 * T12);
+    const real_t t16 = t15 - cf_rounded(single, one, T22 * T22) - cf_rounded(single, one, T32 * T32);
+    const int t17 = cf_abs(t16) <= CLOSEDFORM_ROTATION;
+    const real_t t18 = cf_rounded(single, one, T11 * T12) + cf_rounded(single, one, T21 * T22);
+    const real_t t19 = cf_abs(t18 + cf_rounded(single, one, T31 * T32));
+    const int t20 = t4 & t5 & t7 & t9 & t11 & t14 & t17 & (t19 <= CLOSEDFORM_ROTATION);
+    const int t21 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t22 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t23 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t24 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t20 & t21 & t22 & t23 & t24);
+    const real_t t25 = cf_rounded(single, one, elbow_x * elbow_x) + cf_rounded(single, one, elbow_y * elbow_y);
+    const real_t t26 = CLOSEDFORM_FEASIBILITY * t1;
+    const int t27 = cf_abs(l1 - cf_sqrt(t25)) <= t26;
+    const int t28 = cf_abs(T34) <= t26;
+    const int t29 = cf_abs(T13) <= CLOSEDFORM_FEASIBILITY;
+    const int t30 = cf_abs(T23) <= CLOSEDFORM_FEASIBILITY;
+    const int t31 = cf_abs(T33 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_FEASIBILITY;
+    const int unreachable = !(t27 & t28 & t29 & t30 & t31);
+    const real_t t32 = cf_poison(single, invalid | unreachable);
+    const real_t t33 = cf_status(single, invalid, unreachable, no_first_link);
     const real_t opposite[2] = { s1, T11 * s1 - T21 * c1 };
     const real_t adjacent[2] = { c1, T11 * c1 + T21 * s1 };
     real_t angles[2];
@@ -515,19 +637,60 @@ CF_INLINE void planar_2r_ik_pose_kernel(const int single, const planar_2r_params
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
     }
-    q[0] = cf_wrap_cut(angles[0]) + t26;
-    q[1] = cf_wrap_cut(-angles[1]) + t26;
-    status[0] = t27;
+    q[0] = cf_wrap_cut(angles[0]) + t32;
+    q[1] = cf_wrap_cut(-angles[1]) + t32;
+    status[0] = t33;
 }
 
 CLOSEDFORM_DISPATCHED
 void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
     real_t q[2], uint8_t status[1])
 {
+    static const signed char T_degrees[16] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0 };
+    real_t T_scaled[16];
+    planar_2r_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(T[3]), cf_abs(T[7]))), cf_abs(T[11]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+        cf_rescale(16, T_degrees, -exponent, T, T_scaled);
+        T = T_scaled;
+    }
+    const real_t one = cf_one();
     real_t status_real[1];
-    planar_2r_ik_pose_kernel(1, params, T, q, status_real);
+    planar_2r_ik_pose_kernel(1, one, params, T, q, status_real);
     for (size_t i = 0; i < 1; ++i)
         status[i] = (uint8_t)status_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word planar_2r_ik_pose_excess(const real_t dimensions,
+    const real_t *T, size_t T_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(T[3 * T_stride + i])), cf_max(cf_abs(T[7 * T_stride + i]), cf_abs(T[11 * T_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void planar_2r_ik_pose_other_sizes(size_t n, const real_t dimensions,
+    const planar_2r_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(planar_2r_ik_pose_excess(dimensions, T, T_stride, i) & CF_SIGN)) continue;
+        real_t T_i[16];
+        for (size_t k = 0; k < 16; ++k) T_i[k] = T[k * T_stride + i];
+        real_t q_i[2];
+        uint8_t status_i[1];
+        planar_2r_ik_pose(params, T_i, q_i, status_i);
+        for (size_t k = 0; k < 2; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 1; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -538,6 +701,8 @@ void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params,
 {
     (void)status_stride;
     const planar_2r_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[1][CLOSEDFORM_BLOCK];
@@ -546,7 +711,7 @@ void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params,
             const real_t T_i[16] = { T[start + i], T[T_stride + start + i], T[2 * T_stride + start + i], T[3 * T_stride + start + i], T[4 * T_stride + start + i], T[5 * T_stride + start + i], T[6 * T_stride + start + i], T[7 * T_stride + start + i], T[8 * T_stride + start + i], T[9 * T_stride + start + i], T[10 * T_stride + start + i], T[11 * T_stride + start + i], T[12 * T_stride + start + i], T[13 * T_stride + start + i], T[14 * T_stride + start + i], T[15 * T_stride + start + i] };
             real_t q_i[2];
             real_t status_i[1];
-            planar_2r_ik_pose_kernel(0, &local, T_i, q_i, status_i);
+            planar_2r_ik_pose_kernel(0, one, &local, T_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             status_real[0][i] = status_i[0];
@@ -554,6 +719,11 @@ void planar_2r_ik_pose_batch(size_t n, const planar_2r_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= planar_2r_ik_pose_excess(dimensions, T + start, T_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            planar_2r_ik_pose_other_sizes(length, dimensions, params, T + start, T_stride, q + start, q_stride, status + start, status_stride);
     }
 }
 

@@ -680,10 +680,39 @@ CLOSEDFORM_DISPATCHED
 void puma560_determinant(const puma560_params *params, const real_t q[6],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 3 };
+    puma560_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_abs(params->d4));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.a2 = CF_LIBM(ldexp)(params->a2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d4 = CF_LIBM(ldexp)(params->d4, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[4], q[1], q[2] };
     cf_sincos_lanes(4, lanes, sines, cosines);
     puma560_determinant_kernel(params, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void puma560_determinant_other_sizes(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        puma560_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -693,6 +722,11 @@ void puma560_determinant_batch(size_t n, const puma560_params *params,
 {
     (void)det_stride;
     const puma560_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_abs(params->d4));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
+        puma560_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
@@ -762,8 +796,9 @@ void puma560_singularities_batch(size_t n, const puma560_params *params,
     }
 }
 
-CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
-    const real_t T[16], real_t q[48], real_t status[8])
+CF_INLINE void puma560_ik_kernel(const int single, const real_t one,
+    const puma560_params *params, const real_t T[16],
+    real_t q[48], real_t status[8])
 {
     const real_t a2 = params->a2;
     const real_t a3 = params->a3;
@@ -785,173 +820,198 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
     const real_t T42 = T[13];
     const real_t T43 = T[14];
     const real_t T44 = T[15];
-    const real_t amplitude = cf_sqrt(T14 * T14 + T24 * T24);
-    const real_t f = cf_sqrt(a3 * a3 + d4 * d4);
-    const real_t t1 = a2 + f;
-    const real_t size = cf_abs(d3) + t1;
-    const real_t t2 = CLOSEDFORM_VANISHING * size;
-    const int free_theta1 = amplitude <= t2;
-    const real_t t3 = amplitude - d3;
-    const real_t below = cf_max(t3, CLOSEDFORM_C(0.0));
-    const real_t t4 = d3 + amplitude;
-    const real_t above = cf_max(t4, CLOSEDFORM_C(0.0));
-    const real_t t5 = below - above;
-    const real_t t6 = CLOSEDFORM_C(1.0) / cf_divisor(single, free_theta1, amplitude * (below + above));
-    const real_t t7 = T14 * t5 * t6;
+    const real_t t1 = cf_rounded(single, one, T14 * T14) + cf_rounded(single, one, T24 * T24);
+    const real_t amplitude = cf_sqrt(t1);
+    const real_t t2 = cf_rounded(single, one, a3 * a3) + cf_rounded(single, one, d4 * d4);
+    const real_t f = cf_sqrt(t2);
+    const real_t t3 = a2 + f;
+    const real_t size = cf_abs(d3) + t3;
+    const real_t t4 = CLOSEDFORM_VANISHING * size;
+    const int free_theta1 = amplitude <= t4;
+    const real_t t5 = amplitude - d3;
+    const real_t below = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t t6 = d3 + amplitude;
+    const real_t above = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t7 = below - above;
+    const real_t t8 = CLOSEDFORM_C(1.0) / cf_divisor(single, free_theta1, amplitude * (below + above));
+    const real_t t9 = cf_rounded(single, one, T14 * t7 * t8);
     const real_t root = cf_sqrt(below * above);
-    const real_t t8 = CLOSEDFORM_C(2.0) * root;
-    const real_t t9 = t6 * (T24 * t8);
-    const real_t t10 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t7 - t9);
-    const real_t t11 = T24 * t5 * t6;
-    const real_t t12 = t6 * (T14 * t8);
-    const real_t c1 = cf_select(free_theta1, CLOSEDFORM_C(1.0), t11 + t12);
-    const int t13 = cf_nought(a2) + cf_nought(a3) + cf_nought(d3) + cf_nought(d4) == 0;
-    const int t14 = t13 & (CLOSEDFORM_C(0.0) <= a2) & (CLOSEDFORM_C(0.0) <= d4);
-    const int t15 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
-    const int t16 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
-    const int t17 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
-    const int t18 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
-    const real_t t19 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
-    const int t20 = cf_abs(t19) <= CLOSEDFORM_ROTATION;
-    const real_t t21 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
-    const int t22 = cf_abs(t21) <= CLOSEDFORM_ROTATION;
-    const int t23 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
-    const int t24 = t14 & t15 & t16 & t17 & t18 & t20 & t22 & t23;
-    const int t25 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
-    const int t26 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
-    const int t27 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
-    const int t28 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t24 & t25 & t26 & t27 & t28);
-    const real_t t29 = -(CLOSEDFORM_FEASIBILITY * size);
-    const real_t reach = cf_sqrt(T34 * T34 + root * root);
-    const real_t t30 = t1 - reach;
-    const real_t t31 = a2 - f;
-    const real_t t32 = reach + t31;
-    const int t33 = (t29 <= t3) & (t29 <= t4) & (t29 <= t30) & (t29 <= t32);
-    const real_t t34 = reach - t31;
-    const int unreachable = !(t33 & (t29 <= t34));
-    const real_t t35 = cf_poison(single, invalid | unreachable);
-    const int folded = reach <= t2;
-    const real_t t36 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded, reach);
-    const real_t t37 = cf_select(folded, CLOSEDFORM_C(0.0), T34 * t36);
-    const int no_link = a2 * f <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const int t38 = folded | no_link;
-    const real_t S = t1 + reach;
-    const real_t B = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t SB = S * B;
-    const real_t A = cf_max(t30, CLOSEDFORM_C(0.0));
-    const real_t C = cf_max(t34, CLOSEDFORM_C(0.0));
-    const real_t AC = A * C;
-    const real_t t39 = CLOSEDFORM_C(1.0) / cf_divisor(single, t38, SB + AC);
-    const real_t t40 = cf_select(t38, CLOSEDFORM_C(1.0), (SB - AC) * t39);
-    const real_t t41 = t37 * t40;
-    const real_t SA = S * A;
-    const real_t BC = B * C;
+    const real_t t10 = CLOSEDFORM_C(2.0) * root;
+    const real_t t11 = cf_rounded(single, one, t8 * (T24 * t10));
+    const real_t t12 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t9 - t11);
+    const real_t t13 = cf_rounded(single, one, T24 * t7 * t8);
+    const real_t t14 = cf_rounded(single, one, t8 * (T14 * t10));
+    const real_t c1 = cf_select(free_theta1, CLOSEDFORM_C(1.0), t13 + t14);
+    const int t15 = cf_nought(a2) + cf_nought(a3) + cf_nought(d3) + cf_nought(d4) == 0;
+    const int t16 = t15 & (CLOSEDFORM_C(0.0) <= a2) & (CLOSEDFORM_C(0.0) <= d4);
+    const int t17 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
+    const real_t t18 = T13 - cf_rounded(single, one, T21 * T32) + cf_rounded(single, one, T22 * T31);
+    const int t19 = cf_abs(t18) <= CLOSEDFORM_ROTATION;
+    const real_t t20 = T23 + cf_rounded(single, one, T11 * T32) - cf_rounded(single, one, T12 * T31);
+    const int t21 = cf_abs(t20) <= CLOSEDFORM_ROTATION;
+    const real_t t22 = T33 - cf_rounded(single, one, T11 * T22) + cf_rounded(single, one, T12 * T21);
+    const int t23 = cf_abs(t22) <= CLOSEDFORM_ROTATION;
+    const real_t t24 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, T11 * T11);
+    const real_t t25 = t24 - cf_rounded(single, one, T21 * T21) - cf_rounded(single, one, T31 * T31);
+    const int t26 = cf_abs(t25) <= CLOSEDFORM_ROTATION;
+    const real_t t27 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, T12 * T12);
+    const real_t t28 = t27 - cf_rounded(single, one, T22 * T22) - cf_rounded(single, one, T32 * T32);
+    const int t29 = cf_abs(t28) <= CLOSEDFORM_ROTATION;
+    const real_t t30 = cf_rounded(single, one, T11 * T12) + cf_rounded(single, one, T21 * T22);
+    const real_t t31 = cf_abs(t30 + cf_rounded(single, one, T31 * T32));
+    const int t32 = t16 & t17 & t19 & t21 & t23 & t26 & t29 & (t31 <= CLOSEDFORM_ROTATION);
+    const int t33 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t34 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t35 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t36 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t32 & t33 & t34 & t35 & t36);
+    const real_t t37 = -(CLOSEDFORM_FEASIBILITY * size);
+    const real_t t38 = cf_rounded(single, one, T34 * T34) + cf_rounded(single, one, root * root);
+    const real_t reach = cf_sqrt(t38);
+    const real_t t39 = t3 - reach;
+    const real_t t40 = a2 - f;
+    const real_t t41 = reach + t40;
+    const int t42 = (t37 <= t5) & (t37 <= t6) & (t37 <= t39) & (t37 <= t41);
+    const real_t t43 = reach - t40;
+    const int unreachable = !(t42 & (t37 <= t43));
+    const real_t t44 = cf_poison(single, invalid | unreachable);
+    const int folded = reach <= t4;
+    const real_t t45 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded, reach);
+    const real_t t46 = cf_select(folded, CLOSEDFORM_C(0.0), T34 * t45);
+    const int no_link = a2 * f <= CLOSEDFORM_VANISHING * (t3 * t3);
+    const int t47 = folded | no_link;
+    const real_t S = t3 + reach;
+    const real_t B = cf_max(t41, CLOSEDFORM_C(0.0));
+    const real_t SB = cf_rounded(single, one, S * B);
+    const real_t A = cf_max(t39, CLOSEDFORM_C(0.0));
+    const real_t C = cf_max(t43, CLOSEDFORM_C(0.0));
+    const real_t AC = cf_rounded(single, one, A * C);
+    const real_t t48 = CLOSEDFORM_C(1.0) / cf_divisor(single, t47, SB + AC);
+    const real_t t49 = cf_select(t47, CLOSEDFORM_C(1.0), (SB - AC) * t48);
+    const real_t t50 = cf_rounded(single, one, t46 * t49);
+    const real_t SA = cf_rounded(single, one, S * A);
+    const real_t BC = cf_rounded(single, one, B * C);
     const real_t area = CLOSEDFORM_C(2.0) * cf_sqrt(SA * BC);
-    const real_t t42 = cf_select(t38, CLOSEDFORM_C(0.0), t39 * area);
-    const real_t t43 = root * t36;
-    const real_t t44 = cf_select(folded, CLOSEDFORM_C(1.0), t43);
-    const real_t t45 = t42 * t44;
-    const real_t s2 = t41 + t45;
-    const real_t t46 = t37 * t42;
-    const real_t t47 = t40 * t44;
-    const real_t t48 = t46 - t47;
-    const int no_forearm = f <= t2;
-    const real_t t49 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_forearm, f);
-    const real_t t50 = cf_select(no_forearm, CLOSEDFORM_C(0.0), d4 * t49);
-    const real_t t51 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link, SA + BC);
-    const real_t t52 = cf_select(no_link, CLOSEDFORM_C(1.0), -((SA - BC) * t51));
-    const real_t t53 = t50 * t52;
-    const real_t t54 = cf_select(no_forearm, CLOSEDFORM_C(1.0), a3 * t49);
-    const real_t t55 = cf_select(no_link, CLOSEDFORM_C(0.0), area * t51);
-    const real_t t56 = t54 * t55;
-    const real_t t57 = t53 + t56;
-    const real_t t58 = t50 * t55;
-    const real_t t59 = t52 * t54;
-    const real_t t60 = t58 - t59;
-    const real_t t61 = T13 * t10 + T23 * c1;
-    const real_t t62 = t61 * t61;
-    const real_t s23 = t48 * t57 - s2 * t60;
-    const real_t c23 = t48 * t60 + s2 * t57;
-    const real_t R1_13 = T13 * c1 - T23 * t10;
-    const real_t R2_13 = T33 * s23 + c23 * R1_13;
-    const real_t h = cf_sqrt(t62 + R2_13 * R2_13);
-    const real_t t63 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
-    const int aligned = h <= t63;
-    const real_t t64 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
-    const real_t t65 = cf_select(aligned, CLOSEDFORM_C(0.0), t61 * t64);
-    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(R2_13 * t64));
-    const real_t t66 = T11 * t10 + T21 * c1;
-    const real_t R1_11 = T11 * c1 - T21 * t10;
-    const real_t t67 = T12 * t10 + T22 * c1;
-    const real_t R1_12 = T12 * c1 - T22 * t10;
+    const real_t t51 = cf_select(t47, CLOSEDFORM_C(0.0), t48 * area);
+    const real_t t52 = root * t45;
+    const real_t t53 = cf_select(folded, CLOSEDFORM_C(1.0), t52);
+    const real_t t54 = cf_rounded(single, one, t51 * t53);
+    const real_t s2 = t50 + t54;
+    const real_t t55 = cf_rounded(single, one, t46 * t51);
+    const real_t t56 = cf_rounded(single, one, t49 * t53);
+    const real_t t57 = t55 - t56;
+    const int no_forearm = f <= t4;
+    const real_t t58 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_forearm, f);
+    const real_t t59 = cf_select(no_forearm, CLOSEDFORM_C(0.0), d4 * t58);
+    const real_t t60 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link, SA + BC);
+    const real_t t61 = cf_select(no_link, CLOSEDFORM_C(1.0), -((SA - BC) * t60));
+    const real_t t62 = cf_rounded(single, one, t59 * t61);
+    const real_t t63 = cf_select(no_forearm, CLOSEDFORM_C(1.0), a3 * t58);
+    const real_t t64 = cf_select(no_link, CLOSEDFORM_C(0.0), area * t60);
+    const real_t t65 = cf_rounded(single, one, t63 * t64);
+    const real_t t66 = t62 + t65;
+    const real_t t67 = cf_rounded(single, one, t59 * t64);
+    const real_t t68 = cf_rounded(single, one, t61 * t63);
+    const real_t t69 = t67 - t68;
+    const real_t t70 = cf_rounded(single, one, T13 * t12) + cf_rounded(single, one, T23 * c1);
+    const real_t t71 = cf_rounded(single, one, t70 * t70);
+    const real_t s23 = cf_rounded(single, one, t57 * t66) - cf_rounded(single, one, s2 * t69);
+    const real_t c23 = cf_rounded(single, one, t57 * t69) + cf_rounded(single, one, s2 * t66);
+    const real_t R1_13 = cf_rounded(single, one, T13 * c1) - cf_rounded(single, one, T23 * t12);
+    const real_t R2_13 = cf_rounded(single, one, T33 * s23) + cf_rounded(single, one, c23 * R1_13);
+    const real_t h = cf_sqrt(t71 + cf_rounded(single, one, R2_13 * R2_13));
+    const real_t t72 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
+    const int aligned = h <= t72;
+    const real_t t73 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
+    const real_t t74 = cf_select(aligned, CLOSEDFORM_C(0.0), t70 * t73);
+    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(R2_13 * t73));
+    const real_t t75 = T11 * t12 + T21 * c1;
+    const real_t R1_11 = T11 * c1 - T21 * t12;
+    const real_t t76 = T12 * t12 + T22 * c1;
+    const real_t R1_12 = T12 * c1 - T22 * t12;
     const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t s2_right_down_noflip = t41 - t45;
-    const real_t c2_right_down_noflip = t46 + t47;
-    const real_t t68 = t53 - t56;
-    const real_t c3_right_down_noflip = t58 + t59;
-    const real_t t69 = c2_right_down_noflip * t68 - s2_right_down_noflip * c3_right_down_noflip;
-    const real_t c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t68;
-    const real_t t70 = T33 * t69 - R1_13 * c23_right_down_noflip;
-    const real_t h_right_down_noflip = cf_sqrt(t62 + t70 * t70);
-    const int aligned_right_down_noflip = h_right_down_noflip <= t63;
-    const real_t t71 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_right_down_noflip, h_right_down_noflip);
-    const real_t t72 = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(0.0), t61 * t71);
-    const real_t c4_right_down_noflip = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(1.0), t70 * t71);
-    const real_t t73 = t72 * (T31 * t69 - R1_11 * c23_right_down_noflip);
-    const real_t t74 = t72 * (T32 * t69 - R1_12 * c23_right_down_noflip);
+    const real_t s2_right_down_noflip = t50 - t54;
+    const real_t c2_right_down_noflip = t55 + t56;
+    const real_t t77 = t62 - t65;
+    const real_t c3_right_down_noflip = t67 + t68;
+    const real_t t78 = cf_rounded(single, one, c2_right_down_noflip * t77);
+    const real_t t79 = cf_rounded(single, one, s2_right_down_noflip * c3_right_down_noflip);
+    const real_t t80 = t78 - t79;
+    const real_t t81 = cf_rounded(single, one, c2_right_down_noflip * c3_right_down_noflip);
+    const real_t t82 = cf_rounded(single, one, s2_right_down_noflip * t77);
+    const real_t c23_right_down_noflip = t81 + t82;
+    const real_t t83 = cf_rounded(single, one, R1_13 * c23_right_down_noflip);
+    const real_t t84 = cf_rounded(single, one, T33 * t80) - t83;
+    const real_t h_right_down_noflip = cf_sqrt(t71 + cf_rounded(single, one, t84 * t84));
+    const int aligned_right_down_noflip = h_right_down_noflip <= t72;
+    const real_t t85 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_right_down_noflip, h_right_down_noflip);
+    const real_t t86 = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(0.0), t70 * t85);
+    const real_t c4_right_down_noflip = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(1.0), t84 * t85);
+    const real_t t87 = t86 * (T31 * t80 - R1_11 * c23_right_down_noflip);
+    const real_t t88 = t86 * (T32 * t80 - R1_12 * c23_right_down_noflip);
     const real_t flip_right_down_flip = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t t75 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t7 + t9);
-    const real_t c1_left_up_noflip = cf_select(free_theta1, CLOSEDFORM_C(1.0), t11 - t12);
-    const real_t t76 = cf_select(folded, CLOSEDFORM_C(1.0), -t43);
-    const real_t t77 = t42 * t76;
-    const real_t s2_left_up_noflip = t41 - t77;
-    const real_t t78 = t40 * t76;
-    const real_t c2_left_up_noflip = t46 + t78;
-    const real_t t79 = T13 * t75 + T23 * c1_left_up_noflip;
-    const real_t t80 = t79 * t79;
-    const real_t t81 = t68 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip;
-    const real_t c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t68 * s2_left_up_noflip;
-    const real_t R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t75;
-    const real_t t82 = T33 * t81 - c23_left_up_noflip * R1_13_left_up_noflip;
-    const real_t h_left_up_noflip = cf_sqrt(t80 + t82 * t82);
-    const int aligned_left_up_noflip = h_left_up_noflip <= t63;
-    const real_t t83 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_up_noflip, h_left_up_noflip);
-    const real_t t84 = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(0.0), t79 * t83);
-    const real_t c4_left_up_noflip = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(1.0), t82 * t83);
-    const real_t R2_33_left_up_noflip = T33 * c23_left_up_noflip + t81 * R1_13_left_up_noflip;
-    const real_t t85 = T11 * t75 + T21 * c1_left_up_noflip;
-    const real_t R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t75;
-    const real_t t86 = T31 * t81 - c23_left_up_noflip * R1_11_left_up_noflip;
-    const real_t t87 = T12 * t75 + T22 * c1_left_up_noflip;
-    const real_t R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t75;
-    const real_t t88 = T32 * t81 - c23_left_up_noflip * R1_12_left_up_noflip;
+    const real_t t89 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t9 + t11);
+    const real_t c1_left_up_noflip = cf_select(free_theta1, CLOSEDFORM_C(1.0), t13 - t14);
+    const real_t t90 = cf_select(folded, CLOSEDFORM_C(1.0), -t52);
+    const real_t t91 = cf_rounded(single, one, t51 * t90);
+    const real_t s2_left_up_noflip = t50 - t91;
+    const real_t t92 = cf_rounded(single, one, t49 * t90);
+    const real_t c2_left_up_noflip = t55 + t92;
+    const real_t t93 = cf_rounded(single, one, T23 * c1_left_up_noflip);
+    const real_t t94 = cf_rounded(single, one, T13 * t89) + t93;
+    const real_t t95 = cf_rounded(single, one, t94 * t94);
+    const real_t t96 = cf_rounded(single, one, t77 * c2_left_up_noflip);
+    const real_t t97 = cf_rounded(single, one, c3_right_down_noflip * s2_left_up_noflip);
+    const real_t t98 = t96 - t97;
+    const real_t t99 = cf_rounded(single, one, c3_right_down_noflip * c2_left_up_noflip);
+    const real_t t100 = cf_rounded(single, one, t77 * s2_left_up_noflip);
+    const real_t c23_left_up_noflip = t99 + t100;
+    const real_t t101 = cf_rounded(single, one, T13 * c1_left_up_noflip);
+    const real_t R1_13_left_up_noflip = t101 - cf_rounded(single, one, T23 * t89);
+    const real_t t102 = cf_rounded(single, one, c23_left_up_noflip * R1_13_left_up_noflip);
+    const real_t t103 = cf_rounded(single, one, T33 * t98) - t102;
+    const real_t h_left_up_noflip = cf_sqrt(t95 + cf_rounded(single, one, t103 * t103));
+    const int aligned_left_up_noflip = h_left_up_noflip <= t72;
+    const real_t t104 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_up_noflip, h_left_up_noflip);
+    const real_t t105 = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(0.0), t94 * t104);
+    const real_t c4_left_up_noflip = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(1.0), t103 * t104);
+    const real_t R2_33_left_up_noflip = T33 * c23_left_up_noflip + t98 * R1_13_left_up_noflip;
+    const real_t t106 = T11 * t89 + T21 * c1_left_up_noflip;
+    const real_t R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t89;
+    const real_t t107 = T31 * t98 - c23_left_up_noflip * R1_11_left_up_noflip;
+    const real_t t108 = T12 * t89 + T22 * c1_left_up_noflip;
+    const real_t R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t89;
+    const real_t t109 = T32 * t98 - c23_left_up_noflip * R1_12_left_up_noflip;
     const real_t flip_left_up_flip = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t s2_left_down_noflip = t41 + t77;
-    const real_t t89 = t46 - t78;
-    const real_t s23_left_down_noflip = t57 * t89 - t60 * s2_left_down_noflip;
-    const real_t c23_left_down_noflip = t60 * t89 + t57 * s2_left_down_noflip;
-    const real_t R2_13_left_down_noflip = T33 * s23_left_down_noflip + R1_13_left_up_noflip * c23_left_down_noflip;
-    const real_t t90 = R2_13_left_down_noflip * R2_13_left_down_noflip;
-    const real_t h_left_down_noflip = cf_sqrt(t80 + t90);
-    const int aligned_left_down_noflip = h_left_down_noflip <= t63;
-    const real_t t91 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_down_noflip, h_left_down_noflip);
-    const real_t t92 = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(0.0), t79 * t91);
-    const real_t c4_left_down_noflip = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(1.0), -(R2_13_left_down_noflip * t91));
-    const real_t t93 = t79 * t92 - R2_13_left_down_noflip * c4_left_down_noflip;
+    const real_t s2_left_down_noflip = t50 + t91;
+    const real_t t110 = t55 - t92;
+    const real_t t111 = cf_rounded(single, one, t69 * s2_left_down_noflip);
+    const real_t s23_left_down_noflip = cf_rounded(single, one, t66 * t110) - t111;
+    const real_t t112 = cf_rounded(single, one, T33 * s23_left_down_noflip);
+    const real_t t113 = cf_rounded(single, one, t66 * s2_left_down_noflip);
+    const real_t c23_left_down_noflip = cf_rounded(single, one, t69 * t110) + t113;
+    const real_t t114 = cf_rounded(single, one, R1_13_left_up_noflip * c23_left_down_noflip);
+    const real_t R2_13_left_down_noflip = t112 + t114;
+    const real_t t115 = cf_rounded(single, one, R2_13_left_down_noflip * R2_13_left_down_noflip);
+    const real_t h_left_down_noflip = cf_sqrt(t95 + t115);
+    const int aligned_left_down_noflip = h_left_down_noflip <= t72;
+    const real_t t116 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_down_noflip, h_left_down_noflip);
+    const real_t t117 = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(0.0), t94 * t116);
+    const real_t c4_left_down_noflip = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(1.0), -(R2_13_left_down_noflip * t116));
+    const real_t t118 = t94 * t117 - R2_13_left_down_noflip * c4_left_down_noflip;
     const real_t R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip * s23_left_down_noflip;
     const real_t R2_11_left_down_noflip = T31 * s23_left_down_noflip + R1_11_left_up_noflip * c23_left_down_noflip;
-    const real_t t94 = t85 * c4_left_down_noflip + t92 * R2_11_left_down_noflip;
+    const real_t t119 = t106 * c4_left_down_noflip + t117 * R2_11_left_down_noflip;
     const real_t R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip * c23_left_down_noflip;
-    const real_t t95 = t87 * c4_left_down_noflip + t92 * R2_12_left_down_noflip;
+    const real_t t120 = t108 * c4_left_down_noflip + t117 * R2_12_left_down_noflip;
     const real_t flip_left_down_flip = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const int t96 = free_theta1 | no_link | folded | no_forearm;
-    const real_t t97 = cf_status(single, invalid, unreachable, t96 | aligned);
-    const real_t t98 = cf_status(single, invalid, unreachable, t96 | aligned_right_down_noflip);
-    const real_t t99 = cf_status(single, invalid, unreachable, t96 | aligned_left_up_noflip);
-    const real_t t100 = cf_status(single, invalid, unreachable, t96 | aligned_left_down_noflip);
-    const real_t opposite[24] = { t10, s2, t57, t65, t61 * t65 - R2_13 * c4, c4 * t66 + t65 * (T31 * s23 + c23 * R1_11), s2_right_down_noflip, t68, t72, t61 * t72 + t70 * c4_right_down_noflip, t66 * c4_right_down_noflip - t73, t75, s2_left_up_noflip, t84, t79 * t84 + t82 * c4_left_up_noflip, c4_left_up_noflip * t85 - t84 * t86, s2_left_down_noflip, t92, t93, t94 };
-    const real_t adjacent[24] = { c1, -t48, -t60, c4, T33 * c23 - s23 * R1_13, c4 * t67 + t65 * (T32 * s23 + c23 * R1_12), c2_right_down_noflip, c3_right_down_noflip, c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t69, t67 * c4_right_down_noflip - t74, c1_left_up_noflip, c2_left_up_noflip, c4_left_up_noflip, R2_33_left_up_noflip, c4_left_up_noflip * t87 - t84 * t88, -t89, c4_left_down_noflip, R2_33_left_down_noflip, t95 };
+    const int t121 = free_theta1 | no_link | folded | no_forearm;
+    const real_t t122 = cf_status(single, invalid, unreachable, t121 | aligned);
+    const real_t t123 = cf_status(single, invalid, unreachable, t121 | aligned_right_down_noflip);
+    const real_t t124 = cf_status(single, invalid, unreachable, t121 | aligned_left_up_noflip);
+    const real_t t125 = cf_status(single, invalid, unreachable, t121 | aligned_left_down_noflip);
+    const real_t opposite[24] = { t12, s2, t66, t74, t70 * t74 - R2_13 * c4, c4 * t75 + t74 * (T31 * s23 + c23 * R1_11), s2_right_down_noflip, t77, t86, t70 * t86 + t84 * c4_right_down_noflip, t75 * c4_right_down_noflip - t87, t89, s2_left_up_noflip, t105, t94 * t105 + t103 * c4_left_up_noflip, c4_left_up_noflip * t106 - t105 * t107, s2_left_down_noflip, t117, t118, t119 };
+    const real_t adjacent[24] = { c1, -t57, -t69, c4, T33 * c23 - s23 * R1_13, c4 * t76 + t74 * (T32 * s23 + c23 * R1_12), c2_right_down_noflip, c3_right_down_noflip, c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t80, t76 * c4_right_down_noflip - t88, c1_left_up_noflip, c2_left_up_noflip, c4_left_up_noflip, R2_33_left_up_noflip, c4_left_up_noflip * t108 - t105 * t109, -t110, c4_left_down_noflip, R2_33_left_down_noflip, t120 };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);
@@ -977,86 +1037,129 @@ CF_INLINE void puma560_ik_kernel(const int single, const puma560_params *params,
         angles[18] = cf_atan2(opposite[18], adjacent[18]);
         angles[19] = cf_atan2(opposite[19], adjacent[19]);
     }
-    const real_t t101 = cf_wrap_cut(-angles[0]) + t35;
-    const real_t t102 = cf_wrap_cut(angles[1]) + t35;
-    const real_t t103 = cf_wrap_cut(-angles[2]) + t35;
-    const real_t t104 = cf_wrap_cut(angles[6]) + t35;
-    const real_t t105 = cf_wrap_cut(-angles[7]) + t35;
-    const real_t t106 = cf_wrap(flip_right_down_flip - angles[8]) + t35;
-    const real_t t107 = cf_wrap(angles[10] + flip_right_down_flip) + t35;
-    const real_t t108 = cf_wrap_cut(-angles[11]) + t35;
-    const real_t t109 = cf_wrap_cut(angles[12]) + t35;
-    const real_t t110 = cf_wrap(flip_left_up_flip - angles[13]) + t35;
-    const real_t t111 = cf_wrap(angles[15] + flip_left_up_flip) + t35;
-    const real_t t112 = cf_wrap_cut(angles[16]) + t35;
-    const real_t t113 = cf_wrap(flip_left_down_flip - angles[17]) + t35;
-    const real_t t114 = cf_wrap(angles[19] + flip_left_down_flip) + t35;
-    q[0] = t101;
-    q[1] = t102;
-    q[2] = t103;
-    q[3] = cf_wrap_cut(-angles[3]) + t35;
-    q[4] = cf_wrap_cut(angles[4]) + t35;
-    q[5] = cf_wrap_cut(angles[5]) + t35;
-    q[6] = t101;
-    q[7] = t102;
-    q[8] = t103;
-    q[9] = cf_wrap(flip - angles[3]) + t35;
-    q[10] = cf_wrap_cut(-angles[4]) + t35;
-    q[11] = cf_wrap(angles[5] + flip) + t35;
-    q[12] = t101;
-    q[13] = t104;
-    q[14] = t105;
-    q[15] = cf_wrap_cut(-angles[8]) + t35;
-    q[16] = cf_wrap_cut(angles[9]) + t35;
-    q[17] = cf_wrap_cut(angles[10]) + t35;
-    q[18] = t101;
-    q[19] = t104;
-    q[20] = t105;
-    q[21] = t106;
-    q[22] = cf_wrap_cut(-angles[9]) + t35;
-    q[23] = t107;
-    q[24] = t108;
-    q[25] = t109;
-    q[26] = t105;
-    q[27] = cf_wrap_cut(-angles[13]) + t35;
-    q[28] = cf_wrap_cut(angles[14]) + t35;
-    q[29] = cf_wrap_cut(angles[15]) + t35;
-    q[30] = t108;
-    q[31] = t109;
-    q[32] = t105;
-    q[33] = t110;
-    q[34] = cf_wrap_cut(-angles[14]) + t35;
-    q[35] = t111;
-    q[36] = t108;
-    q[37] = t112;
-    q[38] = t103;
-    q[39] = cf_wrap_cut(-angles[17]) + t35;
-    q[40] = cf_wrap_cut(angles[18]) + t35;
-    q[41] = cf_wrap_cut(angles[19]) + t35;
-    q[42] = t108;
-    q[43] = t112;
-    q[44] = t103;
-    q[45] = t113;
-    q[46] = cf_wrap_cut(-angles[18]) + t35;
-    q[47] = t114;
-    status[0] = t97;
-    status[1] = t97;
-    status[2] = t98;
-    status[3] = t98;
-    status[4] = t99;
-    status[5] = t99;
-    status[6] = t100;
-    status[7] = t100;
+    const real_t t126 = cf_wrap_cut(-angles[0]) + t44;
+    const real_t t127 = cf_wrap_cut(angles[1]) + t44;
+    const real_t t128 = cf_wrap_cut(-angles[2]) + t44;
+    const real_t t129 = cf_wrap_cut(angles[6]) + t44;
+    const real_t t130 = cf_wrap_cut(-angles[7]) + t44;
+    const real_t t131 = cf_wrap(flip_right_down_flip - angles[8]) + t44;
+    const real_t t132 = cf_wrap(angles[10] + flip_right_down_flip) + t44;
+    const real_t t133 = cf_wrap_cut(-angles[11]) + t44;
+    const real_t t134 = cf_wrap_cut(angles[12]) + t44;
+    const real_t t135 = cf_wrap(flip_left_up_flip - angles[13]) + t44;
+    const real_t t136 = cf_wrap(angles[15] + flip_left_up_flip) + t44;
+    const real_t t137 = cf_wrap_cut(angles[16]) + t44;
+    const real_t t138 = cf_wrap(flip_left_down_flip - angles[17]) + t44;
+    const real_t t139 = cf_wrap(angles[19] + flip_left_down_flip) + t44;
+    q[0] = t126;
+    q[1] = t127;
+    q[2] = t128;
+    q[3] = cf_wrap_cut(-angles[3]) + t44;
+    q[4] = cf_wrap_cut(angles[4]) + t44;
+    q[5] = cf_wrap_cut(angles[5]) + t44;
+    q[6] = t126;
+    q[7] = t127;
+    q[8] = t128;
+    q[9] = cf_wrap(flip - angles[3]) + t44;
+    q[10] = cf_wrap_cut(-angles[4]) + t44;
+    q[11] = cf_wrap(angles[5] + flip) + t44;
+    q[12] = t126;
+    q[13] = t129;
+    q[14] = t130;
+    q[15] = cf_wrap_cut(-angles[8]) + t44;
+    q[16] = cf_wrap_cut(angles[9]) + t44;
+    q[17] = cf_wrap_cut(angles[10]) + t44;
+    q[18] = t126;
+    q[19] = t129;
+    q[20] = t130;
+    q[21] = t131;
+    q[22] = cf_wrap_cut(-angles[9]) + t44;
+    q[23] = t132;
+    q[24] = t133;
+    q[25] = t134;
+    q[26] = t130;
+    q[27] = cf_wrap_cut(-angles[13]) + t44;
+    q[28] = cf_wrap_cut(angles[14]) + t44;
+    q[29] = cf_wrap_cut(angles[15]) + t44;
+    q[30] = t133;
+    q[31] = t134;
+    q[32] = t130;
+    q[33] = t135;
+    q[34] = cf_wrap_cut(-angles[14]) + t44;
+    q[35] = t136;
+    q[36] = t133;
+    q[37] = t137;
+    q[38] = t128;
+    q[39] = cf_wrap_cut(-angles[17]) + t44;
+    q[40] = cf_wrap_cut(angles[18]) + t44;
+    q[41] = cf_wrap_cut(angles[19]) + t44;
+    q[42] = t133;
+    q[43] = t137;
+    q[44] = t128;
+    q[45] = t138;
+    q[46] = cf_wrap_cut(-angles[18]) + t44;
+    q[47] = t139;
+    status[0] = t122;
+    status[1] = t122;
+    status[2] = t123;
+    status[3] = t123;
+    status[4] = t124;
+    status[5] = t124;
+    status[6] = t125;
+    status[7] = t125;
 }
 
 CLOSEDFORM_DISPATCHED
 void puma560_ik(const puma560_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8])
 {
+    static const signed char T_degrees[16] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0 };
+    real_t T_scaled[16];
+    puma560_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_max(cf_abs(params->d3), cf_abs(params->d4))), cf_max(cf_max(cf_abs(T[3]), cf_abs(T[7])), cf_abs(T[11])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.a2 = CF_LIBM(ldexp)(params->a2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d3 = CF_LIBM(ldexp)(params->d3, -exponent);
+        params_scaled.d4 = CF_LIBM(ldexp)(params->d4, -exponent);
+        params = &params_scaled;
+        cf_rescale(16, T_degrees, -exponent, T, T_scaled);
+        T = T_scaled;
+    }
+    const real_t one = cf_one();
     real_t status_real[8];
-    puma560_ik_kernel(1, params, T, q, status_real);
+    puma560_ik_kernel(1, one, params, T, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word puma560_ik_excess(const real_t dimensions,
+    const real_t *T, size_t T_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(T[3 * T_stride + i])), cf_max(cf_abs(T[7 * T_stride + i]), cf_abs(T[11 * T_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void puma560_ik_other_sizes(size_t n, const real_t dimensions,
+    const puma560_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(puma560_ik_excess(dimensions, T, T_stride, i) & CF_SIGN)) continue;
+        real_t T_i[16];
+        for (size_t k = 0; k < 16; ++k) T_i[k] = T[k * T_stride + i];
+        real_t q_i[48];
+        uint8_t status_i[8];
+        puma560_ik(params, T_i, q_i, status_i);
+        for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1066,6 +1169,8 @@ void puma560_ik_batch(size_t n, const puma560_params *params,
     uint8_t *status, size_t status_stride)
 {
     const puma560_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_max(cf_abs(params->d3), cf_abs(params->d4)));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[8][CLOSEDFORM_BLOCK];
@@ -1074,7 +1179,7 @@ void puma560_ik_batch(size_t n, const puma560_params *params,
             const real_t T_i[16] = { T[start + i], T[T_stride + start + i], T[2 * T_stride + start + i], T[3 * T_stride + start + i], T[4 * T_stride + start + i], T[5 * T_stride + start + i], T[6 * T_stride + start + i], T[7 * T_stride + start + i], T[8 * T_stride + start + i], T[9 * T_stride + start + i], T[10 * T_stride + start + i], T[11 * T_stride + start + i], T[12 * T_stride + start + i], T[13 * T_stride + start + i], T[14 * T_stride + start + i], T[15 * T_stride + start + i] };
             real_t q_i[48];
             real_t status_i[8];
-            puma560_ik_kernel(0, &local, T_i, q_i, status_i);
+            puma560_ik_kernel(0, one, &local, T_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -1156,5 +1261,10 @@ void puma560_ik_batch(size_t n, const puma560_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[7 * status_stride + start + i] = (uint8_t)status_real[7][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= puma560_ik_excess(dimensions, T + start, T_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            puma560_ik_other_sizes(length, dimensions, params, T + start, T_stride, q + start, q_stride, status + start, status_stride);
     }
 }

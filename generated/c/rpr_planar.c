@@ -22,9 +22,9 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const real_t t2 = b + t1;
     const real_t t3 = CLOSEDFORM_VANISHING * t2;
     const int coincide = b <= t3;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t t4 = rho1 - rho2;
-    const real_t t5 = CLOSEDFORM_C(1.0) / (b * CLOSEDFORM_C(2.0));
+    const real_t t5 = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, b * CLOSEDFORM_C(2.0));
     const real_t t6 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t4 * t1 * t5);
     const int t7 = cf_nought(b) == 0;
     const int t8 = cf_nought(rho1) + cf_nought(rho2) == 0;
@@ -54,10 +54,53 @@ CLOSEDFORM_DISPATCHED
 void rpr_planar_fk(const rpr_planar_params *params, const real_t q[2],
     real_t p[4], uint8_t status[2])
 {
+    static const signed char q_degrees[2] = { 1, 1 };
+    static const signed char p_degrees[4] = { 1, 1, 1, 1 };
+    real_t q_scaled[2];
+    rpr_planar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->b), cf_abs(q[0])), cf_abs(q[1]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.b = CF_LIBM(ldexp)(params->b, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     real_t status_real[2];
     rpr_planar_fk_kernel(1, params, q, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(4, p_degrees, exponent, p, p);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word rpr_planar_fk_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_abs(q[q_stride + i])), CF_SIZES_3);
+}
+
+CF_RARE void rpr_planar_fk_other_sizes(size_t n, const real_t dimensions,
+    const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(rpr_planar_fk_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t p_i[4];
+        uint8_t status_i[2];
+        rpr_planar_fk(params, q_i, p_i, status_i);
+        for (size_t k = 0; k < 4; ++k) p[k * p_stride + i] = p_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -67,6 +110,7 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
     uint8_t *status, size_t status_stride)
 {
     const rpr_planar_params local = *params;
+    const real_t dimensions = cf_abs(params->b);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[2][CLOSEDFORM_BLOCK];
@@ -89,6 +133,11 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= rpr_planar_fk_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            rpr_planar_fk_other_sizes(length, dimensions, params, q + start, q_stride, p + start, p_stride, status + start, status_stride);
     }
 }
 
@@ -102,7 +151,7 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
     const real_t t2 = b + t1;
     const real_t t3 = CLOSEDFORM_VANISHING * t2;
     const int coincide = b <= t3;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t t4 = t1 - b;
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
@@ -110,11 +159,11 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
     const real_t t7 = b - t5;
     const real_t t8 = slack * cf_max(t6, CLOSEDFORM_C(0.0)) * cf_max(t7, CLOSEDFORM_C(0.0));
     const real_t t9 = b * CLOSEDFORM_C(2.0);
-    const real_t t10 = cf_select(coincide, CLOSEDFORM_C(0.0), cf_sqrt(t2) * cf_sqrt(t8) / t9);
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t10);
+    const real_t t10 = cf_sqrt(t2) * cf_sqrt(t8) / cf_divisor(single, slack <= t3, t9);
+    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t10));
     const real_t P_y = n_1 * height;
-    const real_t t11 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t5 * t1 / t9);
-    const real_t P_x = n_1 * t11;
+    const real_t t11 = b * CLOSEDFORM_C(0.5) + t5 * t1 / cf_divisor(single, coincide, t9);
+    const real_t P_x = n_1 * cf_select(coincide, rho1, t11);
     const int t12 = cf_nought(b) == 0;
     const int t13 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t14 = -(CLOSEDFORM_FEASIBILITY * t2);
@@ -139,7 +188,43 @@ CLOSEDFORM_DISPATCHED
 void rpr_planar_passive_angles(const rpr_planar_params *params, const real_t q[2],
     real_t theta[4])
 {
+    static const signed char q_degrees[2] = { 1, 1 };
+    real_t q_scaled[2];
+    rpr_planar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->b), cf_abs(q[0])), cf_abs(q[1]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.b = CF_LIBM(ldexp)(params->b, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     rpr_planar_passive_angles_kernel(1, params, q, theta);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word rpr_planar_passive_angles_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_abs(q[q_stride + i])), CF_SIZES_3);
+}
+
+CF_RARE void rpr_planar_passive_angles_other_sizes(size_t n, const real_t dimensions,
+    const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *theta, size_t theta_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(rpr_planar_passive_angles_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t theta_i[4];
+        rpr_planar_passive_angles(params, q_i, theta_i);
+        for (size_t k = 0; k < 4; ++k) theta[k * theta_stride + i] = theta_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -148,6 +233,7 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
     real_t *theta, size_t theta_stride)
 {
     const rpr_planar_params local = *params;
+    const real_t dimensions = cf_abs(params->b);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -160,6 +246,11 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
             theta[2 * theta_stride + start + i] = theta_i[2];
             theta[3 * theta_stride + start + i] = theta_i[3];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= rpr_planar_passive_angles_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            rpr_planar_passive_angles_other_sizes(length, dimensions, params, q + start, q_stride, theta + start, theta_stride);
     }
 }
 
@@ -184,14 +275,14 @@ CF_INLINE void rpr_planar_jacobian_kernel(const int single, const rpr_planar_par
     const real_t t12 = -(rho2 / b) + t10;
     const real_t t13 = CLOSEDFORM_VANISHING * t4;
     const int coincide = b <= t13;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t t14 = b * CLOSEDFORM_C(2.0);
-    const real_t t15 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t7 * t3 / t14);
-    const real_t P_x = n_1 * t15;
+    const real_t t15 = b * CLOSEDFORM_C(0.5) + t7 * t3 / cf_divisor(single, coincide, t14);
+    const real_t P_x = n_1 * cf_select(coincide, rho1, t15);
     const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
     const real_t t16 = slack * cf_max(t8, CLOSEDFORM_C(0.0)) * cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t17 = cf_select(coincide, CLOSEDFORM_C(0.0), cf_sqrt(t4) * cf_sqrt(t16) / t14);
-    const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), t17);
+    const real_t t17 = cf_sqrt(t4) * cf_sqrt(t16) / cf_divisor(single, slack <= t13, t14);
+    const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t17));
     const real_t t18 = b * (n_1 * height);
     const real_t t19 = (rho1 * b - rho1 * P_x) / t18;
     const real_t t20 = rho2 * P_x / t18;
@@ -209,7 +300,43 @@ CLOSEDFORM_DISPATCHED
 void rpr_planar_jacobian(const rpr_planar_params *params, const real_t q[2],
     real_t J[8])
 {
+    static const signed char q_degrees[2] = { 1, 1 };
+    real_t q_scaled[2];
+    rpr_planar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->b), cf_abs(q[0])), cf_abs(q[1]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.b = CF_LIBM(ldexp)(params->b, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     rpr_planar_jacobian_kernel(1, params, q, J);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word rpr_planar_jacobian_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_abs(q[q_stride + i])), CF_SIZES_3);
+}
+
+CF_RARE void rpr_planar_jacobian_other_sizes(size_t n, const real_t dimensions,
+    const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(rpr_planar_jacobian_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t J_i[8];
+        rpr_planar_jacobian(params, q_i, J_i);
+        for (size_t k = 0; k < 8; ++k) J[k * J_stride + i] = J_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -218,6 +345,7 @@ void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params,
     real_t *J, size_t J_stride)
 {
     const rpr_planar_params local = *params;
+    const real_t dimensions = cf_abs(params->b);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -234,6 +362,11 @@ void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params,
             J[6 * J_stride + start + i] = J_i[6];
             J[7 * J_stride + start + i] = J_i[7];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= rpr_planar_jacobian_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            rpr_planar_jacobian_other_sizes(length, dimensions, params, q + start, q_stride, J + start, J_stride);
     }
 }
 
@@ -247,14 +380,14 @@ CF_INLINE void rpr_planar_determinant_kernel(const int single, const rpr_planar_
     const real_t t2 = b + t1;
     const real_t t3 = CLOSEDFORM_VANISHING * t2;
     const int coincide = b <= t3;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t t4 = t1 - b;
     const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
     const real_t t5 = rho1 - rho2;
     const real_t t6 = b + t5;
     const real_t t7 = b - t5;
     const real_t t8 = slack * cf_max(t6, CLOSEDFORM_C(0.0)) * cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t9 = cf_sqrt(t2) * cf_sqrt(t8) / (b * CLOSEDFORM_C(2.0));
+    const real_t t9 = cf_sqrt(t2) * cf_sqrt(t8) / cf_divisor(single, slack <= t3, b * CLOSEDFORM_C(2.0));
     const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
     const real_t t10 = rho1 * rho2 / (b * (n_1 * height));
     const int t11 = cf_nought(b) == 0;
@@ -270,7 +403,43 @@ CLOSEDFORM_DISPATCHED
 void rpr_planar_determinant(const rpr_planar_params *params, const real_t q[2],
     real_t det[2])
 {
+    static const signed char q_degrees[2] = { 1, 1 };
+    real_t q_scaled[2];
+    rpr_planar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->b), cf_abs(q[0])), cf_abs(q[1]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.b = CF_LIBM(ldexp)(params->b, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     rpr_planar_determinant_kernel(1, params, q, det);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word rpr_planar_determinant_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_abs(q[q_stride + i])), CF_SIZES_3);
+}
+
+CF_RARE void rpr_planar_determinant_other_sizes(size_t n, const real_t dimensions,
+    const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(rpr_planar_determinant_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[2];
+        rpr_planar_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -279,6 +448,7 @@ void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params,
     real_t *det, size_t det_stride)
 {
     const rpr_planar_params local = *params;
+    const real_t dimensions = cf_abs(params->b);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -289,6 +459,11 @@ void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params,
             det[start + i] = det_i[0];
             det[det_stride + start + i] = det_i[1];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= rpr_planar_determinant_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            rpr_planar_determinant_other_sizes(length, dimensions, params, q + start, q_stride, det + start, det_stride);
     }
 }
 
@@ -313,10 +488,10 @@ CF_INLINE void rpr_planar_singularities_kernel(const int single, const rpr_plana
     const real_t t12 = rho2 + t10;
     const real_t t13 = CLOSEDFORM_VANISHING * t4;
     const int coincide = b <= t13;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / b);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
     const real_t t14 = slack * cf_max(t8, CLOSEDFORM_C(0.0)) * cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t15 = cf_sqrt(t4) * cf_sqrt(t14) / (b * CLOSEDFORM_C(2.0));
+    const real_t t15 = cf_sqrt(t4) * cf_sqrt(t14) / cf_divisor(single, slack <= t13, b * CLOSEDFORM_C(2.0));
     const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t15));
     const real_t P_y = n_1 * height;
     factors[0] = t11;
@@ -331,7 +506,47 @@ CLOSEDFORM_DISPATCHED
 void rpr_planar_singularities(const rpr_planar_params *params, const real_t q[2],
     real_t factors[6])
 {
+    static const signed char q_degrees[2] = { 1, 1 };
+    static const signed char factors_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[2];
+    rpr_planar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->b), cf_abs(q[0])), cf_abs(q[1]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.b = CF_LIBM(ldexp)(params->b, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     rpr_planar_singularities_kernel(1, params, q, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(6, factors_degrees, exponent, factors, factors);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word rpr_planar_singularities_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_abs(q[q_stride + i])), CF_SIZES_3);
+}
+
+CF_RARE void rpr_planar_singularities_other_sizes(size_t n, const real_t dimensions,
+    const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(rpr_planar_singularities_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[6];
+        rpr_planar_singularities(params, q_i, factors_i);
+        for (size_t k = 0; k < 6; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -340,6 +555,7 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
     real_t *factors, size_t factors_stride)
 {
     const rpr_planar_params local = *params;
+    const real_t dimensions = cf_abs(params->b);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         CF_INDEPENDENT
@@ -354,23 +570,29 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
             factors[4 * factors_stride + start + i] = factors_i[4];
             factors[5 * factors_stride + start + i] = factors_i[5];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= rpr_planar_singularities_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            rpr_planar_singularities_other_sizes(length, dimensions, params, q + start, q_stride, factors + start, factors_stride);
     }
 }
 
-CF_INLINE void rpr_planar_ik_kernel(const int single, const rpr_planar_params *params,
-    const real_t x[2], real_t q[2], real_t status[1])
+CF_INLINE void rpr_planar_ik_kernel(const int single, const real_t one,
+    const rpr_planar_params *params, const real_t x[2],
+    real_t q[2], real_t status[1])
 {
     const real_t b = params->b;
     const real_t x_2 = x[0];
     const real_t y = x[1];
-    const real_t t1 = y * y;
-    const real_t leg1 = cf_sqrt(x_2 * x_2 + t1);
+    const real_t t1 = cf_rounded(single, one, y * y);
+    const real_t leg1 = cf_sqrt(cf_rounded(single, one, x_2 * x_2) + t1);
     const int t2 = cf_nought(b) == 0;
     const int t3 = cf_nought(x_2) + cf_nought(y) == 0;
     const int invalid = !(t2 & (CLOSEDFORM_C(0.0) <= b) & t3);
     const real_t t4 = cf_poison(single, invalid);
     const real_t t5 = x_2 - b;
-    const real_t leg2 = cf_sqrt(t1 + t5 * t5);
+    const real_t leg2 = cf_sqrt(t1 + cf_rounded(single, one, t5 * t5));
     const int t6 = b * cf_abs(y) <= CLOSEDFORM_DETERMINED * (leg1 * leg2);
     q[0] = leg1 + t4;
     q[1] = leg2 + t4;
@@ -381,10 +603,54 @@ CLOSEDFORM_DISPATCHED
 void rpr_planar_ik(const rpr_planar_params *params, const real_t x[2],
     real_t q[2], uint8_t status[1])
 {
+    static const signed char x_degrees[2] = { 1, 1 };
+    static const signed char q_degrees[2] = { 1, 1 };
+    real_t x_scaled[2];
+    rpr_planar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->b), cf_abs(x[0])), cf_abs(x[1]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.b = CF_LIBM(ldexp)(params->b, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
+    const real_t one = cf_one();
     real_t status_real[1];
-    rpr_planar_ik_kernel(1, params, x, q, status_real);
+    rpr_planar_ik_kernel(1, one, params, x, q, status_real);
     for (size_t i = 0; i < 1; ++i)
         status[i] = (uint8_t)status_real[i];
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, q_degrees, exponent, q, q);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word rpr_planar_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_abs(x[x_stride + i])), CF_SIZES_2);
+}
+
+CF_RARE void rpr_planar_ik_other_sizes(size_t n, const real_t dimensions,
+    const rpr_planar_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(rpr_planar_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[2];
+        for (size_t k = 0; k < 2; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[2];
+        uint8_t status_i[1];
+        rpr_planar_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 2; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 1; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -395,6 +661,8 @@ void rpr_planar_ik_batch(size_t n, const rpr_planar_params *params,
 {
     (void)status_stride;
     const rpr_planar_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_abs(params->b);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[1][CLOSEDFORM_BLOCK];
@@ -403,7 +671,7 @@ void rpr_planar_ik_batch(size_t n, const rpr_planar_params *params,
             const real_t x_i[2] = { x[start + i], x[x_stride + start + i] };
             real_t q_i[2];
             real_t status_i[1];
-            rpr_planar_ik_kernel(0, &local, x_i, q_i, status_i);
+            rpr_planar_ik_kernel(0, one, &local, x_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             status_real[0][i] = status_i[0];
@@ -411,5 +679,10 @@ void rpr_planar_ik_batch(size_t n, const rpr_planar_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[start + i] = (uint8_t)status_real[0][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= rpr_planar_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            rpr_planar_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }

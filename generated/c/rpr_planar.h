@@ -8,7 +8,7 @@
  *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
  *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
  *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
- *   ik: 5 add, 8 compare and select, 3 multiply, 2 sqrt
+ *   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
@@ -177,6 +177,9 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
  * Notes
  * -----
  * - Every position can be reached, in one way: lengths are not negative.
+ * - SINGULAR: the sine of the angle between the legs is less than 2^-10, on and near the line
+ *   of the pivots, at a distance of more than some 1000 b, and everywhere if b = 0. The lengths
+ *   are right, but P moves more for an ulp of them than 1e-12 of b + rho1 + rho2.
  */
 void rpr_planar_ik(const rpr_planar_params *params, const real_t x[2],
     real_t q[2], uint8_t status[1]);

@@ -252,10 +252,38 @@ CLOSEDFORM_DISPATCHED
 void scara_determinant(const scara_params *params, const real_t q[4],
     real_t det[1])
 {
+    static const signed char det_degrees[1] = { 2 };
+    scara_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { q[1] };
     cf_sincos_lanes(1, lanes, sines, cosines);
     scara_determinant_kernel(params, sines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void scara_determinant_other_sizes(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[4];
+        for (size_t k = 0; k < 4; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        scara_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -265,6 +293,11 @@ void scara_determinant_batch(size_t n, const scara_params *params,
 {
     (void)det_stride;
     const scara_params local = *params;
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        scara_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -501,9 +534,10 @@ void scara_jacobian_body_batch(size_t n, const scara_params *params,
     }
 }
 
-CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
-    const real_t x[4], const real_t *sines,
-    const real_t *cosines, real_t q[8], real_t status[2])
+CF_INLINE void scara_ik_kernel(const int single, const real_t one,
+    const scara_params *params, const real_t x[4],
+    const real_t *sines, const real_t *cosines,
+    real_t q[8], real_t status[2])
 {
     const real_t l1 = params->l1;
     const real_t l2 = params->l2;
@@ -514,54 +548,55 @@ CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
     const real_t x_yaw = x[3];
     const real_t s_x_yaw = sines[0];
     const real_t c_x_yaw = cosines[0];
-    const real_t r_elbow = cf_sqrt(x_x * x_x + x_y * x_y);
-    const real_t t1 = l1 + l2;
-    const int folded_elbow = r_elbow <= CLOSEDFORM_VANISHING * t1;
-    const real_t t2 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded_elbow, r_elbow);
-    const int no_link_elbow = l1 * l2 <= CLOSEDFORM_VANISHING * (t1 * t1);
-    const real_t t3 = t1 - r_elbow;
-    const real_t A_elbow = cf_max(t3, CLOSEDFORM_C(0.0));
-    const real_t t4 = l1 - l2;
-    const real_t t5 = r_elbow - t4;
-    const real_t C_elbow = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t t6 = A_elbow * C_elbow;
-    const real_t S_elbow = r_elbow + t1;
-    const real_t t7 = r_elbow + t4;
-    const real_t B_elbow = cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t8 = S_elbow * B_elbow;
-    const real_t t9 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t6 + t8);
-    const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t6 - t8) * t9));
-    const real_t t10 = t2 * (x_y * c_base_elbow);
-    const real_t t11 = A_elbow * S_elbow;
-    const real_t t12 = C_elbow * B_elbow;
-    const real_t area_elbow = CLOSEDFORM_C(2.0) * cf_sqrt(t11 * t12);
-    const real_t s_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t9 * area_elbow);
-    const real_t t13 = t2 * (x_x * s_base_elbow);
-    const real_t s1 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t10 - t13);
-    const real_t t14 = t2 * (x_x * c_base_elbow);
-    const real_t t15 = t2 * (x_y * s_base_elbow);
-    const real_t c1 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t14 + t15);
-    const int t16 = cf_nought(l1) + cf_nought(l2) + cf_nought(h) == 0;
-    const int t17 = t16 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t18 = cf_nought(x_x) + cf_nought(x_y) + cf_nought(x_z) + cf_nought(x_yaw) == 0;
-    const int invalid = !(t17 & (CLOSEDFORM_C(0.0) <= h) & t18);
-    const real_t t19 = l1 * CLOSEDFORM_C(0.5) + l2 * CLOSEDFORM_C(0.5);
-    const real_t t20 = -(CLOSEDFORM_FEASIBILITY * t19);
-    const int unreachable = !((t20 <= t3) & (t20 <= t7) & (t20 <= t5));
-    const real_t t21 = cf_poison(single, invalid | unreachable);
-    const real_t t22 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t11 + t12);
-    const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow * t22);
-    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -(t22 * (t11 - t12)));
-    const real_t t23 = h - x_z + t21;
-    const real_t t24 = c1 * c2 - s1 * s2;
-    const real_t t25 = c1 * s2 + s1 * c2;
-    const real_t s1_right = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t10 + t13);
-    const real_t c1_right = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t14 - t15);
-    const real_t t26 = c2 * c1_right + s2 * s1_right;
-    const real_t t27 = s2 * c1_right - c2 * s1_right;
-    const real_t t28 = cf_status(single, invalid, unreachable, no_link_elbow | folded_elbow);
-    const real_t opposite[8] = { s1, s2, s_x_yaw * t24 - c_x_yaw * t25, s1_right, s_x_yaw * t26 + c_x_yaw * t27 };
-    const real_t adjacent[8] = { c1, c2, c_x_yaw * t24 + s_x_yaw * t25, c1_right, c_x_yaw * t26 - s_x_yaw * t27 };
+    const real_t t1 = cf_rounded(single, one, x_x * x_x) + cf_rounded(single, one, x_y * x_y);
+    const real_t r_elbow = cf_sqrt(t1);
+    const real_t t2 = l1 + l2;
+    const int folded_elbow = r_elbow <= CLOSEDFORM_VANISHING * t2;
+    const real_t t3 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded_elbow, r_elbow);
+    const int no_link_elbow = l1 * l2 <= CLOSEDFORM_VANISHING * (t2 * t2);
+    const real_t t4 = t2 - r_elbow;
+    const real_t A_elbow = cf_max(t4, CLOSEDFORM_C(0.0));
+    const real_t t5 = l1 - l2;
+    const real_t t6 = r_elbow - t5;
+    const real_t C_elbow = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t7 = A_elbow * C_elbow;
+    const real_t S_elbow = r_elbow + t2;
+    const real_t t8 = r_elbow + t5;
+    const real_t B_elbow = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t9 = S_elbow * B_elbow;
+    const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t7 + t9);
+    const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t7 - t9) * t10));
+    const real_t t11 = t3 * (x_y * c_base_elbow);
+    const real_t t12 = A_elbow * S_elbow;
+    const real_t t13 = C_elbow * B_elbow;
+    const real_t area_elbow = CLOSEDFORM_C(2.0) * cf_sqrt(t12 * t13);
+    const real_t s_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t10 * area_elbow);
+    const real_t t14 = t3 * (x_x * s_base_elbow);
+    const real_t s1 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t11 - t14);
+    const real_t t15 = t3 * (x_x * c_base_elbow);
+    const real_t t16 = t3 * (x_y * s_base_elbow);
+    const real_t c1 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t15 + t16);
+    const int t17 = cf_nought(l1) + cf_nought(l2) + cf_nought(h) == 0;
+    const int t18 = t17 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t19 = cf_nought(x_x) + cf_nought(x_y) + cf_nought(x_z) + cf_nought(x_yaw) == 0;
+    const int invalid = !(t18 & (CLOSEDFORM_C(0.0) <= h) & t19);
+    const real_t t20 = l1 * CLOSEDFORM_C(0.5) + l2 * CLOSEDFORM_C(0.5);
+    const real_t t21 = -(CLOSEDFORM_FEASIBILITY * t20);
+    const int unreachable = !((t21 <= t4) & (t21 <= t8) & (t21 <= t6));
+    const real_t t22 = cf_poison(single, invalid | unreachable);
+    const real_t t23 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t12 + t13);
+    const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow * t23);
+    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -(t23 * (t12 - t13)));
+    const real_t t24 = h - x_z + t22;
+    const real_t t25 = c1 * c2 - s1 * s2;
+    const real_t t26 = c1 * s2 + s1 * c2;
+    const real_t s1_right = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t11 + t14);
+    const real_t c1_right = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t15 - t16);
+    const real_t t27 = c2 * c1_right + s2 * s1_right;
+    const real_t t28 = s2 * c1_right - c2 * s1_right;
+    const real_t t29 = cf_status(single, invalid, unreachable, no_link_elbow | folded_elbow);
+    const real_t opposite[8] = { s1, s2, s_x_yaw * t25 - c_x_yaw * t26, s1_right, s_x_yaw * t27 + c_x_yaw * t28 };
+    const real_t adjacent[8] = { c1, c2, c_x_yaw * t25 + s_x_yaw * t26, c1_right, c_x_yaw * t27 - s_x_yaw * t28 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -572,29 +607,75 @@ CF_INLINE void scara_ik_kernel(const int single, const scara_params *params,
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
         angles[4] = cf_atan2(opposite[4], adjacent[4]);
     }
-    q[0] = cf_wrap_cut(angles[0]) + t21;
-    q[1] = cf_wrap_cut(angles[1]) + t21;
-    q[2] = t23;
-    q[3] = cf_wrap_cut(-angles[2]) + t21;
-    q[4] = cf_wrap_cut(angles[3]) + t21;
-    q[5] = cf_wrap_cut(-angles[1]) + t21;
-    q[6] = t23;
-    q[7] = cf_wrap_cut(-angles[4]) + t21;
-    status[0] = t28;
-    status[1] = t28;
+    q[0] = cf_wrap_cut(angles[0]) + t22;
+    q[1] = cf_wrap_cut(angles[1]) + t22;
+    q[2] = t24;
+    q[3] = cf_wrap_cut(-angles[2]) + t22;
+    q[4] = cf_wrap_cut(angles[3]) + t22;
+    q[5] = cf_wrap_cut(-angles[1]) + t22;
+    q[6] = t24;
+    q[7] = cf_wrap_cut(-angles[4]) + t22;
+    status[0] = t29;
+    status[1] = t29;
 }
 
 CLOSEDFORM_DISPATCHED
 void scara_ik(const scara_params *params, const real_t x[4],
     real_t q[8], uint8_t status[2])
 {
+    static const signed char x_degrees[4] = { 1, 1, 1, 0 };
+    static const signed char q_degrees[8] = { 0, 0, 1, 0, 0, 0, 1, 0 };
+    real_t x_scaled[4];
+    scara_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->h), cf_abs(x[0]))), cf_max(cf_abs(x[1]), cf_abs(x[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
+        params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
+        params_scaled.h = CF_LIBM(ldexp)(params->h, -exponent);
+        params = &params_scaled;
+        cf_rescale(4, x_degrees, -exponent, x, x_scaled);
+        x = x_scaled;
+    }
+    const real_t one = cf_one();
     real_t sines[1], cosines[1];
     const real_t lanes[1] = { x[3] };
     cf_sincos_lanes(1, lanes, sines, cosines);
     real_t status_real[2];
-    scara_ik_kernel(1, params, x, sines, cosines, q, status_real);
+    scara_ik_kernel(1, one, params, x, sines, cosines, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(8, q_degrees, exponent, q, q);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word scara_ik_excess(const real_t dimensions,
+    const real_t *x, size_t x_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void scara_ik_other_sizes(size_t n, const real_t dimensions,
+    const scara_params *params,
+    const real_t *x, size_t x_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(scara_ik_excess(dimensions, x, x_stride, i) & CF_SIGN)) continue;
+        real_t x_i[4];
+        for (size_t k = 0; k < 4; ++k) x_i[k] = x[k * x_stride + i];
+        real_t q_i[8];
+        uint8_t status_i[2];
+        scara_ik(params, x_i, q_i, status_i);
+        for (size_t k = 0; k < 8; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -604,6 +685,8 @@ void scara_ik_batch(size_t n, const scara_params *params,
     uint8_t *status, size_t status_stride)
 {
     const scara_params local = *params;
+    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_abs(params->h));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];
@@ -616,7 +699,7 @@ void scara_ik_batch(size_t n, const scara_params *params,
             const real_t cosines_i[1] = { cosines[0][i] };
             real_t q_i[8];
             real_t status_i[2];
-            scara_ik_kernel(0, &local, x_i, sines_i, cosines_i, q_i, status_i);
+            scara_ik_kernel(0, one, &local, x_i, sines_i, cosines_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -634,5 +717,10 @@ void scara_ik_batch(size_t n, const scara_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i)
             status[status_stride + start + i] = (uint8_t)status_real[1][i];
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= scara_ik_excess(dimensions, x + start, x_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            scara_ik_other_sizes(length, dimensions, params, x + start, x_stride, q + start, q_stride, status + start, status_stride);
     }
 }

@@ -356,7 +356,7 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
     }
 }
 
-CF_INLINE void spherical_wrist_ik_kernel(const int single,
+CF_INLINE void spherical_wrist_ik_kernel(const int single, const real_t one,
     const spherical_wrist_params *params,
     const real_t R[9], real_t q[6], real_t status[2])
 {
@@ -370,24 +370,32 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single,
     const real_t R31 = R[6];
     const real_t R32 = R[7];
     const real_t R33 = R[8];
-    const real_t h = cf_sqrt(R13 * R13 + R23 * R23);
+    const real_t t1 = cf_rounded(single, one, R13 * R13) + cf_rounded(single, one, R23 * R23);
+    const real_t h = cf_sqrt(t1);
     const int aligned = h <= CLOSEDFORM_VANISHING;
-    const real_t t1 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
-    const real_t s4 = cf_select(aligned, CLOSEDFORM_C(0.0), R23 * t1);
-    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), R13 * t1);
-    const int t2 = cf_nought(d6) == 0;
-    const int t3 = cf_abs(R13 - R21 * R32 + R22 * R31) <= CLOSEDFORM_ROTATION;
-    const int t4 = cf_abs(R23 + R11 * R32 - R12 * R31) <= CLOSEDFORM_ROTATION;
-    const int t5 = cf_abs(R33 - R11 * R22 + R12 * R21) <= CLOSEDFORM_ROTATION;
-    const real_t t6 = CLOSEDFORM_C(1.0) - R11 * R11 - R21 * R21 - R31 * R31;
+    const real_t t2 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
+    const real_t s4 = cf_select(aligned, CLOSEDFORM_C(0.0), R23 * t2);
+    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), R13 * t2);
+    const int t3 = cf_nought(d6) == 0;
+    const real_t t4 = R13 - cf_rounded(single, one, R21 * R32) + cf_rounded(single, one, R22 * R31);
+    const int t5 = cf_abs(t4) <= CLOSEDFORM_ROTATION;
+    const real_t t6 = R23 + cf_rounded(single, one, R11 * R32) - cf_rounded(single, one, R12 * R31);
     const int t7 = cf_abs(t6) <= CLOSEDFORM_ROTATION;
-    const real_t t8 = CLOSEDFORM_C(1.0) - R12 * R12 - R22 * R22 - R32 * R32;
+    const real_t t8 = R33 - cf_rounded(single, one, R11 * R22) + cf_rounded(single, one, R12 * R21);
     const int t9 = cf_abs(t8) <= CLOSEDFORM_ROTATION;
-    const int t10 = cf_abs(R11 * R12 + R21 * R22 + R31 * R32) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t2 & t3 & t4 & t5 & t7 & t9 & t10);
-    const real_t t11 = cf_poison(single, invalid);
+    const real_t t10 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, R11 * R11);
+    const real_t t11 = t10 - cf_rounded(single, one, R21 * R21) - cf_rounded(single, one, R31 * R31);
+    const int t12 = cf_abs(t11) <= CLOSEDFORM_ROTATION;
+    const real_t t13 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, R12 * R12);
+    const real_t t14 = t13 - cf_rounded(single, one, R22 * R22) - cf_rounded(single, one, R32 * R32);
+    const int t15 = cf_abs(t14) <= CLOSEDFORM_ROTATION;
+    const real_t t16 = cf_rounded(single, one, R11 * R12) + cf_rounded(single, one, R21 * R22);
+    const real_t t17 = cf_abs(t16 + cf_rounded(single, one, R31 * R32));
+    const int t18 = t3 & t5 & t7 & t9 & t12 & t15 & (t17 <= CLOSEDFORM_ROTATION);
+    const int invalid = !t18;
+    const real_t t19 = cf_poison(single, invalid);
     const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t t12 = cf_status(single, invalid, 0, aligned);
+    const real_t t20 = cf_status(single, invalid, 0, aligned);
     const real_t opposite[4] = { s4, R13 * c4 + R23 * s4, R11 * s4 - R21 * c4 };
     const real_t adjacent[4] = { c4, R33, R22 * c4 - R12 * s4 };
     real_t angles[4];
@@ -398,22 +406,23 @@ CF_INLINE void spherical_wrist_ik_kernel(const int single,
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
     }
-    q[0] = cf_wrap_cut(angles[0]) + t11;
-    q[1] = cf_wrap_cut(angles[1]) + t11;
-    q[2] = cf_wrap_cut(-angles[2]) + t11;
-    q[3] = cf_wrap(flip + angles[0]) + t11;
-    q[4] = cf_wrap_cut(-angles[1]) + t11;
-    q[5] = cf_wrap(flip - angles[2]) + t11;
-    status[0] = t12;
-    status[1] = t12;
+    q[0] = cf_wrap_cut(angles[0]) + t19;
+    q[1] = cf_wrap_cut(angles[1]) + t19;
+    q[2] = cf_wrap_cut(-angles[2]) + t19;
+    q[3] = cf_wrap(flip + angles[0]) + t19;
+    q[4] = cf_wrap_cut(-angles[1]) + t19;
+    q[5] = cf_wrap(flip - angles[2]) + t19;
+    status[0] = t20;
+    status[1] = t20;
 }
 
 CLOSEDFORM_DISPATCHED
 void spherical_wrist_ik(const spherical_wrist_params *params,
     const real_t R[9], real_t q[6], uint8_t status[2])
 {
+    const real_t one = cf_one();
     real_t status_real[2];
-    spherical_wrist_ik_kernel(1, params, R, q, status_real);
+    spherical_wrist_ik_kernel(1, one, params, R, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
 }
@@ -425,6 +434,7 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
     uint8_t *status, size_t status_stride)
 {
     const spherical_wrist_params local = *params;
+    const real_t one = cf_one();
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[2][CLOSEDFORM_BLOCK];
@@ -433,7 +443,7 @@ void spherical_wrist_ik_batch(size_t n, const spherical_wrist_params *params,
             const real_t R_i[9] = { R[start + i], R[R_stride + start + i], R[2 * R_stride + start + i], R[3 * R_stride + start + i], R[4 * R_stride + start + i], R[5 * R_stride + start + i], R[6 * R_stride + start + i], R[7 * R_stride + start + i], R[8 * R_stride + start + i] };
             real_t q_i[6];
             real_t status_i[2];
-            spherical_wrist_ik_kernel(0, &local, R_i, q_i, status_i);
+            spherical_wrist_ik_kernel(0, one, &local, R_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];

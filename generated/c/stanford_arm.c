@@ -633,10 +633,46 @@ void stanford_arm_determinant(const stanford_arm_params *params,
     const real_t q[6], real_t det[1])
 {
     (void)params;
+    static const signed char q_degrees[6] = { 0, 0, 1, 0, 0, 0 };
+    static const signed char det_degrees[1] = { 2 };
+    real_t q_scaled[6];
+    int exponent = 0;
+    const real_t size = cf_abs(q[2]);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        cf_rescale(6, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
     real_t sines[2], cosines[2];
     const real_t lanes[2] = { q[1], q[4] };
     cf_sincos_lanes(2, lanes, sines, cosines);
     stanford_arm_determinant_kernel(q, sines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word stanford_arm_determinant_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(dimensions, cf_abs(q[2 * q_stride + i])), CF_SIZES_2);
+}
+
+CF_RARE void stanford_arm_determinant_other_sizes(size_t n, const real_t dimensions,
+    const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(stanford_arm_determinant_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        stanford_arm_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -646,6 +682,7 @@ void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
 {
     (void)params;
     (void)det_stride;
+    const real_t dimensions = CLOSEDFORM_C(0.0);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
@@ -659,6 +696,11 @@ void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
             stanford_arm_determinant_kernel(q_i, sines_i, det_i);
             det[start + i] = det_i[0];
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= stanford_arm_determinant_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            stanford_arm_determinant_other_sizes(length, dimensions, params, q + start, q_stride, det + start, det_stride);
     }
 }
 
@@ -709,7 +751,8 @@ void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *param
 }
 
 /* Every case. */
-CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm_params *params,
+CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
+    const stanford_arm_params *params,
     const real_t T[16], real_t q[48], real_t status[8])
 {
     const real_t d2 = params->d2;
@@ -729,9 +772,9 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     const real_t T42 = T[13];
     const real_t T43 = T[14];
     const real_t T44 = T[15];
-    const real_t t1 = T14 * T14 + T24 * T24;
+    const real_t t1 = cf_rounded(single, one, T14 * T14) + cf_rounded(single, one, T24 * T24);
     const real_t amplitude = cf_sqrt(t1);
-    const real_t t2 = T34 * T34;
+    const real_t t2 = cf_rounded(single, one, T34 * T34);
     const real_t size = cf_abs(d2) + cf_sqrt(t2 + t1);
     const real_t t3 = CLOSEDFORM_VANISHING * size;
     const int free_theta1 = amplitude <= t3;
@@ -741,111 +784,124 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
     const real_t above = cf_max(t5, CLOSEDFORM_C(0.0));
     const real_t t6 = below - above;
     const real_t t7 = CLOSEDFORM_C(1.0) / cf_divisor(single, free_theta1, amplitude * (below + above));
-    const real_t t8 = T14 * t6 * t7;
+    const real_t t8 = cf_rounded(single, one, T14 * t6 * t7);
     const real_t root = cf_sqrt(below * above);
     const real_t t9 = CLOSEDFORM_C(2.0) * root;
-    const real_t t10 = t7 * (T24 * t9);
+    const real_t t10 = cf_rounded(single, one, t7 * (T24 * t9));
     const real_t s1 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t8 + t10);
-    const real_t t11 = t7 * (T14 * t9);
-    const real_t t12 = T24 * t6 * t7;
+    const real_t t11 = cf_rounded(single, one, t7 * (T14 * t9));
+    const real_t t12 = cf_rounded(single, one, T24 * t6 * t7);
     const real_t c1 = cf_select(free_theta1, CLOSEDFORM_C(1.0), t11 - t12);
     const int t13 = cf_nought(d2) == 0;
     const int t14 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
-    const int t15 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
-    const int t16 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
-    const int t17 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
-    const real_t t18 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
-    const int t19 = cf_abs(t18) <= CLOSEDFORM_ROTATION;
-    const real_t t20 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
-    const int t21 = cf_abs(t20) <= CLOSEDFORM_ROTATION;
-    const int t22 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
-    const int t23 = t13 & t14 & t15 & t16 & t17 & t19 & t21 & t22;
-    const int t24 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
-    const int t25 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
-    const int t26 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
-    const int t27 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t23 & t24 & t25 & t26 & t27);
-    const real_t t28 = -(CLOSEDFORM_FEASIBILITY * size);
-    const int unreachable = !((t28 <= t4) & (t28 <= t5));
-    const real_t t29 = cf_poison(single, invalid | unreachable);
-    const real_t reach = cf_sqrt(t2 + root * root);
+    const real_t t15 = T13 - cf_rounded(single, one, T21 * T32) + cf_rounded(single, one, T22 * T31);
+    const int t16 = cf_abs(t15) <= CLOSEDFORM_ROTATION;
+    const real_t t17 = T23 + cf_rounded(single, one, T11 * T32) - cf_rounded(single, one, T12 * T31);
+    const int t18 = cf_abs(t17) <= CLOSEDFORM_ROTATION;
+    const real_t t19 = T33 - cf_rounded(single, one, T11 * T22) + cf_rounded(single, one, T12 * T21);
+    const int t20 = cf_abs(t19) <= CLOSEDFORM_ROTATION;
+    const real_t t21 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, T11 * T11);
+    const real_t t22 = t21 - cf_rounded(single, one, T21 * T21) - cf_rounded(single, one, T31 * T31);
+    const int t23 = cf_abs(t22) <= CLOSEDFORM_ROTATION;
+    const real_t t24 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, T12 * T12);
+    const real_t t25 = t24 - cf_rounded(single, one, T22 * T22) - cf_rounded(single, one, T32 * T32);
+    const int t26 = cf_abs(t25) <= CLOSEDFORM_ROTATION;
+    const real_t t27 = cf_rounded(single, one, T11 * T12) + cf_rounded(single, one, T21 * T22);
+    const real_t t28 = cf_abs(t27 + cf_rounded(single, one, T31 * T32));
+    const int t29 = t13 & t14 & t16 & t18 & t20 & t23 & t26 & (t28 <= CLOSEDFORM_ROTATION);
+    const int t30 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t31 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t32 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t33 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t29 & t30 & t31 & t32 & t33);
+    const real_t t34 = -(CLOSEDFORM_FEASIBILITY * size);
+    const int unreachable = !((t34 <= t4) & (t34 <= t5));
+    const real_t t35 = cf_poison(single, invalid | unreachable);
+    const real_t reach = cf_sqrt(t2 + cf_rounded(single, one, root * root));
     const int drawn_in = reach <= t3;
-    const real_t t30 = CLOSEDFORM_C(1.0) / cf_divisor(single, drawn_in, reach);
-    const real_t s2 = cf_select(drawn_in, CLOSEDFORM_C(0.0), root * t30);
-    const real_t t31 = T34 * t30;
-    const real_t c2 = cf_select(drawn_in, CLOSEDFORM_C(1.0), t31);
-    const real_t t32 = reach + t29;
-    const real_t t33 = T13 * s1 - T23 * c1;
-    const real_t t34 = t33 * t33;
-    const real_t t35 = T33 * s2;
-    const real_t R1_13 = T13 * c1 + T23 * s1;
-    const real_t t36 = t35 - c2 * R1_13;
-    const real_t h = cf_sqrt(t34 + t36 * t36);
-    const real_t t37 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
-    const int aligned = h <= t37;
-    const real_t t38 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
-    const real_t t39 = cf_select(aligned, CLOSEDFORM_C(0.0), t33 * t38);
-    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(t36 * t38));
-    const real_t t40 = T33 * c2;
-    const real_t t41 = s2 * R1_13;
-    const real_t t42 = T11 * s1 - T21 * c1;
-    const real_t t43 = T31 * s2;
+    const real_t t36 = CLOSEDFORM_C(1.0) / cf_divisor(single, drawn_in, reach);
+    const real_t s2 = cf_select(drawn_in, CLOSEDFORM_C(0.0), root * t36);
+    const real_t t37 = T34 * t36;
+    const real_t c2 = cf_select(drawn_in, CLOSEDFORM_C(1.0), t37);
+    const real_t t38 = reach + t35;
+    const real_t t39 = cf_rounded(single, one, T13 * s1) - cf_rounded(single, one, T23 * c1);
+    const real_t t40 = cf_rounded(single, one, t39 * t39);
+    const real_t t41 = cf_rounded(single, one, T33 * s2);
+    const real_t R1_13 = cf_rounded(single, one, T13 * c1) + cf_rounded(single, one, T23 * s1);
+    const real_t t42 = t41 - cf_rounded(single, one, c2 * R1_13);
+    const real_t h = cf_sqrt(t40 + cf_rounded(single, one, t42 * t42));
+    const real_t t43 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
+    const int aligned = h <= t43;
+    const real_t t44 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
+    const real_t t45 = cf_select(aligned, CLOSEDFORM_C(0.0), t39 * t44);
+    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(t42 * t44));
+    const real_t t46 = T33 * c2;
+    const real_t t47 = s2 * R1_13;
+    const real_t t48 = T11 * s1 - T21 * c1;
+    const real_t t49 = T31 * s2;
     const real_t R1_11 = T11 * c1 + T21 * s1;
-    const real_t t44 = T12 * s1 - T22 * c1;
-    const real_t t45 = T32 * s2;
+    const real_t t50 = T12 * s1 - T22 * c1;
+    const real_t t51 = T32 * s2;
     const real_t R1_12 = T12 * c1 + T22 * s1;
     const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t c2_right_back_noflip = cf_select(drawn_in, CLOSEDFORM_C(1.0), -t31);
-    const real_t t46 = -reach + t29;
-    const real_t R2_13_right_back_noflip = t35 + R1_13 * c2_right_back_noflip;
-    const real_t t47 = R2_13_right_back_noflip * R2_13_right_back_noflip;
-    const real_t h_right_back_noflip = cf_sqrt(t34 + t47);
-    const int aligned_right_back_noflip = h_right_back_noflip <= t37;
-    const real_t t48 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_right_back_noflip, h_right_back_noflip);
-    const real_t t49 = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(0.0), t33 * t48);
-    const real_t c4_right_back_noflip = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(1.0), R2_13_right_back_noflip * t48);
-    const real_t t50 = R2_13_right_back_noflip * c4_right_back_noflip;
-    const real_t t51 = T33 * c2_right_back_noflip;
-    const real_t t52 = t42 * c4_right_back_noflip - t49 * (t43 + R1_11 * c2_right_back_noflip);
-    const real_t t53 = t49 * (t45 + R1_12 * c2_right_back_noflip) - t44 * c4_right_back_noflip;
+    const real_t c2_right_back_noflip = cf_select(drawn_in, CLOSEDFORM_C(1.0), -t37);
+    const real_t t52 = -reach + t35;
+    const real_t t53 = cf_rounded(single, one, R1_13 * c2_right_back_noflip);
+    const real_t R2_13_right_back_noflip = t41 + t53;
+    const real_t t54 = cf_rounded(single, one, R2_13_right_back_noflip * R2_13_right_back_noflip);
+    const real_t h_right_back_noflip = cf_sqrt(t40 + t54);
+    const int aligned_right_back_noflip = h_right_back_noflip <= t43;
+    const real_t t55 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_right_back_noflip, h_right_back_noflip);
+    const real_t t56 = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(0.0), t39 * t55);
+    const real_t c4_right_back_noflip = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(1.0), R2_13_right_back_noflip * t55);
+    const real_t t57 = R2_13_right_back_noflip * c4_right_back_noflip;
+    const real_t t58 = T33 * c2_right_back_noflip;
+    const real_t t59 = t48 * c4_right_back_noflip - t56 * (t49 + R1_11 * c2_right_back_noflip);
+    const real_t t60 = t56 * (t51 + R1_12 * c2_right_back_noflip) - t50 * c4_right_back_noflip;
     const real_t flip_right_back_flip = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
     const real_t s1_left_out_noflip = cf_select(free_theta1, CLOSEDFORM_C(0.0), t8 - t10);
     const real_t c1_left_out_noflip = cf_select(free_theta1, CLOSEDFORM_C(1.0), -(t12 + t11));
-    const real_t t54 = T13 * s1_left_out_noflip - T23 * c1_left_out_noflip;
-    const real_t t55 = t54 * t54;
-    const real_t R1_13_left_out_noflip = T13 * c1_left_out_noflip + T23 * s1_left_out_noflip;
-    const real_t R2_13_left_out_noflip = t35 + c2 * R1_13_left_out_noflip;
-    const real_t t56 = R2_13_left_out_noflip * R2_13_left_out_noflip;
-    const real_t h_left_out_noflip = cf_sqrt(t55 + t56);
-    const int aligned_left_out_noflip = h_left_out_noflip <= t37;
-    const real_t t57 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_out_noflip, h_left_out_noflip);
-    const real_t t58 = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(0.0), t54 * t57);
-    const real_t c4_left_out_noflip = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(1.0), R2_13_left_out_noflip * t57);
-    const real_t t59 = t54 * t58 + R2_13_left_out_noflip * c4_left_out_noflip;
-    const real_t t60 = s2 * R1_13_left_out_noflip;
-    const real_t t61 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip;
+    const real_t t61 = cf_rounded(single, one, T13 * s1_left_out_noflip);
+    const real_t t62 = cf_rounded(single, one, T23 * c1_left_out_noflip);
+    const real_t t63 = t61 - t62;
+    const real_t t64 = cf_rounded(single, one, t63 * t63);
+    const real_t t65 = cf_rounded(single, one, T13 * c1_left_out_noflip);
+    const real_t t66 = cf_rounded(single, one, T23 * s1_left_out_noflip);
+    const real_t R1_13_left_out_noflip = t65 + t66;
+    const real_t t67 = cf_rounded(single, one, c2 * R1_13_left_out_noflip);
+    const real_t R2_13_left_out_noflip = t41 + t67;
+    const real_t t68 = cf_rounded(single, one, R2_13_left_out_noflip * R2_13_left_out_noflip);
+    const real_t h_left_out_noflip = cf_sqrt(t64 + t68);
+    const int aligned_left_out_noflip = h_left_out_noflip <= t43;
+    const real_t t69 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_out_noflip, h_left_out_noflip);
+    const real_t t70 = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(0.0), t63 * t69);
+    const real_t c4_left_out_noflip = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(1.0), R2_13_left_out_noflip * t69);
+    const real_t t71 = t63 * t70 + R2_13_left_out_noflip * c4_left_out_noflip;
+    const real_t t72 = s2 * R1_13_left_out_noflip;
+    const real_t t73 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip;
     const real_t R1_11_left_out_noflip = T11 * c1_left_out_noflip + T21 * s1_left_out_noflip;
-    const real_t t62 = c4_left_out_noflip * t61 - t58 * (t43 + c2 * R1_11_left_out_noflip);
+    const real_t t74 = c4_left_out_noflip * t73 - t70 * (t49 + c2 * R1_11_left_out_noflip);
     const real_t R1_12_left_out_noflip = T12 * c1_left_out_noflip + T22 * s1_left_out_noflip;
-    const real_t t63 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip;
-    const real_t t64 = t58 * (t45 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t63;
+    const real_t t75 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip;
+    const real_t t76 = t70 * (t51 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t75;
     const real_t flip_left_out_flip = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t t65 = t35 - c2_right_back_noflip * R1_13_left_out_noflip;
-    const real_t h_left_back_noflip = cf_sqrt(t55 + t65 * t65);
-    const int aligned_left_back_noflip = h_left_back_noflip <= t37;
-    const real_t t66 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_back_noflip, h_left_back_noflip);
-    const real_t t67 = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(0.0), t54 * t66);
-    const real_t c4_left_back_noflip = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(1.0), -(t65 * t66));
-    const real_t t68 = t43 - c2_right_back_noflip * R1_11_left_out_noflip;
-    const real_t t69 = t45 - c2_right_back_noflip * R1_12_left_out_noflip;
+    const real_t t77 = cf_rounded(single, one, c2_right_back_noflip * R1_13_left_out_noflip);
+    const real_t t78 = t41 - t77;
+    const real_t h_left_back_noflip = cf_sqrt(t64 + cf_rounded(single, one, t78 * t78));
+    const int aligned_left_back_noflip = h_left_back_noflip <= t43;
+    const real_t t79 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_back_noflip, h_left_back_noflip);
+    const real_t t80 = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(0.0), t63 * t79);
+    const real_t c4_left_back_noflip = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(1.0), -(t78 * t79));
+    const real_t t81 = t49 - c2_right_back_noflip * R1_11_left_out_noflip;
+    const real_t t82 = t51 - c2_right_back_noflip * R1_12_left_out_noflip;
     const real_t flip_left_back_flip = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const int t70 = free_theta1 | drawn_in;
-    const real_t t71 = cf_status(single, invalid, unreachable, t70 | aligned);
-    const real_t t72 = cf_status(single, invalid, unreachable, t70 | aligned_right_back_noflip);
-    const real_t t73 = cf_status(single, invalid, unreachable, t70 | aligned_left_out_noflip);
-    const real_t t74 = cf_status(single, invalid, unreachable, t70 | aligned_left_back_noflip);
-    const real_t opposite[16] = { s1, s2, t39, t33 * t39 - t36 * c4, c4 * t42 + t39 * (t43 - c2 * R1_11), s2, t49, t33 * t49 + t50, t52, s1_left_out_noflip, t58, t59, t62, t67, t54 * t67 - t65 * c4_left_back_noflip, t61 * c4_left_back_noflip + t67 * t68 };
-    const real_t adjacent[16] = { c1, c2, c4, t40 + t41, -(c4 * t44 + t39 * (t45 - c2 * R1_12)), c2_right_back_noflip, c4_right_back_noflip, t51 - t41, t53, c1_left_out_noflip, c4_left_out_noflip, t40 - t60, t64, c4_left_back_noflip, t51 + t60, -(t63 * c4_left_back_noflip + t67 * t69) };
+    const int t83 = free_theta1 | drawn_in;
+    const real_t t84 = cf_status(single, invalid, unreachable, t83 | aligned);
+    const real_t t85 = cf_status(single, invalid, unreachable, t83 | aligned_right_back_noflip);
+    const real_t t86 = cf_status(single, invalid, unreachable, t83 | aligned_left_out_noflip);
+    const real_t t87 = cf_status(single, invalid, unreachable, t83 | aligned_left_back_noflip);
+    const real_t opposite[16] = { s1, s2, t45, t39 * t45 - t42 * c4, c4 * t48 + t45 * (t49 - c2 * R1_11), s2, t56, t39 * t56 + t57, t59, s1_left_out_noflip, t70, t71, t74, t80, t63 * t80 - t78 * c4_left_back_noflip, t73 * c4_left_back_noflip + t80 * t81 };
+    const real_t adjacent[16] = { c1, c2, c4, t46 + t47, -(c4 * t50 + t45 * (t51 - c2 * R1_12)), c2_right_back_noflip, c4_right_back_noflip, t58 - t47, t60, c1_left_out_noflip, c4_left_out_noflip, t46 - t72, t76, c4_left_back_noflip, t58 + t72, -(t75 * c4_left_back_noflip + t80 * t82) };
     real_t angles[16];
     if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);
@@ -867,88 +923,90 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const stanford_arm
         angles[14] = cf_atan2(opposite[14], adjacent[14]);
         angles[15] = cf_atan2(opposite[15], adjacent[15]);
     }
-    const real_t t75 = cf_wrap_cut(angles[0]) + t29;
-    const real_t t76 = cf_wrap_cut(angles[1]) + t29;
-    const real_t t77 = cf_wrap_cut(-angles[5]) + t29;
-    const real_t t78 = cf_wrap(flip_right_back_flip - angles[6]) + t29;
-    const real_t t79 = cf_wrap(flip_right_back_flip - angles[8]) + t29;
-    const real_t t80 = cf_wrap_cut(angles[9]) + t29;
-    const real_t t81 = cf_wrap_cut(-angles[1]) + t29;
-    const real_t t82 = cf_wrap(flip_left_out_flip - angles[10]) + t29;
-    const real_t t83 = cf_wrap(flip_left_out_flip - angles[12]) + t29;
-    const real_t t84 = cf_wrap_cut(angles[5]) + t29;
-    const real_t t85 = cf_wrap(flip_left_back_flip - angles[13]) + t29;
-    const real_t t86 = cf_wrap(flip_left_back_flip - angles[15]) + t29;
-    q[0] = t75;
-    q[1] = t76;
-    q[2] = t32;
-    q[3] = cf_wrap_cut(-angles[2]) + t29;
-    q[4] = cf_wrap_cut(angles[3]) + t29;
-    q[5] = cf_wrap_cut(-angles[4]) + t29;
-    q[6] = t75;
-    q[7] = t76;
-    q[8] = t32;
-    q[9] = cf_wrap(flip - angles[2]) + t29;
-    q[10] = cf_wrap_cut(-angles[3]) + t29;
-    q[11] = cf_wrap(flip - angles[4]) + t29;
-    q[12] = t75;
-    q[13] = t77;
-    q[14] = t46;
-    q[15] = cf_wrap_cut(-angles[6]) + t29;
-    q[16] = cf_wrap_cut(angles[7]) + t29;
-    q[17] = cf_wrap_cut(-angles[8]) + t29;
-    q[18] = t75;
-    q[19] = t77;
-    q[20] = t46;
-    q[21] = t78;
-    q[22] = cf_wrap_cut(-angles[7]) + t29;
-    q[23] = t79;
-    q[24] = t80;
-    q[25] = t81;
-    q[26] = t32;
-    q[27] = cf_wrap_cut(-angles[10]) + t29;
-    q[28] = cf_wrap_cut(angles[11]) + t29;
-    q[29] = cf_wrap_cut(-angles[12]) + t29;
-    q[30] = t80;
-    q[31] = t81;
-    q[32] = t32;
-    q[33] = t82;
-    q[34] = cf_wrap_cut(-angles[11]) + t29;
-    q[35] = t83;
-    q[36] = t80;
-    q[37] = t84;
-    q[38] = t46;
-    q[39] = cf_wrap_cut(-angles[13]) + t29;
-    q[40] = cf_wrap_cut(angles[14]) + t29;
-    q[41] = cf_wrap_cut(-angles[15]) + t29;
-    q[42] = t80;
-    q[43] = t84;
-    q[44] = t46;
-    q[45] = t85;
-    q[46] = cf_wrap_cut(-angles[14]) + t29;
-    q[47] = t86;
-    status[0] = t71;
-    status[1] = t71;
-    status[2] = t72;
-    status[3] = t72;
-    status[4] = t73;
-    status[5] = t73;
-    status[6] = t74;
-    status[7] = t74;
+    const real_t t88 = cf_wrap_cut(angles[0]) + t35;
+    const real_t t89 = cf_wrap_cut(angles[1]) + t35;
+    const real_t t90 = cf_wrap_cut(-angles[5]) + t35;
+    const real_t t91 = cf_wrap(flip_right_back_flip - angles[6]) + t35;
+    const real_t t92 = cf_wrap(flip_right_back_flip - angles[8]) + t35;
+    const real_t t93 = cf_wrap_cut(angles[9]) + t35;
+    const real_t t94 = cf_wrap_cut(-angles[1]) + t35;
+    const real_t t95 = cf_wrap(flip_left_out_flip - angles[10]) + t35;
+    const real_t t96 = cf_wrap(flip_left_out_flip - angles[12]) + t35;
+    const real_t t97 = cf_wrap_cut(angles[5]) + t35;
+    const real_t t98 = cf_wrap(flip_left_back_flip - angles[13]) + t35;
+    const real_t t99 = cf_wrap(flip_left_back_flip - angles[15]) + t35;
+    q[0] = t88;
+    q[1] = t89;
+    q[2] = t38;
+    q[3] = cf_wrap_cut(-angles[2]) + t35;
+    q[4] = cf_wrap_cut(angles[3]) + t35;
+    q[5] = cf_wrap_cut(-angles[4]) + t35;
+    q[6] = t88;
+    q[7] = t89;
+    q[8] = t38;
+    q[9] = cf_wrap(flip - angles[2]) + t35;
+    q[10] = cf_wrap_cut(-angles[3]) + t35;
+    q[11] = cf_wrap(flip - angles[4]) + t35;
+    q[12] = t88;
+    q[13] = t90;
+    q[14] = t52;
+    q[15] = cf_wrap_cut(-angles[6]) + t35;
+    q[16] = cf_wrap_cut(angles[7]) + t35;
+    q[17] = cf_wrap_cut(-angles[8]) + t35;
+    q[18] = t88;
+    q[19] = t90;
+    q[20] = t52;
+    q[21] = t91;
+    q[22] = cf_wrap_cut(-angles[7]) + t35;
+    q[23] = t92;
+    q[24] = t93;
+    q[25] = t94;
+    q[26] = t38;
+    q[27] = cf_wrap_cut(-angles[10]) + t35;
+    q[28] = cf_wrap_cut(angles[11]) + t35;
+    q[29] = cf_wrap_cut(-angles[12]) + t35;
+    q[30] = t93;
+    q[31] = t94;
+    q[32] = t38;
+    q[33] = t95;
+    q[34] = cf_wrap_cut(-angles[11]) + t35;
+    q[35] = t96;
+    q[36] = t93;
+    q[37] = t97;
+    q[38] = t52;
+    q[39] = cf_wrap_cut(-angles[13]) + t35;
+    q[40] = cf_wrap_cut(angles[14]) + t35;
+    q[41] = cf_wrap_cut(-angles[15]) + t35;
+    q[42] = t93;
+    q[43] = t97;
+    q[44] = t52;
+    q[45] = t98;
+    q[46] = cf_wrap_cut(-angles[14]) + t35;
+    q[47] = t99;
+    status[0] = t84;
+    status[1] = t84;
+    status[2] = t85;
+    status[3] = t85;
+    status[4] = t86;
+    status[5] = t86;
+    status[6] = t87;
+    status[7] = t87;
 }
 
 CLOSEDFORM_DISPATCHED
 CF_APART void stanford_arm_ik_whole(const stanford_arm_params *params,
     const real_t T[16], real_t q[48], uint8_t status[8])
 {
+    const real_t one = cf_one();
     real_t status_real[8];
-    stanford_arm_ik_whole_kernel(1, params, T, q, status_real);
+    stanford_arm_ik_whole_kernel(1, one, params, T, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
 }
 
 /* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_arm_params *params,
+CF_INLINE void stanford_arm_ik_common_kernel(const int single, const real_t one,
+    const stanford_arm_params *params,
     const real_t T[16], real_t q[48], real_t status[8],
     real_t rare[1])
 {
@@ -969,7 +1027,7 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_ar
     const real_t T42 = T[13];
     const real_t T43 = T[14];
     const real_t T44 = T[15];
-    const real_t t1 = T14 * T14 + T24 * T24;
+    const real_t t1 = cf_rounded(single, one, T14 * T14) + cf_rounded(single, one, T24 * T24);
     const real_t amplitude = cf_sqrt(t1);
     const real_t t2 = amplitude - d2;
     const real_t below = cf_max(t2, CLOSEDFORM_C(0.0));
@@ -977,82 +1035,91 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_ar
     const real_t above = cf_max(t3, CLOSEDFORM_C(0.0));
     const real_t t4 = below - above;
     const real_t t5 = CLOSEDFORM_C(1.0) / (amplitude * (below + above));
-    const real_t t6 = T14 * t4 * t5;
+    const real_t t6 = cf_rounded(single, one, T14 * t4 * t5);
     const real_t root = cf_sqrt(below * above);
     const real_t t7 = CLOSEDFORM_C(2.0) * root;
-    const real_t t8 = t5 * (T24 * t7);
+    const real_t t8 = cf_rounded(single, one, t5 * (T24 * t7));
     const real_t s1 = t6 + t8;
-    const real_t t9 = T24 * t4 * t5;
-    const real_t t10 = t5 * (T14 * t7);
+    const real_t t9 = cf_rounded(single, one, T24 * t4 * t5);
+    const real_t t10 = cf_rounded(single, one, t5 * (T14 * t7));
     const real_t t11 = t9 - t10;
     const int t12 = cf_nought(d2) == 0;
     const int t13 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
-    const int t14 = cf_abs(T13 - T21 * T32 + T22 * T31) <= CLOSEDFORM_ROTATION;
-    const int t15 = cf_abs(T23 + T11 * T32 - T12 * T31) <= CLOSEDFORM_ROTATION;
-    const int t16 = cf_abs(T33 - T11 * T22 + T12 * T21) <= CLOSEDFORM_ROTATION;
-    const real_t t17 = CLOSEDFORM_C(1.0) - T11 * T11 - T21 * T21 - T31 * T31;
-    const int t18 = cf_abs(t17) <= CLOSEDFORM_ROTATION;
-    const real_t t19 = CLOSEDFORM_C(1.0) - T12 * T12 - T22 * T22 - T32 * T32;
-    const int t20 = cf_abs(t19) <= CLOSEDFORM_ROTATION;
-    const int t21 = cf_abs(T11 * T12 + T21 * T22 + T31 * T32) <= CLOSEDFORM_ROTATION;
-    const int t22 = t12 & t13 & t14 & t15 & t16 & t18 & t20 & t21;
-    const int t23 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
-    const int t24 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
-    const int t25 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
-    const int t26 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
-    const int invalid = !(t22 & t23 & t24 & t25 & t26);
-    const real_t t27 = T34 * T34;
-    const real_t size = cf_abs(d2) + cf_sqrt(t27 + t1);
-    const real_t t28 = -(CLOSEDFORM_FEASIBILITY * size);
-    const int unreachable = !((t28 <= t2) & (t28 <= t3));
-    const real_t t29 = cf_poison(single, invalid | unreachable);
-    const real_t reach = cf_sqrt(t27 + root * root);
-    const real_t t30 = reach + t29;
-    const real_t t31 = T13 * s1 + T23 * t11;
-    const real_t t32 = CLOSEDFORM_C(1.0) / reach;
-    const real_t s2 = root * t32;
-    const real_t t33 = T33 * s2;
-    const real_t c2 = T34 * t32;
-    const real_t t34 = T13 * t11 - T23 * s1;
-    const real_t t35 = t33 + c2 * t34;
-    const real_t h = cf_sqrt(t31 * t31 + t35 * t35);
-    const real_t t36 = CLOSEDFORM_C(1.0) / h;
-    const real_t t37 = t31 * t36;
-    const real_t c4_right_back_noflip = t35 * t36;
-    const real_t t38 = t31 * t37 + t35 * c4_right_back_noflip;
-    const real_t t39 = T33 * c2;
-    const real_t R2_33 = t39 - s2 * t34;
-    const real_t t40 = c4_right_back_noflip * (T11 * s1 + T21 * t11);
-    const real_t t41 = T31 * s2;
-    const real_t t42 = t40 - t37 * (t41 + c2 * (T11 * t11 - T21 * s1));
-    const real_t t43 = c4_right_back_noflip * (T12 * s1 + T22 * t11);
-    const real_t t44 = T32 * s2;
-    const real_t t45 = t43 - t37 * (t44 + c2 * (T12 * t11 - T22 * s1));
-    const real_t t46 = -reach + t29;
+    const real_t t14 = T13 - cf_rounded(single, one, T21 * T32) + cf_rounded(single, one, T22 * T31);
+    const int t15 = cf_abs(t14) <= CLOSEDFORM_ROTATION;
+    const real_t t16 = T23 + cf_rounded(single, one, T11 * T32) - cf_rounded(single, one, T12 * T31);
+    const int t17 = cf_abs(t16) <= CLOSEDFORM_ROTATION;
+    const real_t t18 = T33 - cf_rounded(single, one, T11 * T22) + cf_rounded(single, one, T12 * T21);
+    const int t19 = cf_abs(t18) <= CLOSEDFORM_ROTATION;
+    const real_t t20 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, T11 * T11);
+    const real_t t21 = t20 - cf_rounded(single, one, T21 * T21) - cf_rounded(single, one, T31 * T31);
+    const int t22 = cf_abs(t21) <= CLOSEDFORM_ROTATION;
+    const real_t t23 = CLOSEDFORM_C(1.0) - cf_rounded(single, one, T12 * T12);
+    const real_t t24 = t23 - cf_rounded(single, one, T22 * T22) - cf_rounded(single, one, T32 * T32);
+    const int t25 = cf_abs(t24) <= CLOSEDFORM_ROTATION;
+    const real_t t26 = cf_rounded(single, one, T11 * T12) + cf_rounded(single, one, T21 * T22);
+    const real_t t27 = cf_abs(t26 + cf_rounded(single, one, T31 * T32));
+    const int t28 = t12 & t13 & t15 & t17 & t19 & t22 & t25 & (t27 <= CLOSEDFORM_ROTATION);
+    const int t29 = cf_abs(T41) <= CLOSEDFORM_ROTATION;
+    const int t30 = cf_abs(T42) <= CLOSEDFORM_ROTATION;
+    const int t31 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
+    const int t32 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
+    const int invalid = !(t28 & t29 & t30 & t31 & t32);
+    const real_t t33 = cf_rounded(single, one, T34 * T34);
+    const real_t size = cf_abs(d2) + cf_sqrt(t33 + t1);
+    const real_t t34 = -(CLOSEDFORM_FEASIBILITY * size);
+    const int unreachable = !((t34 <= t2) & (t34 <= t3));
+    const real_t t35 = cf_poison(single, invalid | unreachable);
+    const real_t reach = cf_sqrt(t33 + cf_rounded(single, one, root * root));
+    const real_t t36 = reach + t35;
+    const real_t t37 = cf_rounded(single, one, T13 * s1) + cf_rounded(single, one, T23 * t11);
+    const real_t t38 = CLOSEDFORM_C(1.0) / reach;
+    const real_t s2 = root * t38;
+    const real_t t39 = cf_rounded(single, one, T33 * s2);
+    const real_t c2 = T34 * t38;
+    const real_t t40 = cf_rounded(single, one, T13 * t11) - cf_rounded(single, one, T23 * s1);
+    const real_t t41 = t39 + cf_rounded(single, one, c2 * t40);
+    const real_t t42 = cf_rounded(single, one, t37 * t37) + cf_rounded(single, one, t41 * t41);
+    const real_t h = cf_sqrt(t42);
+    const real_t t43 = CLOSEDFORM_C(1.0) / h;
+    const real_t t44 = t37 * t43;
+    const real_t c4_right_back_noflip = t41 * t43;
+    const real_t t45 = t37 * t44 + t41 * c4_right_back_noflip;
+    const real_t t46 = T33 * c2;
+    const real_t R2_33 = t46 - s2 * t40;
+    const real_t t47 = c4_right_back_noflip * (T11 * s1 + T21 * t11);
+    const real_t t48 = T31 * s2;
+    const real_t t49 = t47 - t44 * (t48 + c2 * (T11 * t11 - T21 * s1));
+    const real_t t50 = c4_right_back_noflip * (T12 * s1 + T22 * t11);
+    const real_t t51 = T32 * s2;
+    const real_t t52 = t50 - t44 * (t51 + c2 * (T12 * t11 - T22 * s1));
+    const real_t t53 = -reach + t35;
     const real_t s1_left_out_noflip = t6 - t8;
-    const real_t t47 = t9 + t10;
-    const real_t t48 = T13 * s1_left_out_noflip + T23 * t47;
-    const real_t t49 = T13 * t47 - T23 * s1_left_out_noflip;
-    const real_t R2_13_left_out_noflip = t33 - c2 * t49;
-    const real_t t50 = R2_13_left_out_noflip * R2_13_left_out_noflip;
-    const real_t h_left_out_noflip = cf_sqrt(t48 * t48 + t50);
-    const real_t t51 = CLOSEDFORM_C(1.0) / h_left_out_noflip;
-    const real_t t52 = t48 * t51;
-    const real_t c4_left_out_noflip = R2_13_left_out_noflip * t51;
-    const real_t t53 = t48 * t52 + R2_13_left_out_noflip * c4_left_out_noflip;
-    const real_t R2_33_left_out_noflip = t39 + s2 * t49;
-    const real_t t54 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t47);
-    const real_t R2_11_left_out_noflip = t41 - c2 * (T11 * t47 - T21 * s1_left_out_noflip);
-    const real_t t55 = t54 - t52 * R2_11_left_out_noflip;
-    const real_t t56 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t47);
-    const real_t R2_12_left_out_noflip = t44 - c2 * (T12 * t47 - T22 * s1_left_out_noflip);
-    const real_t t57 = t56 - t52 * R2_12_left_out_noflip;
-    const real_t t58 = cf_status(single, invalid, unreachable, 0);
-    const real_t t59 = CLOSEDFORM_VANISHING * size;
-    const real_t t60 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
-    const int t61 = (amplitude <= t59) | (reach <= t59) | (h <= t60);
-    const real_t opposite[16] = { s1, root, t31, t38, -t42, root, t31, t38, t42, s1_left_out_noflip, t48, t53, t55, t48, t53, -t55 };
-    const real_t adjacent[16] = { -t11, T34, -t35, R2_33, t45, -T34, t35, -R2_33, -t45, -t47, R2_13_left_out_noflip, R2_33_left_out_noflip, -t57, -R2_13_left_out_noflip, -R2_33_left_out_noflip, t57 };
+    const real_t t54 = t9 + t10;
+    const real_t t55 = cf_rounded(single, one, T13 * s1_left_out_noflip);
+    const real_t t56 = t55 + cf_rounded(single, one, T23 * t54);
+    const real_t t57 = cf_rounded(single, one, T23 * s1_left_out_noflip);
+    const real_t t58 = cf_rounded(single, one, T13 * t54) - t57;
+    const real_t R2_13_left_out_noflip = t39 - cf_rounded(single, one, c2 * t58);
+    const real_t t59 = cf_rounded(single, one, R2_13_left_out_noflip * R2_13_left_out_noflip);
+    const real_t h_left_out_noflip = cf_sqrt(cf_rounded(single, one, t56 * t56) + t59);
+    const real_t t60 = CLOSEDFORM_C(1.0) / h_left_out_noflip;
+    const real_t t61 = t56 * t60;
+    const real_t c4_left_out_noflip = R2_13_left_out_noflip * t60;
+    const real_t t62 = t56 * t61 + R2_13_left_out_noflip * c4_left_out_noflip;
+    const real_t R2_33_left_out_noflip = t46 + s2 * t58;
+    const real_t t63 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t54);
+    const real_t R2_11_left_out_noflip = t48 - c2 * (T11 * t54 - T21 * s1_left_out_noflip);
+    const real_t t64 = t63 - t61 * R2_11_left_out_noflip;
+    const real_t t65 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t54);
+    const real_t R2_12_left_out_noflip = t51 - c2 * (T12 * t54 - T22 * s1_left_out_noflip);
+    const real_t t66 = t65 - t61 * R2_12_left_out_noflip;
+    const real_t t67 = cf_status(single, invalid, unreachable, 0);
+    const real_t t68 = CLOSEDFORM_VANISHING * size;
+    const real_t t69 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
+    const int t70 = (amplitude <= t68) | (reach <= t68) | (h <= t69);
+    const real_t opposite[16] = { s1, root, t37, t45, -t49, root, t37, t45, t49, s1_left_out_noflip, t56, t62, t64, t56, t62, -t64 };
+    const real_t adjacent[16] = { -t11, T34, -t41, R2_33, t52, -T34, t41, -R2_33, -t52, -t54, R2_13_left_out_noflip, R2_33_left_out_noflip, -t66, -R2_13_left_out_noflip, -R2_33_left_out_noflip, t66 };
     real_t angles[16];
     if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);
@@ -1074,77 +1141,77 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const stanford_ar
         angles[14] = cf_atan2(opposite[14], adjacent[14]);
         angles[15] = cf_atan2(opposite[15], adjacent[15]);
     }
-    const real_t t62 = cf_wrap_cut(angles[0]) + t29;
-    const real_t t63 = cf_wrap_cut(angles[1]) + t29;
-    const real_t t64 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[2]);
-    const real_t t65 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[4]);
-    const real_t t66 = cf_wrap_cut(-angles[5]) + t29;
-    const real_t t67 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[6]);
-    const real_t t68 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[8]);
-    const real_t t69 = cf_wrap_cut(angles[9]) + t29;
-    const real_t t70 = cf_wrap_cut(-angles[1]) + t29;
-    const real_t t71 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[10]);
-    const real_t t72 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[12]);
-    const real_t t73 = cf_wrap_cut(angles[5]) + t29;
-    const real_t t74 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[13]);
-    const real_t t75 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[15]);
-    q[0] = t62;
-    q[1] = t63;
-    q[2] = t30;
-    q[3] = cf_wrap_cut(-angles[2]) + t29;
-    q[4] = cf_wrap_cut(angles[3]) + t29;
-    q[5] = cf_wrap_cut(-angles[4]) + t29;
-    q[6] = t62;
-    q[7] = t63;
-    q[8] = t30;
-    q[9] = t64 + t29;
-    q[10] = cf_wrap_cut(-angles[3]) + t29;
-    q[11] = t65 + t29;
-    q[12] = t62;
-    q[13] = t66;
-    q[14] = t46;
-    q[15] = cf_wrap_cut(-angles[6]) + t29;
-    q[16] = cf_wrap_cut(angles[7]) + t29;
-    q[17] = cf_wrap_cut(-angles[8]) + t29;
-    q[18] = t62;
-    q[19] = t66;
-    q[20] = t46;
-    q[21] = t67 + t29;
-    q[22] = cf_wrap_cut(-angles[7]) + t29;
-    q[23] = t68 + t29;
-    q[24] = t69;
-    q[25] = t70;
-    q[26] = t30;
-    q[27] = cf_wrap_cut(-angles[10]) + t29;
-    q[28] = cf_wrap_cut(angles[11]) + t29;
-    q[29] = cf_wrap_cut(-angles[12]) + t29;
-    q[30] = t69;
-    q[31] = t70;
-    q[32] = t30;
-    q[33] = t71 + t29;
-    q[34] = cf_wrap_cut(-angles[11]) + t29;
-    q[35] = t72 + t29;
-    q[36] = t69;
-    q[37] = t73;
-    q[38] = t46;
-    q[39] = cf_wrap_cut(-angles[13]) + t29;
-    q[40] = cf_wrap_cut(angles[14]) + t29;
-    q[41] = cf_wrap_cut(-angles[15]) + t29;
-    q[42] = t69;
-    q[43] = t73;
-    q[44] = t46;
-    q[45] = t74 + t29;
-    q[46] = cf_wrap_cut(-angles[14]) + t29;
-    q[47] = t75 + t29;
-    status[0] = t58;
-    status[1] = t58;
-    status[2] = t58;
-    status[3] = t58;
-    status[4] = t58;
-    status[5] = t58;
-    status[6] = t58;
-    status[7] = t58;
-    rare[0] = (t61 | (h_left_out_noflip <= t60)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t71 = cf_wrap_cut(angles[0]) + t35;
+    const real_t t72 = cf_wrap_cut(angles[1]) + t35;
+    const real_t t73 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[2]);
+    const real_t t74 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[4]);
+    const real_t t75 = cf_wrap_cut(-angles[5]) + t35;
+    const real_t t76 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[6]);
+    const real_t t77 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[8]);
+    const real_t t78 = cf_wrap_cut(angles[9]) + t35;
+    const real_t t79 = cf_wrap_cut(-angles[1]) + t35;
+    const real_t t80 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[10]);
+    const real_t t81 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[12]);
+    const real_t t82 = cf_wrap_cut(angles[5]) + t35;
+    const real_t t83 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[13]);
+    const real_t t84 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[15]);
+    q[0] = t71;
+    q[1] = t72;
+    q[2] = t36;
+    q[3] = cf_wrap_cut(-angles[2]) + t35;
+    q[4] = cf_wrap_cut(angles[3]) + t35;
+    q[5] = cf_wrap_cut(-angles[4]) + t35;
+    q[6] = t71;
+    q[7] = t72;
+    q[8] = t36;
+    q[9] = t73 + t35;
+    q[10] = cf_wrap_cut(-angles[3]) + t35;
+    q[11] = t74 + t35;
+    q[12] = t71;
+    q[13] = t75;
+    q[14] = t53;
+    q[15] = cf_wrap_cut(-angles[6]) + t35;
+    q[16] = cf_wrap_cut(angles[7]) + t35;
+    q[17] = cf_wrap_cut(-angles[8]) + t35;
+    q[18] = t71;
+    q[19] = t75;
+    q[20] = t53;
+    q[21] = t76 + t35;
+    q[22] = cf_wrap_cut(-angles[7]) + t35;
+    q[23] = t77 + t35;
+    q[24] = t78;
+    q[25] = t79;
+    q[26] = t36;
+    q[27] = cf_wrap_cut(-angles[10]) + t35;
+    q[28] = cf_wrap_cut(angles[11]) + t35;
+    q[29] = cf_wrap_cut(-angles[12]) + t35;
+    q[30] = t78;
+    q[31] = t79;
+    q[32] = t36;
+    q[33] = t80 + t35;
+    q[34] = cf_wrap_cut(-angles[11]) + t35;
+    q[35] = t81 + t35;
+    q[36] = t78;
+    q[37] = t82;
+    q[38] = t53;
+    q[39] = cf_wrap_cut(-angles[13]) + t35;
+    q[40] = cf_wrap_cut(angles[14]) + t35;
+    q[41] = cf_wrap_cut(-angles[15]) + t35;
+    q[42] = t78;
+    q[43] = t82;
+    q[44] = t53;
+    q[45] = t83 + t35;
+    q[46] = cf_wrap_cut(-angles[14]) + t35;
+    q[47] = t84 + t35;
+    status[0] = t67;
+    status[1] = t67;
+    status[2] = t67;
+    status[3] = t67;
+    status[4] = t67;
+    status[5] = t67;
+    status[6] = t67;
+    status[7] = t67;
+    rare[0] = (t70 | (h_left_out_noflip <= t69)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void stanford_arm_ik_common_batch(size_t n, const stanford_arm_params *params,
@@ -1155,6 +1222,7 @@ CF_INLINE void stanford_arm_ik_common_batch(size_t n, const stanford_arm_params 
 {
     (void)rare_stride;
     const stanford_arm_params local = *params;
+    const real_t one = cf_one();
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t status_real[8][CLOSEDFORM_BLOCK];
@@ -1165,7 +1233,7 @@ CF_INLINE void stanford_arm_ik_common_batch(size_t n, const stanford_arm_params 
             real_t q_i[48];
             real_t status_i[8];
             real_t rare_i[1];
-            stanford_arm_ik_common_kernel(0, &local, T_i, q_i, status_i, rare_i);
+            stanford_arm_ik_common_kernel(0, one, &local, T_i, q_i, status_i, rare_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -1258,9 +1326,10 @@ CF_INLINE void stanford_arm_ik_common(const stanford_arm_params *params,
     const real_t T[16], real_t q[48], uint8_t status[8],
     uint8_t rare[1])
 {
+    const real_t one = cf_one();
     real_t status_real[8];
     real_t rare_real[1];
-    stanford_arm_ik_common_kernel(1, params, T, q, status_real, rare_real);
+    stanford_arm_ik_common_kernel(1, one, params, T, q, status_real, rare_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
     for (size_t i = 0; i < 1; ++i)
@@ -1271,9 +1340,52 @@ CLOSEDFORM_DISPATCHED
 void stanford_arm_ik(const stanford_arm_params *params,
     const real_t T[16], real_t q[48], uint8_t status[8])
 {
+    static const signed char T_degrees[16] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0 };
+    static const signed char q_degrees[48] = { 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0 };
+    real_t T_scaled[16];
+    stanford_arm_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->d2), cf_abs(T[3])), cf_max(cf_abs(T[7]), cf_abs(T[11])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.d2 = CF_LIBM(ldexp)(params->d2, -exponent);
+        params = &params_scaled;
+        cf_rescale(16, T_degrees, -exponent, T, T_scaled);
+        T = T_scaled;
+    }
     uint8_t rare[1];
     stanford_arm_ik_common(params, T, q, status, rare);
     if (CF_UNLIKELY(rare[0])) stanford_arm_ik_whole(params, T, q, status);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(48, q_degrees, exponent, q, q);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word stanford_arm_ik_excess(const real_t dimensions,
+    const real_t *T, size_t T_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(T[3 * T_stride + i])), cf_max(cf_abs(T[7 * T_stride + i]), cf_abs(T[11 * T_stride + i]))), CF_SIZES_2);
+}
+
+CF_RARE void stanford_arm_ik_other_sizes(size_t n, const real_t dimensions,
+    const stanford_arm_params *params,
+    const real_t *T, size_t T_stride,
+    real_t *q, size_t q_stride,
+    uint8_t *status, size_t status_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(stanford_arm_ik_excess(dimensions, T, T_stride, i) & CF_SIGN)) continue;
+        real_t T_i[16];
+        for (size_t k = 0; k < 16; ++k) T_i[k] = T[k * T_stride + i];
+        real_t q_i[48];
+        uint8_t status_i[8];
+        stanford_arm_ik(params, T_i, q_i, status_i);
+        for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
+        for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
+    }
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1282,6 +1394,7 @@ void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
     real_t *q, size_t q_stride,
     uint8_t *status, size_t status_stride)
 {
+    const real_t dimensions = cf_abs(params->d2);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         uint8_t rare[CLOSEDFORM_BLOCK];
@@ -1295,6 +1408,12 @@ void stanford_arm_ik_batch(size_t n, const stanford_arm_params *params,
             stanford_arm_ik_whole(params, T_i, q_i, status_i);
             for (size_t k = 0; k < 48; ++k) q[k * q_stride + i] = q_i[k];
             for (size_t k = 0; k < 8; ++k) status[k * status_stride + i] = status_i[k];
+
         }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= stanford_arm_ik_excess(dimensions, T + start, T_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            stanford_arm_ik_other_sizes(length, dimensions, params, T + start, T_stride, q + start, q_stride, status + start, status_stride);
     }
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from enum import IntEnum
-from functools import cache
+from functools import cache, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 FEASIBILITY = 1e-12
 VANISHING = 8.881784197001252e-16
+DETERMINED = 0.0009765625
 ROTATION = 1e-06
 
 BLOCK = 8000
@@ -58,11 +59,25 @@ class Array(NamedTuple):
         return size
 
 
+class Size(NamedTuple):
+    """How planes go with the size of a mechanism, its largest length.
+
+    ``lengths`` are the planes of the input that are lengths.  ``degrees`` are, of the planes of the
+    results that go with a power of the size, the place and the power.  Sizes from ``least`` to
+    ``most`` have powers that stay in the range of a double.
+    """
+
+    lengths: tuple[int, ...]
+    degrees: tuple[tuple[int, int], ...]
+    least: float
+    most: float
+
+
 class Kernel(NamedTuple):
     """A function of planes (one array a coordinate), and what it takes and gives.
 
     ``common``, if there is one, computes the same where nothing vanishes, and then whether
-    something does.
+    something does.  ``size`` is there if powers of lengths may leave the range of a double.
     """
 
     name: str
@@ -72,6 +87,7 @@ class Kernel(NamedTuple):
     fields: tuple[str, ...]
     used: tuple[str, ...]
     common: Callable[..., tuple[Any, ...]] | None = None
+    size: Size | None = None
 
 
 def sincos(angle: Any) -> tuple[Any, Any]:
@@ -325,6 +341,40 @@ def _keep_freed_memory() -> None:
 
 
 def _values(kernel: Kernel, planes: Sequence[Any]) -> Sequence[Any]:
+    """The planes of the results, of mechanisms of any size."""
+    size = kernel.size
+    if size is None or _is_ordinary(size, [planes[k] for k in size.lengths]):
+        return _values_in_range(kernel, planes)
+    sizes = reduce(np.maximum, (np.abs(planes[k]) for k in size.lengths))
+    ordinary = (size.least <= sizes) & (sizes <= size.most) | ~np.isfinite(sizes)
+    if np.all(ordinary):
+        return _values_in_range(kernel, planes)
+    exponents = np.frexp(sizes)[1]
+    # multiples of 4, so that roots of powers of lengths are multiplied by powers of two as well
+    exponents = np.where(ordinary, np.int32(0), exponents - np.fmod(exponents, 4))
+    scaled = list(planes)
+    for k in size.lengths:
+        scaled[k] = np.ldexp(planes[k], -exponents)
+    values = list(_values_in_range(kernel, scaled))
+    for k, degree in size.degrees:
+        values[k] = np.ldexp(values[k], degree * exponents)
+    return values
+
+
+def _is_ordinary(size: Size, lengths: Sequence[Any]) -> bool:
+    """Whether all sizes are known to be between the least and the most.
+
+    Dimensions that hold for all postures are large enough for each of them.  A plane is too large if
+    the sum of its squares is.
+    """
+    single = [abs(x) for x in lengths if not np.ndim(x)]
+    planes = [x for x in lengths if np.ndim(x)]
+    if not size.least <= max(single, default=0.0) <= size.most:
+        return False
+    return all(np.vdot(x, x) <= size.most * size.most for x in planes)
+
+
+def _values_in_range(kernel: Kernel, planes: Sequence[Any]) -> Sequence[Any]:
     """The planes of the results; where something vanishes, they are computed anew."""
     if kernel.common is None:
         return kernel.compute(*planes)

@@ -11,9 +11,9 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
-#   ik: 396 compare and select, 320 add, 24 atan2, 59 divide, 329 multiply, 1 reduce to a turn, 3
+#   ik: 398 compare and select, 320 add, 24 atan2, 59 divide, 330 multiply, 1 reduce to a turn, 3
 #     sincos, 16 sqrt
-#   ik where nothing vanishes: 239 compare and select, 158 add, 17 atan2, 25 divide, 137 multiply,
+#   ik where nothing vanishes: 240 compare and select, 158 add, 17 atan2, 25 divide, 138 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -207,6 +207,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("x", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((0, 1), (1, 1), (2, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -387,6 +388,7 @@ _POSE = _runtime.Kernel(
     (_runtime.Array("T", (4, 4)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((3, 1), (7, 1), (11, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -818,6 +820,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (6, 6)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -960,6 +963,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 3),), 1.9721522630525295e-31, 1.6069380442589903e+60),
 )
 
 
@@ -1096,6 +1100,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -1148,8 +1153,10 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t5 = d - c_psi * (gs - al)
     t6 = np.sqrt(np.maximum(t4, 0.0) * np.maximum(t5, 0.0))
     t7 = 1.0 / c_psi
-    t8 = loff + lp * c_pitch + t6 * t7
-    del c_pitch, t6
+    wrist = t6 * t7
+    del t6
+    t8 = loff + lp * c_pitch + wrist
+    del c_pitch
     t9 = s_psi * t8
     t10 = s_phi * t3 - c_phi * t9
     t11 = h + t10
@@ -1938,16 +1945,18 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
     t347 = t343 - np.arctan2(t331, 2.0 * np.sqrt(t346))
     del t331, t346
-    t348 = nowhere | folded | short
-    del folded, nowhere, short
-    t349 = _runtime.status(invalid, unreachable, t348 | parallel)
+    t348 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    del nowhere, wrist
+    t349 = t348 | folded | short
+    del folded, short, t348
+    t350 = _runtime.status(invalid, unreachable, t349 | parallel)
     del parallel, unreachable
-    t350 = _runtime.status(invalid, unreachable_2, t348 | parallel_front_elbow_down)
+    t351 = _runtime.status(invalid, unreachable_2, t349 | parallel_front_elbow_down)
     del parallel_front_elbow_down, unreachable_2
-    t351 = _runtime.status(invalid, unreachable_3, t348 | parallel_rear_elbow_up)
+    t352 = _runtime.status(invalid, unreachable_3, t349 | parallel_rear_elbow_up)
     del parallel_rear_elbow_up, unreachable_3
-    t352 = _runtime.status(invalid, unreachable_4, t348 | parallel_rear_elbow_down)
-    del invalid, parallel_rear_elbow_down, t348, unreachable_4
+    t353 = _runtime.status(invalid, unreachable_4, t349 | parallel_rear_elbow_down)
+    del invalid, parallel_rear_elbow_down, t349, unreachable_4
     return (
         t14 + t116,
         _runtime.wrap(t119 - t120) + t116,
@@ -1973,10 +1982,10 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap(t340 + t343) + t336,
         _runtime.wrap(t345 - t347) + t336,
         t128 + t336,
-        t349,
         t350,
         t351,
         t352,
+        t353,
     )
 
 
@@ -1993,8 +2002,10 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t3 = d - c_psi * (gs - al)
     t4 = np.sqrt(np.maximum(t2, 0.0) * np.maximum(t3, 0.0))
     t5 = 1.0 / c_psi
-    t6 = loff + lp * c_pitch + t4 * t5
-    del c_pitch, t4
+    wrist = t4 * t5
+    del t4
+    t6 = loff + lp * c_pitch + wrist
+    del c_pitch
     t7 = s_psi * t6
     t8 = s_phi * t1 - c_phi * t7
     t9 = h + t8
@@ -2348,14 +2359,14 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
     t168 = t166 - np.arctan2(t157, 2.0 * np.sqrt(t167))
     del t157, t167
-    t169 = _runtime.status(invalid, unreachable, np.False_)
-    del unreachable
-    t170 = _runtime.status(invalid, unreachable_2, np.False_)
+    t169 = wrist <= al * _runtime.DETERMINED
+    del wrist
+    t170 = _runtime.status(invalid, unreachable_2, t169)
     del unreachable_2
-    t171 = _runtime.status(invalid, unreachable_3, np.False_)
+    t171 = _runtime.status(invalid, unreachable_3, t169)
     del unreachable_3
-    t172 = _runtime.status(invalid, unreachable_4, np.False_)
-    del invalid, unreachable_4
+    t172 = _runtime.status(invalid, unreachable_4, t169)
+    del unreachable_4
     t173 = (h <= t22 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t28)
     del h, t22, t28
     t174 = _runtime.VANISHING * t25
@@ -2440,7 +2451,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap(t163 + t166) + t162,
         _runtime.wrap(-(t89 + t168)) + t162,
         t90 + t162,
-        t169,
+        _runtime.status(invalid, unreachable, t169),
         t170,
         t171,
         t172,
@@ -2455,7 +2466,8 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (4, 6)), _runtime.Array("status", (4,), np.uint8)),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _ik_common,
+    common=_ik_common,
+    size=_runtime.Size((0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -2501,6 +2513,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),
       or their difference where it is folded, is determined by yaw and roll, alpha and beta
       being half the differences of the arms' angles; sines of equal size are returned.
+    - SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al):
+      rounded joints do not hold the tip to 1e-12 there.
     - INVALID: d, L1, or both L2 and a3 are zero.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
@@ -2533,6 +2547,7 @@ _WRIST_LENGTH = _runtime.Kernel(
     (_runtime.Array("l_W", ()),),
     Parameters._fields,
     ('d', 'gs', 'al'),
+    size=_runtime.Size((2, 3, 4), ((0, 1),), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 

@@ -11,9 +11,9 @@
 #   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
-#   ik: 341 compare and select, 342 add, 27 atan2, 40 divide, 455 multiply, 1 reduce to a turn, 3
+#   ik: 346 compare and select, 342 add, 27 atan2, 40 divide, 456 multiply, 1 reduce to a turn, 3
 #     sincos, 16 sqrt
-#   ik where nothing vanishes: 253 compare and select, 250 add, 23 atan2, 27 divide, 332 multiply,
+#   ik where nothing vanishes: 256 compare and select, 250 add, 23 atan2, 27 divide, 333 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -293,6 +293,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("x", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((0, 1), (1, 1), (2, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -566,6 +567,7 @@ _POSE = _runtime.Kernel(
     (_runtime.Array("T", (4, 4)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((3, 1), (7, 1), (11, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1125,6 +1127,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (6, 6)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1359,6 +1362,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 3),), 1.0587911840678754e-22, 5.575186299632656e+42),
 )
 
 
@@ -1592,6 +1596,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (6,)),),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1650,8 +1655,10 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t7 = d - (gs - al) * t4
     del t4
     t8 = np.sqrt(np.maximum(t6, 0.0) * np.maximum(t7, 0.0))
-    t9 = loff + lp * c_pitch + t5 * t8
-    del c_pitch, t8
+    wrist = t5 * t8
+    del t8
+    t9 = loff + lp * c_pitch + wrist
+    del c_pitch
     t10 = s_psi * t9
     t11 = s_phi * t3 - c_phi * t10
     t12 = h + t11
@@ -2503,47 +2510,48 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     square_mid = t93 + M_mid
     t389 = M_mid * square_mid
     del M_mid
-    t390 = 10000.0 * t79
-    del t79
-    t391 = t388 | (t389 <= _runtime.VANISHING * (t390 * gap))
-    del gap
-    t392 = _runtime.VANISHING * t390
-    at_shoulder = square_mid <= t392
+    t390 = _runtime.DETERMINED * _runtime.DETERMINED
+    t391 = t79 * t390
+    t392 = square_mid <= t391
     del square_mid
-    t393 = t391 | at_shoulder | folded_right | short_right
-    del folded_right, t391
-    t394 = _runtime.status(invalid, unreachable, t393 | folded_left)
-    del folded_left, t393, unreachable
+    t393 = wrist <= al * _runtime.DETERMINED
+    del wrist
+    t394 = t388 | (t389 <= t390 * (t79 * gap)) | t392 | t393
+    del gap
+    t395 = t394 | folded_right | short_right | folded_left
+    del folded_left, folded_right, t394
+    t396 = _runtime.status(invalid, unreachable, t395)
+    del t395, unreachable
     square_mid_front_elbow_down_alike = t93 + M_mid_front_elbow_down_alike
     del t93
-    t395 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t397 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t396 = _runtime.VANISHING * (t390 * gap_front_elbow_down_alike)
+    t398 = t397 <= t390 * (t79 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    at_shoulder_front_elbow_down_alike = square_mid_front_elbow_down_alike <= t392
-    del square_mid_front_elbow_down_alike, t392
-    t397 = t388 | (t395 <= t396) | at_shoulder_front_elbow_down_alike
-    del t396
-    t398 = t397 | folded_right_front_elbow_down_alike | short_right
-    del folded_right_front_elbow_down_alike, t397
-    t399 = _runtime.status(invalid, unreachable_2, t398 | folded_left_front_elbow_down_alike)
-    del folded_left_front_elbow_down_alike, t398, unreachable_2
-    t400 = _runtime.VANISHING * (t390 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike
-    t401 = t388 | (t395 <= t400) | at_shoulder_front_elbow_down_alike
-    del at_shoulder_front_elbow_down_alike, t395, t400
-    t402 = t401 | folded_right_rear_elbow_up_alike | short_right
-    del folded_right_rear_elbow_up_alike, t401
-    t403 = _runtime.status(invalid, unreachable_3, t402 | folded_left_rear_elbow_up_alike)
-    del folded_left_rear_elbow_up_alike, t402, unreachable_3
-    t404 = _runtime.VANISHING * (t390 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t390
-    t405 = t388 | (t389 <= t404) | at_shoulder | folded_right_rear_elbow_down_alike
-    del at_shoulder, folded_right_rear_elbow_down_alike, t388, t389, t404
-    t406 = t405 | short_right | folded_left_rear_elbow_down_alike
-    del folded_left_rear_elbow_down_alike, short_right, t405
-    t407 = _runtime.status(invalid, unreachable_4, t406)
-    del invalid, t406, unreachable_4
+    t399 = square_mid_front_elbow_down_alike <= t391
+    del square_mid_front_elbow_down_alike, t391
+    t400 = t388 | t398 | t399 | t393 | folded_right_front_elbow_down_alike
+    del folded_right_front_elbow_down_alike, t398
+    t401 = t400 | short_right | folded_left_front_elbow_down_alike
+    del folded_left_front_elbow_down_alike, t400
+    t402 = _runtime.status(invalid, unreachable_2, t401)
+    del t401, unreachable_2
+    t403 = t397 <= t390 * (t79 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike, t397
+    t404 = t388 | t403 | t399 | t393 | folded_right_rear_elbow_up_alike
+    del folded_right_rear_elbow_up_alike, t399, t403
+    t405 = t404 | short_right | folded_left_rear_elbow_up_alike
+    del folded_left_rear_elbow_up_alike, t404
+    t406 = _runtime.status(invalid, unreachable_3, t405)
+    del t405, unreachable_3
+    t407 = t389 <= t390 * (t79 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t389, t390, t79
+    t408 = t388 | t407 | t392 | t393 | folded_right_rear_elbow_down_alike
+    del folded_right_rear_elbow_down_alike, t388, t392, t393, t407
+    t409 = t408 | short_right | folded_left_rear_elbow_down_alike
+    del folded_left_rear_elbow_down_alike, short_right, t408
+    t410 = _runtime.status(invalid, unreachable_4, t409)
+    del invalid, t409, unreachable_4
     return (
         t102,
         t113,
@@ -2593,14 +2601,14 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap_cut(t387) + t358,
         _runtime.wrap(t115 - t385) + t358,
         t386,
-        t394,
-        t394,
-        t399,
-        t399,
-        t403,
-        t403,
-        t407,
-        t407,
+        t396,
+        t396,
+        t402,
+        t402,
+        t406,
+        t406,
+        t410,
+        t410,
     )
 
 
@@ -2619,8 +2627,10 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t5 = d - (gs - al) * t2
     del t2
     t6 = np.sqrt(np.maximum(t4, 0.0) * np.maximum(t5, 0.0))
-    t7 = loff + lp * c_pitch + t3 * t6
-    del c_pitch, t6
+    wrist = t3 * t6
+    del t6
+    t7 = loff + lp * c_pitch + wrist
+    del c_pitch
     t8 = s_psi * t7
     t9 = s_phi * t1 - c_phi * t8
     t10 = h + t9
@@ -3139,87 +3149,88 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t102
     t254 = _runtime.wrap_cut(np.arctan2(t243 + t247, t248 - t249))
     del t243, t247, t248, t249
-    t255 = _runtime.status(invalid, unreachable, np.False_)
-    del unreachable
-    t256 = _runtime.status(invalid, unreachable_2, np.False_)
-    del unreachable_2
-    t257 = _runtime.status(invalid, unreachable_3, np.False_)
-    del unreachable_3
-    t258 = _runtime.status(invalid, unreachable_4, np.False_)
-    del invalid, unreachable_4
-    t259 = (h <= t23 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t30)
-    del h, t23, t30
-    t260 = _runtime.VANISHING * t26
-    del t26
-    t261 = t259 | (fore <= t260) | (np.abs(t31) + np.abs(onward) <= t260)
-    del fore, onward, t259, t260, t31
-    t262 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
-    del room_right
-    t263 = _runtime.VANISHING * play_right
-    del play_right
-    t264 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
-    del room_left
-    t265 = t261 | (t262 <= t263) | (t264 <= t263) | (L1 * fore_arm <= _runtime.VANISHING * t68)
-    del t261, t262, t264
-    t266 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    t267 = t265 | (np.abs(-t69) + np.abs(-t70) <= t266) | (fore_arm <= _runtime.VANISHING * size)
-    del fore_arm, size, t265, t69, t70
-    t268 = t267 | (np.abs(h_left_0) + np.abs(r_left_0) <= t266)
-    del h_left_0, r_left_0, t267
-    t269 = room_right_front_elbow_down_alike * 9.094947017729282e-13
-    t270 = np.maximum(-t269, room_right_front_elbow_down_alike)
-    del room_right_front_elbow_down_alike, t269
-    t271 = room_left_front_elbow_down_alike * 9.094947017729282e-13
-    t272 = np.maximum(-t271, room_left_front_elbow_down_alike)
-    del room_left_front_elbow_down_alike, t271
-    t273 = np.abs(h_right_0_front_elbow_down_alike) + np.abs(r_right_0_front_elbow_down_alike)
-    del h_right_0_front_elbow_down_alike, r_right_0_front_elbow_down_alike
-    t274 = t268 | (t270 <= t263) | (t272 <= t263) | (t273 <= t266)
-    del t268, t270, t272, t273
-    t275 = t274 | (np.abs(-t133) + np.abs(-t134) <= t266)
-    del t133, t134, t274
-    t276 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t277 = np.maximum(-t276, room_right_rear_elbow_up_alike)
-    del room_right_rear_elbow_up_alike, t276
-    t278 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t279 = np.maximum(-t278, room_left_rear_elbow_up_alike)
-    del room_left_rear_elbow_up_alike, t278
-    t280 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
-    del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
-    t281 = t275 | (t277 <= t263) | (t279 <= t263) | (t280 <= t266)
-    del t275, t277, t279, t280
-    t282 = t281 | (np.abs(-t179) + np.abs(-t180) <= t266)
-    del t179, t180, t281
-    t283 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t284 = np.maximum(-t283, room_right_rear_elbow_down_alike)
-    del room_right_rear_elbow_down_alike, t283
-    t285 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t286 = np.maximum(-t285, room_left_rear_elbow_down_alike)
-    del room_left_rear_elbow_down_alike, t285
-    t287 = t282 | (t284 <= t263) | (t286 <= t263) | (np.abs(-t219) + np.abs(-t220) <= t266)
-    del t219, t220, t263, t282, t284, t286
-    t288 = np.abs(h_left_0_rear_elbow_down_alike) + np.abs(r_left_0_rear_elbow_down_alike)
-    del h_left_0_rear_elbow_down_alike, r_left_0_rear_elbow_down_alike
     square_mid = t74 + M_mid
-    t289 = M_mid * square_mid
+    t255 = M_mid * square_mid
     del M_mid
-    t290 = 10000.0 * t68
-    del t68
-    t291 = t287 | (t288 <= t266) | (t289 <= _runtime.VANISHING * (t290 * gap))
-    del gap, t266, t287, t288
-    t292 = _runtime.VANISHING * t290
+    t256 = _runtime.DETERMINED * _runtime.DETERMINED
+    t257 = t68 * t256
+    t258 = square_mid <= t257
+    del square_mid
+    t259 = wrist <= al * _runtime.DETERMINED
+    del wrist
+    t260 = _runtime.status(invalid, unreachable, (t255 <= t256 * (t68 * gap)) | t258 | t259)
+    del gap, unreachable
     square_mid_front_elbow_down_alike = t74 + M_mid_front_elbow_down_alike
     del t74
-    t293 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t261 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t294 = _runtime.VANISHING * (t290 * gap_front_elbow_down_alike)
+    t262 = t261 <= t256 * (t68 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t295 = t291 | (square_mid <= t292) | (t293 <= t294) | (square_mid_front_elbow_down_alike <= t292)
-    del square_mid, square_mid_front_elbow_down_alike, t291, t292, t294
-    t296 = _runtime.VANISHING * (t290 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike
-    t297 = _runtime.VANISHING * (t290 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t290
+    t263 = square_mid_front_elbow_down_alike <= t257
+    del square_mid_front_elbow_down_alike, t257
+    t264 = _runtime.status(invalid, unreachable_2, t262 | t263 | t259)
+    del t262, unreachable_2
+    t265 = t261 <= t256 * (t68 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike, t261
+    t266 = _runtime.status(invalid, unreachable_3, t265 | t263 | t259)
+    del t263, t265, unreachable_3
+    t267 = t255 <= t256 * (t68 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t255, t256
+    t268 = _runtime.status(invalid, unreachable_4, t267 | t258 | t259)
+    del invalid, t258, t259, t267, unreachable_4
+    t269 = (h <= t23 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t30)
+    del h, t23, t30
+    t270 = _runtime.VANISHING * t26
+    del t26
+    t271 = t269 | (fore <= t270) | (np.abs(t31) + np.abs(onward) <= t270)
+    del fore, onward, t269, t270, t31
+    t272 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
+    del room_right
+    t273 = _runtime.VANISHING * play_right
+    del play_right
+    t274 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
+    del room_left
+    t275 = t271 | (t272 <= t273) | (t274 <= t273) | (L1 * fore_arm <= _runtime.VANISHING * t68)
+    del t271, t272, t274, t68
+    t276 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    t277 = t275 | (np.abs(-t69) + np.abs(-t70) <= t276) | (fore_arm <= _runtime.VANISHING * size)
+    del fore_arm, size, t275, t69, t70
+    t278 = t277 | (np.abs(h_left_0) + np.abs(r_left_0) <= t276)
+    del h_left_0, r_left_0, t277
+    t279 = room_right_front_elbow_down_alike * 9.094947017729282e-13
+    t280 = np.maximum(-t279, room_right_front_elbow_down_alike)
+    del room_right_front_elbow_down_alike, t279
+    t281 = room_left_front_elbow_down_alike * 9.094947017729282e-13
+    t282 = np.maximum(-t281, room_left_front_elbow_down_alike)
+    del room_left_front_elbow_down_alike, t281
+    t283 = np.abs(h_right_0_front_elbow_down_alike) + np.abs(r_right_0_front_elbow_down_alike)
+    del h_right_0_front_elbow_down_alike, r_right_0_front_elbow_down_alike
+    t284 = t278 | (t280 <= t273) | (t282 <= t273) | (t283 <= t276)
+    del t278, t280, t282, t283
+    t285 = t284 | (np.abs(-t133) + np.abs(-t134) <= t276)
+    del t133, t134, t284
+    t286 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t287 = np.maximum(-t286, room_right_rear_elbow_up_alike)
+    del room_right_rear_elbow_up_alike, t286
+    t288 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t289 = np.maximum(-t288, room_left_rear_elbow_up_alike)
+    del room_left_rear_elbow_up_alike, t288
+    t290 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
+    t291 = t285 | (t287 <= t273) | (t289 <= t273) | (t290 <= t276)
+    del t285, t287, t289, t290
+    t292 = t291 | (np.abs(-t179) + np.abs(-t180) <= t276)
+    del t179, t180, t291
+    t293 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t294 = np.maximum(-t293, room_right_rear_elbow_down_alike)
+    del room_right_rear_elbow_down_alike, t293
+    t295 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t296 = np.maximum(-t295, room_left_rear_elbow_down_alike)
+    del room_left_rear_elbow_down_alike, t295
+    t297 = t292 | (t294 <= t273) | (t296 <= t273) | (np.abs(-t219) + np.abs(-t220) <= t276)
+    del t219, t220, t273, t292, t294, t296
+    t298 = np.abs(h_left_0_rear_elbow_down_alike) + np.abs(r_left_0_rear_elbow_down_alike)
+    del h_left_0_rear_elbow_down_alike, r_left_0_rear_elbow_down_alike
     return (
         t81,
         t89,
@@ -3269,15 +3280,15 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t254 + t230,
         _runtime.wrap(t90 - t252) + t230,
         t253,
-        t255,
-        t255,
-        t256,
-        t256,
-        t257,
-        t257,
-        t258,
-        t258,
-        t295 | (t293 <= t296) | (t289 <= t297),
+        t260,
+        t260,
+        t264,
+        t264,
+        t266,
+        t266,
+        t268,
+        t268,
+        t297 | (t298 <= t276),
     )
 
 
@@ -3288,7 +3299,8 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 6)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
-    _ik_common,
+    common=_ik_common,
+    size=_runtime.Size((0, 1, 2, 6, 7, 8, 9, 10, 11, 12, 13, 14), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -3332,9 +3344,11 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the
       waist axis than L_theta, or an arm is out of reach.
     - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
-      upper arm is returned beside that of the virtual arm), or a virtual arm that is folded or
-      without length, up to what the joints can tell: they then hold the tip, yaw and roll to
-      fewer digits.
+      upper arm is returned beside that of the virtual arm).
+    - SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a
+      folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
+      distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and stretched
+      wrist links (l_W is less than 2^-10 al).
     - INVALID: d, L1, or both L2 and a3 are zero.
     - A straight right arm is returned bent by a few units in the last place, so that fk can
       read the side.
@@ -3371,6 +3385,7 @@ _WRIST_LENGTH = _runtime.Kernel(
     (_runtime.Array("l_W", ()),),
     Parameters._fields,
     ('d', 'gs', 'al'),
+    size=_runtime.Size((2, 3, 4), ((0, 1),), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 

@@ -12,7 +12,7 @@
 #   determinant: 20 add, 21 compare and select, 7 divide, 27 multiply, 2 sincos, 2 sqrt
 #   singularities: 26 add, 21 compare and select, 5 divide, 23 multiply, 2 sincos, 2 sqrt
 #   condition_number: 9 add, 22 compare and select, 3 divide, 10 multiply, 2 sincos, 2 sqrt
-#   ik: 56 compare and select, 36 add, 6 atan2, 2 divide, 33 multiply, 3 sqrt
+#   ik: 71 compare and select, 47 add, 6 atan2, 2 divide, 49 multiply, 3 sqrt
 #   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
 #   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
 """Five-bar linkage on a revolute.
@@ -150,6 +150,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -258,6 +259,7 @@ _PASSIVE_ANGLES = _runtime.Kernel(
     (_runtime.Array("theta", (2, 2)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), (), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -377,6 +379,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -477,6 +480,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -606,6 +610,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 1), (1, 1), (2, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -712,6 +717,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 3), (1, 3)), 1.9721522630525295e-31, 1.6069380442589903e+60),
 )
 
 
@@ -816,6 +822,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((0, 1), (1, 2), (2, 2), (3, 2), (4, 1), (5, 2), (6, 2), (7, 2)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -897,6 +904,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), (), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -958,13 +966,11 @@ def _ik(x, y, z, L0, L1, L2):
     del t11
     t14 = t12 * t12
     t15 = square_c - t14
-    del square_c
     t16 = y - L0
     square_d = r2 + t16 * t16
-    del r2
     t17 = t9 - square_d
     t18 = square_d - t14
-    del square_d, t14
+    del t14
     t19 = (-t8 <= t10) & (-t13 <= t15) & (-t8 <= t17) & (-t13 <= t18)
     del t13, t8
     unreachable = np.logical_not(t19)
@@ -981,15 +987,16 @@ def _ik(x, y, z, L0, L1, L2):
     del t10
     ahead_c = _runtime.select(no_link_c, 1.0, t1 * M_c + N_c * t12)
     t22 = ahead_c * r
-    beyond_c = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(N_c * M_c))
+    t23 = np.sqrt(N_c * M_c)
     del M_c, N_c
-    t23 = y * beyond_c
-    t24 = y * ahead_c
+    beyond_c = _runtime.select(no_link_c, 0.0, t7 * t23)
+    t24 = y * beyond_c
+    t25 = y * ahead_c
     del ahead_c
-    t25 = r * beyond_c
+    t26 = r * beyond_c
     del beyond_c
-    t26 = _runtime.select(at_A, 0.0, np.arctan2(t22 - t23, t24 + t25))
-    t27 = _runtime.wrap_cut(t26) + t20
+    t27 = _runtime.select(at_A, 0.0, np.arctan2(t22 - t24, t25 + t26))
+    t28 = _runtime.wrap_cut(t27) + t20
     at_B = r + np.abs(t16) <= t2
     del t2
     M_d = np.maximum(t18, 0.0)
@@ -997,71 +1004,99 @@ def _ik(x, y, z, L0, L1, L2):
     N_d = np.maximum(t17, 0.0)
     del t17
     ahead_d = _runtime.select(no_link_c, 1.0, t1 * M_d + t12 * N_d)
-    del t12
-    t28 = ahead_d * r
-    beyond_d = _runtime.select(no_link_c, 0.0, t7 * np.sqrt(N_d * M_d))
-    del M_d, N_d, no_link_c, t7
-    t29 = t16 * beyond_d
-    t30 = t16 * ahead_d
-    del ahead_d, t16
-    t31 = r * beyond_d
-    del beyond_d, r
-    t32 = _runtime.select(at_B, 0.0, np.arctan2(t28 - t29, t30 + t31))
-    t33 = _runtime.wrap_cut(t32) + t20
-    t34 = _runtime.select(at_B, 0.0, np.arctan2(t28 + t29, t30 - t31))
-    del t28, t29, t30, t31
+    t29 = ahead_d * r
+    t30 = np.sqrt(N_d * M_d)
+    del M_d, N_d
+    beyond_d = _runtime.select(no_link_c, 0.0, t7 * t30)
+    del no_link_c, t7
+    t31 = t16 * beyond_d
+    t32 = t16 * ahead_d
+    del ahead_d
+    t33 = r * beyond_d
+    del beyond_d
+    t34 = _runtime.select(at_B, 0.0, np.arctan2(t29 - t31, t32 + t33))
     t35 = _runtime.wrap_cut(t34) + t20
-    t36 = _runtime.select(at_A, 0.0, np.arctan2(t22 + t23, t24 - t25))
-    del t22, t23, t24, t25
+    t36 = _runtime.select(at_B, 0.0, np.arctan2(t29 + t31, t32 - t33))
+    del t29, t31, t32, t33
     t37 = _runtime.wrap_cut(t36) + t20
-    t38 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
-    t39 = _runtime.wrap_cut(-t38) + t20
+    t38 = _runtime.select(at_A, 0.0, np.arctan2(t22 + t24, t25 - t26))
+    del t22, t24, t25, t26
+    t39 = _runtime.wrap_cut(t38) + t20
+    t40 = _runtime.select(on_axis, 0.0, np.arctan2(z, x))
+    t41 = _runtime.wrap_cut(-t40) + t20
+    del t40
+    t42 = _runtime.wrap_cut(-t38) + t20
     del t38
-    t40 = _runtime.wrap_cut(-t36) + t20
+    t43 = _runtime.wrap_cut(-t36) + t20
     del t36
-    t41 = _runtime.wrap_cut(-t34) + t20
+    t44 = _runtime.wrap_cut(-t34) + t20
     del t34
-    t42 = _runtime.wrap_cut(-t32) + t20
-    del t32
-    t43 = _runtime.wrap_cut(-t26) + t20
-    del t20, t26
-    t44 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
-    del at_A, at_B, on_axis, t1
-    t45 = _runtime.status(invalid, unreachable, t44)
-    del invalid, t44, unreachable
+    t45 = _runtime.wrap_cut(-t27) + t20
+    del t20, t27
+    t46 = on_axis | at_A | at_B | (L1 <= t1 * _runtime.VANISHING)
+    del at_A, at_B, on_axis
+    t47 = t1 * t12
+    del t1, t12
+    inner_c = square_c - t47
+    inner_d = square_d - t47
+    del t47
+    t48 = inner_c * inner_d
+    t49 = t23 * t30
+    t50 = L0 * r
+    del r
+    t51 = (t48 + t49) * t50
+    t52 = r2 + y * t16
+    del r2, t16
+    t53 = inner_d * t23
+    del inner_d, t23
+    t54 = inner_c * t30
+    del inner_c, t30
+    t55 = t52 * (t53 - t54)
+    t56 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2))
+    del square_c, square_d
+    t57 = _runtime.status(invalid, unreachable, t46 | (np.abs(t51 - t55) <= t56))
+    t58 = t52 * (t53 + t54)
+    del t52, t53, t54
+    t59 = (t48 - t49) * t50
+    del t48, t49, t50
+    t60 = _runtime.status(invalid, unreachable, t46 | (np.abs(t58 - t59) <= t56))
+    t61 = _runtime.status(invalid, unreachable, t46 | (np.abs(-(t58 + t59)) <= t56))
+    del t58, t59
+    t62 = _runtime.status(invalid, unreachable, t46 | (np.abs(t55 + t51) <= t56))
+    del invalid, t46, t51, t55, t56, unreachable
     return (
         t21,
-        t27,
-        t33,
-        t21,
-        t27,
+        t28,
         t35,
         t21,
+        t28,
         t37,
-        t33,
         t21,
-        t37,
+        t39,
         t35,
+        t21,
         t39,
-        t40,
+        t37,
         t41,
-        t39,
-        t40,
         t42,
-        t39,
         t43,
         t41,
-        t39,
-        t43,
         t42,
+        t44,
+        t41,
         t45,
+        t43,
+        t41,
         t45,
-        t45,
-        t45,
-        t45,
-        t45,
-        t45,
-        t45,
+        t44,
+        t57,
+        t60,
+        t61,
+        t62,
+        t62,
+        t61,
+        t60,
+        t57,
     )
 
 
@@ -1072,6 +1107,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 3)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1115,9 +1151,11 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.
     - SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is
       free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.
+    - SINGULAR as well near a parallel singularity, where the sine of the angle between CP and
+      DP is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than
+      1e-12 of the lengths. If L0 = 0, equal signs of the last two entries put C on D.
     - Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
-      the loop still closes. fk loses them again near a parallel singularity.
-    - If L0 = 0, equal signs of the last two entries put C on D, where fk is SINGULAR.
+      the loop still closes.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)
@@ -1160,6 +1198,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Array("inside", (), np.bool_),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -1242,6 +1281,7 @@ _WORKSPACE_VOLUME = _runtime.Kernel(
     (_runtime.Array("volume", ()),),
     Parameters._fields,
     ('L0', 'L1', 'L2'),
+    size=_runtime.Size((0, 1, 2), ((0, 3),), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

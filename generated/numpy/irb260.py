@@ -688,6 +688,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     ('l1', 'l3', 'l4', 'l6'),
+    size=_runtime.Size((4, 5, 6, 7), ((0, 3),), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -982,6 +983,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (4, 4)), _runtime.Array("status", (4,), np.uint8)),
     Parameters._fields,
     ('l1', 'l2', 'l3', 'l4', 'l5', 'l6'),
+    size=_runtime.Size((0, 1, 2, 4, 5, 6, 7, 8, 9), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1112,6 +1114,7 @@ _WORKSPACE_MARGIN = _runtime.Kernel(
     (_runtime.Array("margin", ()),),
     Parameters._fields,
     ('l1', 'l2', 'l3', 'l4', 'l5', 'l6'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5, 6, 7, 8), ((0, 1),), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -1182,6 +1185,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Array("inside", (), np.bool_),),
     Parameters._fields,
     ('l1', 'l2', 'l3', 'l4', 'l5', 'l6'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5, 6, 7, 8), (), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 

@@ -309,6 +309,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     ('l1', 'l2'),
+    size=_runtime.Size((2, 3), ((0, 2),), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -353,6 +354,7 @@ _MANIPULABILITY = _runtime.Kernel(
     (_runtime.Array("w", ()),),
     Parameters._fields,
     ('l1', 'l2'),
+    size=_runtime.Size((2, 3), ((0, 2),), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -487,6 +489,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (2, 2)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('l1', 'l2'),
+    size=_runtime.Size((0, 1, 2, 3), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -592,6 +595,7 @@ _IK_POSE = _runtime.Kernel(
     (_runtime.Array("q", (1, 2)), _runtime.Array("status", (1,), np.uint8)),
     Parameters._fields,
     ('l1', 'l2'),
+    size=_runtime.Size((3, 7, 11, 16, 17), (), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 

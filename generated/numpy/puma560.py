@@ -613,6 +613,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     ('a2', 'a3', 'd4'),
+    size=_runtime.Size((6, 7, 8), ((0, 3),), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -1048,6 +1049,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 6)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('a2', 'a3', 'd3', 'd4'),
+    size=_runtime.Size((3, 7, 11, 16, 17, 18, 19), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

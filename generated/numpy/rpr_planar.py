@@ -7,7 +7,7 @@
 #   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
 #   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
 #   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
-#   ik: 5 add, 8 compare and select, 3 multiply, 2 sqrt
+#   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
 """Planar parallel mechanism (two RPR legs).
 
 Two legs turn freely about A, at the origin, and B, at b on the x axis; each slides out by rho1
@@ -116,6 +116,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 2)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -205,6 +206,7 @@ _PASSIVE_ANGLES = _runtime.Kernel(
     (_runtime.Array("theta", (2, 2)),),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -295,6 +297,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 2, 2)),),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -369,6 +372,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -447,6 +451,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 3)),),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -484,17 +489,19 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
 def _ik(x, y, b):
     t1 = y * y
+    leg1 = np.sqrt(x * x + t1)
     t2 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(x) & np.isfinite(y))
     invalid = np.logical_not(t2)
     del t2
     t3 = _runtime.poison(invalid)
     t4 = x - b
-    t5 = _runtime.status(invalid, np.False_, np.False_)
-    del invalid
+    leg2 = np.sqrt(t1 + t4 * t4)
+    del t1, t4
+    t5 = b * np.abs(y) <= _runtime.DETERMINED * (leg1 * leg2)
     return (
-        np.sqrt(x * x + t1) + t3,
-        np.sqrt(t1 + t4 * t4) + t3,
-        t5,
+        leg1 + t3,
+        leg2 + t3,
+        _runtime.status(invalid, np.False_, t5),
     )
 
 
@@ -505,6 +512,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (1, 2)), _runtime.Array("status", (1,), np.uint8)),
     Parameters._fields,
     ('b',),
+    size=_runtime.Size((0, 1, 2), ((0, 1), (1, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -540,6 +548,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     Notes
     -----
     - Every position can be reached, in one way: lengths are not negative.
+    - SINGULAR: the sine of the angle between the legs is less than 2^-10, on and near the line
+      of the pivots, at a distance of more than some 1000 b, and everywhere if b = 0. The
+      lengths are right, but P moves more for an ulp of them than 1e-12 of b + rho1 + rho2.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)

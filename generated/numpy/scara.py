@@ -277,6 +277,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     ('l1', 'l2'),
+    size=_runtime.Size((4, 5), ((0, 2),), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -585,6 +586,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (2, 4)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('l1', 'l2', 'h'),
+    size=_runtime.Size((0, 1, 2, 4, 5, 6), ((2, 1), (6, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

@@ -550,6 +550,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     (),
+    size=_runtime.Size((2,), ((0, 2),), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -1102,7 +1103,8 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 6)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('d2',),
-    _ik_common,
+    common=_ik_common,
+    size=_runtime.Size((3, 7, 11, 16), ((2, 1), (8, 1), (14, 1), (20, 1), (26, 1), (32, 1), (38, 1), (44, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 

@@ -402,6 +402,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", ()),),
     Parameters._fields,
     ('L2', 'L3', 'd5'),
+    size=_runtime.Size((6, 7, 8), ((0, 3),), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
@@ -2109,7 +2110,8 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (8, 6)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
     ('d1', 'L2', 'L3', 'd4', 'd5', 'd6'),
-    _ik_common,
+    common=_ik_common,
+    size=_runtime.Size((3, 7, 11, 16, 17, 18, 19, 20, 21), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

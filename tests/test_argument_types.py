@@ -3,6 +3,7 @@
 import decimal
 import fractions
 import importlib
+import re
 import warnings
 from typing import Any, NamedTuple
 
@@ -137,7 +138,8 @@ def both(call: Any) -> tuple[Any, ...]:
 
 
 def label(value: Any) -> str:
-    return f"{type(value).__name__}-{value!r:.30}"
+    shown = re.sub(" at 0x[0-9a-f]+", "", repr(value))
+    return f"{type(value).__name__}-{shown:.30}"
 
 
 POSITIONS: dict[str, Any] = {

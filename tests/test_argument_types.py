@@ -229,9 +229,9 @@ def test_parameters_have_a_number(params: Any) -> None:
     both(lambda m: m.fk(Q, np.array([[1.0], [2.0]])))
 
 
-OUT: list[Any] = [[0, 0], (0.0, 0.0), "ab", np.float64(0), np.empty(3), np.empty(2, np.float32)]
-OUT += [np.empty(2, complex), np.empty(2, ">f8"), np.empty(2, object), np.broadcast_to(1.0, 2)]
-OUT += [np.ma.ones(2), Pair(1, 2), object(), np.zeros(2, "V8"), np.empty((1, 2)), {}, 0]
+OUT: list[Any] = [[0, 0], (0.0, 0.0), "ab", np.float64(0), np.zeros(3), np.empty(2, np.float32)]
+OUT += [np.zeros(2, complex), np.empty(2, ">f8"), np.empty(2, object), np.broadcast_to(1.0, 2)]
+OUT += [np.ma.ones(2), Pair(1, 2), object(), np.zeros(2, "V8"), np.zeros((1, 2)), {}, 0]
 
 
 @pytest.mark.parametrize("out", OUT, ids=label)

@@ -448,7 +448,7 @@ class Reaching:
         That direction is returned too.  ``play`` is what multiplies an error of u in the target.
         """
         p, size = self.chain.program, self.chain.size
-        close = p.vanishes("close", play * self.lever - size / 2**10, size, "it may be in doubt")
+        close = p.vanishes("close", play * self.lever - size / 2**11, size, "it may be in doubt")
         ex, ey = self.x - self.offset * u.c, self.y - self.offset * u.s
         there = p.let("here", sp.sqrt(ex**2 + ey**2))
         reach = p.let(

@@ -189,11 +189,14 @@ class Chain:
             )
 
     def _check_coefficients(self, lemma: Lemma) -> None:
-        names: dict[sp.Basic, sp.Basic] = dict(self.meaning)
-        for statement in self.program.body:
-            if isinstance(statement, Let) and statement.symbol not in names:
-                names[statement.symbol] = substitute(statement.value, names)
-        held = {s for e in lemma.equations for s in substitute(e, names).free_symbols}
+        made = {s.symbol: s.value for s in self.program.body if isinstance(s, Let)}
+        made |= self.meaning
+        held: set[sp.Basic] = set()
+        pending = {s for e in lemma.equations for s in e.free_symbols}
+        while pending:
+            symbol = pending.pop()
+            held.add(symbol)
+            pending |= made[symbol].free_symbols - held if symbol in made else set()
         solvable = {*self.joints, *self.defined, *self.lengths}
         early = sorted((held & solvable) - {*lemma.solution, *self.values}, key=str)
         if early:

@@ -19,9 +19,10 @@ import sympy as sp
 from closedform.derivation import Degenerate
 from closedform.functions import Let, choose, real
 from closedform.lemmas import Lemma, heron_factors, label
-from closedform.pairs import Pair, amplitude_lemma
+from closedform.pairs import Pair, amplitude_lemma, nearly_tangent
 from closedform.shapes import ShapeError
 from closedform.solutions import rotation_parametrisation
+from closedform.tangent import Links, Turn, Turned, leaving
 from closedform.tolerances import FLOAT
 
 if TYPE_CHECKING:
@@ -91,9 +92,14 @@ def turn(
     c: sp.Expr,
     choice: Choice,
     *,
+    toward: Links | None = None,
     name: str = "",
 ) -> Applied:
-    """``a sin x + b cos x = c``: both solutions.  x is free where ``a = b = c = 0``."""
+    """``a sin x + b cos x = c``: both solutions.  x is free where ``a = b = c = 0``.
+
+    Where both solutions nearly meet, rounding of the target turns x by a multiple.  ``toward`` says
+    what later joints have to reach; there x is turned to where they do.
+    """
     p, tag = chain.program, name or label(x)
     sigma = chain.sign(tag, choice)
     a, b, c = (
@@ -110,11 +116,16 @@ def turn(
     width = p.let(f"width{tag}", below + above, nonnegative=True)
     away = Pair(2 * sigma * root / width, (above - below) / width)
     both = Pair(a / h, b / h) + away
-    pair, means = named(chain, x, Pair(choose(flag, 0, both.s), choose(flag, 1, both.c)))
+    found = Pair(choose(flag, 0, both.s), choose(flag, 1, both.c))
+    if toward is not None:
+        tangent = nearly_tangent(p, root, chain.size, tag)
+        near = toward.reached(Turn(chain, found, root, c, tag).renamed(found, f"{tag}_1"))
+        found = Pair(choose(tangent, near.s, found.s), choose(tangent, near.c, found.c))
+    pair, means = named(chain, x, found)
     lemma = amplitude_lemma(x, a, b, c, pair)
     meaning = f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(a, b, c)], x, meaning)
-    return Applied(lemma, pair, means, {}, cases)
+    return Applied(lemma, Turned(pair.s, pair.c, root), means, {}, cases)
 
 
 def two_links(
@@ -323,19 +334,22 @@ def zyz(
         f"aligned_{name}", h, 16, "the first and the last axis are parallel", free=(free,)
     )
     raw = Pair(sigma * R[1, 2] / h, sigma * R[0, 2] / h)
-    start, unit, near = Pair(sp.S.Zero, sp.S.One), {}, None
+    start, unit, near = Pair(sp.S.Zero, sp.S.One), {}, []
     if reaching is not None:
         raw = Pair(
             p.let(f"s_{first}", choose(aligned, 0, raw.s)),
             p.let(f"c_{first}", choose(aligned, 1, raw.c)),
         )
         start = reaching.middle() + Pair(-reaching.ahead.s, reaching.ahead.c)
-        near, inside, moved = reaching.moved(raw + reaching.ahead, h)
+        close, moves, inside, moved = reaching.moved(raw + reaching.ahead, h)
         off = moved + Pair(-reaching.ahead.s, reaching.ahead.c)
         start = Pair(p.let("s_start", start.s), p.let("c_start", start.c))
         off = Pair(p.let("s_off", off.s), p.let("c_off", off.c))
-        brought = sp.And(near, sp.Not(inside))
-        raw = Pair(choose(brought, off.s, raw.s), choose(brought, off.c, raw.c))
+        near.append((close, moves))
+        brought = sp.And(moves, sp.Not(inside))
+        s_near = p.let("s_kept", choose(brought, off.s, raw.s))
+        c_near = p.let("c_kept", choose(brought, off.c, raw.c))
+        raw = Pair(choose(close, s_near, raw.s), choose(close, c_near, raw.c))
         t = real("t")
         unit = {start.s: sp.sin(t), start.c: sp.cos(t), off.s: sp.sin(t), off.c: sp.cos(t)}
     pair, means = named(
@@ -370,13 +384,12 @@ def zyz(
     given = dict(zip(R, rotation_parametrisation(), strict=True))
     cases = [
         Degenerate(
-            (flag,),
+            flags,
             dict(zip(R, turned, strict=True)) | unit,
-            free if flag == aligned else None,
+            free if flags == (aligned,) else None,
             f"the first and the last axis of the wrist are parallel; {free} is free.",
         )
-        for flag in (aligned, near)
-        if flag is not None
+        for flags in ((aligned,), *near)
         for turned in _aligned(real("psi"))
     ]
     return Applied(lemma, pair, means, given, tuple(cases))
@@ -406,23 +419,17 @@ class Reaching:
     l2: sp.Expr
     ahead: Pair
     """How far u is turned ahead of the angle that is solved for."""
+    lever: sp.Expr
+    """That of the turn before, over which a rounding of the target turns the wrist."""
 
     def _at(self, reach: sp.Expr, side: sp.Expr, name: str) -> Pair:
-        """The direction for a reach, by the cosine rule in half angles, to one side of (x, y)."""
-        p, r, e = self.chain.program, self._r, self.offset
-        cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)
-        ss = p.let(f"d_{name}", sp.Max(0, (reach - r + e) * (reach + r - e)), nonnegative=True)
-        total = p.let(f"n_{name}", cc + ss, nonnegative=True)
-        any_turn = p.vanishes(f"any_{name}", total, self.chain.size**2, "the turn has no effect")
-        cosine = p.let(f"uc_{name}", choose(any_turn, 1, (cc - ss) / total))
-        sine = p.let(
-            f"us_{name}", choose(any_turn, 0, 2 * side * sp.sqrt(cc) * sp.sqrt(ss) / total)
-        )
-        at_hub = p.vanishes(f"hub_{name}", r, self.chain.size, "the turn has no effect")
-        s = p.let(f"s_{name}", choose(at_hub, 0, (self.y * cosine + self.x * sine) / r))
-        c = p.let(f"c_{name}", choose(at_hub, 1, (self.x * cosine - self.y * sine) / r))
-        self.chain.units.append((s, c, (cc, ss, side)))
-        return Pair(s, c)
+        def vanishes(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Symbol:
+            return self.chain.program.vanishes(name, value, scale, "the turn has no effect")
+
+        at = (self.x, self.y)
+        pair, unit = leaving(self.chain, at, self._r, self.offset, reach, side, name, vanishes)
+        self.chain.units.append((pair.s, pair.c, unit))
+        return pair
 
     @cached_property
     def _r(self) -> sp.Expr:
@@ -435,22 +442,24 @@ class Reaching:
         farthest = p.let("farthest", sp.Min(self.l1 + self.l2, r + self.offset))
         return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
 
-    def moved(self, u: Pair, play: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, Pair]:
-        """Flags that the nearest direction in reach is u within rounding, and exactly; and it.
+    def moved(self, u: Pair, play: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, Pair]:
+        """Flags: u may be in doubt, the nearest direction in reach is u within rounding, it is u.
 
-        ``play`` is what multiplies an error of u in the target.
+        That direction is returned too.  ``play`` is what multiplies an error of u in the target.
         """
-        p = self.chain.program
+        p, size = self.chain.program, self.chain.size
+        close = p.vanishes("close", play * self.lever - size / 2**11, size, "it may be in doubt")
         ex, ey = self.x - self.offset * u.c, self.y - self.offset * u.s
         there = p.let("here", sp.sqrt(ex**2 + ey**2))
         reach = p.let(
             "in_reach", sp.Min(sp.Max(there, sp.Abs(self.l1 - self.l2)), self.l1 + self.l2)
         )
         cross = p.let("cross", self.x * u.s - self.y * u.c)
-        flat = p.vanishes("flat", sp.Abs(cross), self.chain.size, "the offset is in line")
+        flat = p.vanishes("flat", sp.Abs(cross), size, "the offset is in line")
         side = choose(flat, 1, cross / sp.Abs(cross))
         v = self._at(reach, p.let("side", side), "near")
-        inside = p.vanishes("inside", sp.Abs(reach - there), self.chain.size, "it is in reach")
+        inside = p.vanishes("inside", sp.Abs(reach - there), size, "it is in reach")
         change = sp.sqrt((v.c - u.c) ** 2 + (v.s - u.s) ** 2)
-        near = p.vanishes("within_rounding", play * change, 4, "the turn is free within rounding")
-        return near, inside, v
+        doubt = play * change - sp.Rational(1, 2**42)  # of which single precision knows nothing
+        near = p.vanishes("within_rounding", doubt, 4, "the turn is free within rounding")
+        return close, near, inside, v

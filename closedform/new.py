@@ -208,6 +208,7 @@ def _imports(text: str) -> str:
         "closedform.derivation": ["Derivation", "Paper"],
         "closedform.linklemmas": used(CHAIN),
         "closedform.pairs": used(["Pair"]),
+        "closedform.tangent": used(["Links", "LinksAndWrist"]),
     }
     lines = [
         f"from {module} import {', '.join(names)}" for module, names in wanted.items() if names

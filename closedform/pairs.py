@@ -71,6 +71,7 @@ def sine_cosine_pair(
     sigma: sp.Expr,
     scale: sp.Expr,
     *,
+    reach: tuple[sp.Expr, sp.Expr, sp.Expr] | None = None,
     suffix: str = "",
 ) -> tuple[Lemma, Pair, sp.Expr, sp.Symbol]:
     """``a sin x + b cos x = c`` as in :func:`~closedform.lemmas.sine_cosine`, by pairs.
@@ -78,6 +79,11 @@ def sine_cosine_pair(
     Also returns ``a cos x - b sin x``, the other coordinate of the vector that x turns: it is
     ``-sigma`` times the root of ``(h - c)(h + c)``.  Where ``a = b = c = 0`` the joint x is free;
     the convention is 0, and the flag is returned as well.
+
+    ``reach`` are two links and a height: in the plane that x turns the links have to reach the
+    point at this coordinate and height.  Where the root is small, rounding of h changes it by a
+    multiple, and links much shorter than c might seem too short.  Of the roots that rounding
+    allows, the one within reach is then taken.
     """
     h = program.let(f"amplitude{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
     below = program.bound(f"below{suffix}", h - c, scale, "the amplitude is not smaller than c")
@@ -85,10 +91,46 @@ def sine_cosine_pair(
     flag = program.vanishes(f"free_{x.name}", h, scale, f"{x.name} moves nothing", free=(x,))
     root = program.let(f"root{suffix}", sp.sqrt(below * above), nonnegative=True)
     width = program.let(f"width{suffix}", below + above, nonnegative=True)
+    if reach is not None:
+        tangent = nearly_tangent(program, root, h, suffix)
+        held = _root_in_reach(program, below * above, h, scale, *reach, suffix=suffix)
+        whole = 2 * sp.sqrt(held + (above - below) ** 2 / 4)
+        root = program.let(f"ahead{suffix}", choose(tangent, sp.sqrt(held), root), nonnegative=True)
+        width = program.let(f"span{suffix}", choose(tangent, whole, width), nonnegative=True)
     turn = Pair(2 * sigma * root / width, (above - below) / width)
     both = Pair(a / h, b / h) + turn
     pair = Pair(choose(flag, 0, both.s), choose(flag, 1, both.c)).known_as(program, label(x))
     return amplitude_lemma(x, a, b, c, pair), pair, -sigma * root, flag
+
+
+def nearly_tangent(program: Program, lever: sp.Expr, scale: sp.Expr, suffix: str = "") -> sp.Symbol:
+    """A flag that the ``lever`` of a turn is so short that rounding may decide what is in reach.
+
+    It is 2^-8 of the ``scale``; for a longer one the tolerance of a reach covers the rounding.
+    """
+    return program.vanishes(f"tangent{suffix}", lever - scale / 2**8, scale, "the turn is tangent")
+
+
+def _root_in_reach(
+    program: Program,
+    square: sp.Expr,
+    h: sp.Expr,
+    scale: sp.Expr,
+    first: sp.Expr,
+    second: sp.Expr,
+    height: sp.Expr,
+    *,
+    suffix: str,
+) -> sp.Symbol:
+    """The ``square`` of a coordinate, brought within reach where that is a matter of rounding."""
+    farthest, nearest = (first + second) ** 2 - height**2, (first - second) ** 2 - height**2
+    wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
+    rounding = 2 * h * scale / 2**44
+    return program.let(
+        f"held{suffix}",
+        sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True)),
+        nonnegative=True,
+    )
 
 
 def triangle_pairs(

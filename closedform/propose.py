@@ -19,7 +19,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform import linklemmas
+from closedform import linklemmas, tangent
 from closedform.arm import Group, Serial
 from closedform.axes import met
 from closedform.frames import rotation
@@ -66,6 +66,7 @@ class Proposal:
             "__builtins__": {},
             **{s.name: s for s in (*(p.symbol for p in ik.d.parameters), *ik.joints)},
             **{n: getattr(linklemmas, n) for n in (*self.lemmas, "turned", "Reaching")},
+            **{n: getattr(tangent, n) for n in ("Links", "LinksAndWrist")},
             **{n: getattr(sp, n) for n in NAMES},
             "Pair": Pair,
             "ik": ik,
@@ -363,11 +364,12 @@ class _Maker:
                 "In a polar arm it must be.",
             )
             beside += along[2]
-        pair1 = self._turn_base(base, beside)
-        if kinds[1:] == ["RR"]:
+        links = self._links(second, [0, 1]) if kinds[1:] == ["RR"] else []
+        pair1 = self._turn_base(base, beside, links)
+        if links:
             turns = [row.turn for row in second.rows]
-            self._two_links(turns, self._links(second, [0, 1]), "q[0]", "q[1]")
-            v = self._links(second, [0, 1])[1]
+            self._two_links(turns, links, "q[0]", "q[1]")
+            v = links[1]
             both = f"({self.pairs[0]} + {self.pairs[1]})"
             pair2 = self._less(both, v)
             return "turret and two parallel joints", [pair1, pair2]
@@ -398,21 +400,32 @@ class _Maker:
             "",
         ]
 
-    def _turn_base(self, base: Group, beside: Any) -> str:
-        """The first joint, by the distance ``beside`` of the point from the plane it turns."""
+    def _turn_base(
+        self, base: Group, beside: Any, links: Sequence[sp.Matrix] = (), wrist: str = ""
+    ) -> str:
+        """The first joint, by the distance ``beside`` of the point from the plane it turns.
+
+        The ``links`` have to reach the point, with a ``wrist`` less an offset that this turns.
+        """
         row, h = base.rows[0], base.end * Z
         p = _at("p")
         a, b = source(h[0] * p[1] - h[1] * p[0]), source(h[0] * p[0] + h[1] * p[1])
         c = sp.simplify(beside + h[0] * row.shift[0] + h[1] * row.shift[1])
         joint = self.angle(row.turn)
+        inside = f"(turned(turn1).T * p - {source(sp.Matrix(row.shift))})"
+        point, toward = _times(base.end.T, inside), ""
+        if links and (c != 0 or wrist):
+            reached = ", ".join([point.replace("turn1", "pair"), *map(source, map(_length, links))])
+            kind = "LinksAndWrist" if wrist else "Links"
+            self.add(f"links = {kind}(lambda pair: {reached}{wrist})")
+            toward = ", toward=links"
         self.solve(
             "turn",
-            f"{joint}, {a}, {b}, {source(c)}, {{+1: 'left', -1: 'right'}}",
+            f"{joint}, {a}, {b}, {source(c)}, {{+1: 'left', -1: 'right'}}{toward}",
             "turn1",
             2,
         )
-        inside = f"(turned(turn1).T * p - {source(sp.Matrix(row.shift))})"
-        self.add(f"q = ik.vector('q', {_times(base.end.T, inside)})")
+        self.add(f"q = ik.vector('q', {point})")
         return "turn1"
 
     # Arms of six joints
@@ -515,34 +528,39 @@ class _Maker:
         return f"{names[0]}_", epsilon
 
     def _three_parallel(self, groups: Sequence[Group]) -> str:
-        base, parallel, fifth, _ = groups
+        base, parallel, fifth, last = groups
         end = parallel.end * sp.Matrix(fifth.rows[0].shift)
         normal = base.end * Z
         self._require_normal(normal[2], 1, 2)
         beside = sum((row.shift[2] for row in parallel.rows), end[2])
-        pair1 = self._turn_base(base, beside)
         u, v, w = self._links(parallel, [0, 1, 2])
         w = w + end[:2, 0]
         length = _length(w)
         lead = _times(self.arm.lead[:3, :3].T, "ik.R")
-        self.add(f"M = ik.matrix('M', {_times(base.end.T, f'turned({pair1}).T * {lead}')})")
         e = parallel.end * Z
         epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
         if e[1].is_negative:
             epsilon = sp.atan2(-e[1], -e[0]) - sp.pi / 2
-        ahead = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - epsilon
+        angle = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - epsilon
+        ahead = f"Pair({source(sp.sin(angle))}, {source(sp.cos(angle))})"
+        after = last.end * self.arm.last[:3, :3]
+        axis = f"{lead} * {source(after.T[:, 2])}"
+        axis = _times(base.end.T, f"turned(pair).T * {axis}")
+        offset = f"lambda pair: {axis}, {source(length)}, {ahead}"
+        pair1 = self._turn_base(base, beside, [u, v], f", {offset}")
+        self.add(f"M = ik.matrix('M', {_times(base.end.T, f'turned({pair1}).T * {lead}')})")
         lengths = f"{source(_length(u))}, {source(_length(v))}"
         self.add(
-            f"reaching = Reaching(ik, q[0], q[1], {source(length)}, {lengths}, "
-            f"Pair({source(sp.sin(ahead))}, {source(sp.cos(ahead))}))"
+            f"reaching = Reaching(ik, q[0], q[1], {source(length)}, {lengths}, {ahead}, "
+            f"{pair1}.lever)"
         )
         lift = sum((row.turn for row in parallel.rows), sp.S.Zero)
         pair, _ = self._wrist(lift, parallel, groups[2:], "M", ", reaching=reaching")
         c, t = sp.Symbol(f"{pair}.c"), sp.Symbol(f"{pair}.s")
         q = _at("q")
-        offset = length * rotation("z", ahead) * sp.Matrix([c, t, 0])
-        self.add(f"x = ik.let('ex', {source(q[0] - offset[0])})")
-        self.add(f"y = ik.let('ey', {source(q[1] - offset[1])})")
+        past = length * rotation("z", angle) * sp.Matrix([c, t, 0])
+        self.add(f"x = ik.let('ex', {source(q[0] - past[0])})")
+        self.add(f"y = ik.let('ey', {source(q[1] - past[1])})")
         turns = [row.turn for row in parallel.rows]
         self._two_links(turns[:2], [u, v], "x", "y")
         return "turret, three parallel joints and two more (UR)"

@@ -177,9 +177,7 @@ class Graph:
                 taken.add(joint)
                 (self.sums[joint],) = sp.solve(value - symbol, joint)
         self.names: dict[Expr, Expr] = dict(inverse.meaning)
-        for statement in function.body:
-            if isinstance(statement, (Let, Bound)) and statement.symbol not in self.names:
-                self.names[statement.symbol] = substitute(statement.value, self.names)
+        self.made = {s.symbol: s.value for s in function.body if isinstance(s, (Let, Bound))}
         self.targets = {
             x: self.in_sums(f) for x, f in zip(inverse.targets, inverse.forward, strict=True)
         }
@@ -192,7 +190,13 @@ class Graph:
 
     def named(self, e: Expr) -> Expr:
         """In the unknowns and the target alone."""
-        return self.in_sums(substitute(e, self.names))
+        return self.in_sums(self._written_out(e))
+
+    def _written_out(self, e: Expr) -> Expr:
+        for s in e.free_symbols:
+            if s in self.made and s not in self.names:
+                self.names[s] = self._written_out(self.made[s])
+        return substitute(e, self.names)
 
     def __call__(self, e: Expr) -> Expr:
         """At the image of a posture."""

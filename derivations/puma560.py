@@ -110,7 +110,9 @@ T = given_transform(p)
 px, py, pz = T[:3, 3]
 f = p.let("f", sqrt(a3**2 + d4**2), nonnegative=True)
 size = p.let("size", a2 + f + sp.Abs(d3), nonnegative=True)
-shoulder, turn1, ahead, on_axis = sine_cosine_pair(p, theta1, px, -py, d3, -side, size)
+shoulder, turn1, ahead, on_axis = sine_cosine_pair(
+    p, theta1, px, -py, d3, -side, size, reach=(a2, f, pz)
+)
 reach = p.let("reach", sqrt(ahead**2 + pz**2), nonnegative=True)
 triangle, at_elbow, at_base, folded = triangle_pairs(
     p, a2, f, reach, angle, alpha, -side * bend, size, free=(theta3, theta2)

@@ -9,6 +9,7 @@ from closedform.chain import Chain
 from closedform.derivation import Derivation
 from closedform.linklemmas import Reaching, turn, two_links, zyz
 from closedform.pairs import Pair
+from closedform.tangent import LinksAndWrist
 
 d = Derivation(
     "ur_arm",
@@ -47,21 +48,36 @@ arm = from_dh(
 )
 ik = Chain(d, arm.export(d))
 wrist = ik.vector("w", ik.p - d6 * ik.R[:, 2])
-shoulder = ik.solve(turn, theta1, wrist[0], -wrist[1], d4, {+1: "left", -1: "right"})
+quarter_back = Pair(sp.S.NegativeOne, sp.S.Zero)
+
+
+def in_plane(turn: Pair) -> sp.Matrix:
+    return sp.Matrix([[turn.c, turn.s, 0], [0, 0, 1], [turn.s, -turn.c, 0]])
+
+
+toward = LinksAndWrist(
+    q=lambda turn: in_plane(turn) * wrist - sp.Matrix([0, d1, 0]),
+    l1=L2,
+    l2=L3,
+    axis=lambda turn: in_plane(turn) * ik.R[:, 2],
+    offset=d5,
+    ahead=quarter_back,
+)
+beside = {+1: "left", -1: "right"}
+shoulder = ik.solve(turn, theta1, wrist[0], -wrist[1], d4, beside, toward=toward)
 d.step(
     "Inverse: the shoulder",
     "The wrist, which is d6 behind the tool, is d4 beside the plane of the arm.  Two shoulders put "
     "it there; nearer to the first axis than d4 there is none.",
     {"w": sp.Matrix(wrist).T, r"w_x \sin\theta_1 - w_y \cos\theta_1": d4},
 )
-first = sp.Matrix([[shoulder.c, shoulder.s, 0], [0, 0, 1], [shoulder.s, -shoulder.c, 0]])
+first = in_plane(shoulder)
 M = ik.matrix("M", first * ik.R)
 across = ik.let("across", shoulder.c * wrist[0] + shoulder.s * wrist[1])
 upward = ik.let("upward", wrist[2] - d1)
 lift = ik.angle("phi", theta2 + theta3 + theta4)
 beta = ik.angle("beta", -theta5)
-quarter_back = Pair(sp.S.NegativeOne, sp.S.Zero)
-reaching = Reaching(ik, across, upward, d5, L2, L3, ahead=quarter_back)
+reaching = Reaching(ik, across, upward, d5, L2, L3, quarter_back, shoulder.lever)
 lifted = ik.solve(zyz, M, lift, beta, theta6, {+1: "noflip", -1: "flip"}, reaching=reaching)
 d.step(
     "Inverse: the wrist",

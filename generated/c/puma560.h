@@ -11,7 +11,7 @@
  *   jacobian_body: 26 add, 61 multiply, 5 sincos
  *   determinant: 9 add, 22 multiply, 3 sincos
  *   singularities: 5 add, 9 multiply, 3 sincos
- *   ik: 133 compare and select, 141 add, 20 atan2, 9 divide, 172 multiply, 9 sqrt
+ *   ik: 142 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not

@@ -10,9 +10,9 @@
  *   singularities: 6 add, 11 multiply, 4 sincos
  *   jacobian_space: 46 add, 76 multiply, 5 sincos
  *   jacobian_body: 34 add, 64 multiply, 5 sincos
- *   ik: 302 compare and select, 279 add, 30 atan2, 37 divide, 354 multiply, 28 sqrt
- *   ik where nothing vanishes: 217 compare and select, 241 add, 30 atan2, 31 divide, 298 multiply,
- *     22 sqrt
+ *   ik: 712 compare and select, 705 add, 32 atan2, 171 divide, 1086 multiply, 80 sqrt
+ *   ik where nothing vanishes: 158 compare and select, 198 add, 30 atan2, 33 divide, 226 multiply,
+ *     12 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not

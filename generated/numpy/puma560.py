@@ -10,7 +10,7 @@
 #   jacobian_body: 26 add, 61 multiply, 5 sincos
 #   determinant: 9 add, 22 multiply, 3 sincos
 #   singularities: 5 add, 9 multiply, 3 sincos
-#   ik: 133 compare and select, 141 add, 20 atan2, 9 divide, 172 multiply, 9 sqrt
+#   ik: 142 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
 """Puma 560.
 
 A vertical base axis (theta1), two parallel horizontal axes (theta2, theta3) and a spherical
@@ -710,335 +710,348 @@ def _ik(
     t4 = d3 + amplitude
     above = np.maximum(t4, 0.0)
     t5 = below - above
-    t6 = 1.0 / (amplitude * (below + above))
-    del amplitude
-    t7 = T14 * t5 * t6
-    root = np.sqrt(below * above)
+    t6 = below * above
+    root = np.sqrt(t6)
+    tangent = root - amplitude * 0.00390625 <= amplitude * _runtime.VANISHING
+    t7 = a2 - f
+    t8 = T34 * T34
+    t9 = t1 * t1
+    wanted = np.maximum(np.maximum(0.0, t7 * t7 - t8), np.minimum(t6, t9 - t8))
+    t10 = 8796093022208.0 * np.abs(t6 - wanted) <= amplitude * size
+    held = _runtime.select(t10, wanted, t6)
+    del t10, t6, wanted
+    span = _runtime.select(tangent, 2.0 * np.sqrt(t5 * t5 * 0.25 + held), below + above)
     del above, below
-    t8 = 2.0 * root
-    t9 = t6 * (T24 * t8)
-    t10 = _runtime.select(free_theta1, 0.0, t7 - t9)
-    t11 = T24 * t5 * t6
+    t11 = 1.0 / (amplitude * span)
+    del amplitude, span
+    t12 = T14 * t5 * t11
+    ahead = _runtime.select(tangent, np.sqrt(held), root)
+    del held, root, tangent
+    t13 = 2.0 * ahead
+    t14 = t11 * (T24 * t13)
+    t15 = _runtime.select(free_theta1, 0.0, t12 - t14)
+    t16 = T24 * t5 * t11
     del t5
-    t12 = t6 * (T14 * t8)
-    del t6, t8
-    c1 = _runtime.select(free_theta1, 1.0, t11 + t12)
-    t13 = np.isfinite(a2) & np.isfinite(a3) & np.isfinite(d3) & np.isfinite(d4)
-    t14 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t15 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t16 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t17 = t13 & (0.0 <= a2) & (0.0 <= d4) & t14 & t15 & t16
-    del t13, t14, t15, t16
-    t18 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t19 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t20 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t21 = t17 & t18 & (t19 <= _runtime.ROTATION) & (t20 <= _runtime.ROTATION)
-    del t17, t18, t19, t20
-    t22 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t23 = t21 & t22 & (np.abs(T41) <= _runtime.ROTATION)
-    del t21, t22
-    t24 = t23 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t23
-    t25 = t24 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t24
-    invalid = np.logical_not(t25)
-    del t25
-    t26 = -(_runtime.FEASIBILITY * size)
-    del size
-    reach = np.sqrt(T34 * T34 + root * root)
-    t27 = t1 - reach
-    t28 = a2 - f
-    t29 = reach + t28
-    t30 = (t26 <= t3) & (t26 <= t4) & (t26 <= t27) & (t26 <= t29)
-    del t3, t4
-    t31 = reach - t28
+    t17 = t11 * (T14 * t13)
+    del t11, t13
+    c1 = _runtime.select(free_theta1, 1.0, t16 + t17)
+    t18 = np.isfinite(a2) & np.isfinite(a3) & np.isfinite(d3) & np.isfinite(d4)
+    t19 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t20 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t21 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t22 = t18 & (0.0 <= a2) & (0.0 <= d4) & t19 & t20 & t21
+    del t18, t19, t20, t21
+    t23 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t24 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t25 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t26 = t22 & t23 & (t24 <= _runtime.ROTATION) & (t25 <= _runtime.ROTATION)
+    del t22, t23, t24, t25
+    t27 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t28 = t26 & t27 & (np.abs(T41) <= _runtime.ROTATION)
+    del t26, t27
+    t29 = t28 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
     del t28
-    unreachable = np.logical_not(t30 & (t26 <= t31))
-    del t26, t30
-    t32 = _runtime.poison(invalid | unreachable)
-    t33 = _runtime.wrap_cut(-np.arctan2(t10, c1)) + t32
+    t30 = t29 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t29
+    invalid = np.logical_not(t30)
+    del t30
+    t31 = -(_runtime.FEASIBILITY * size)
+    del size
+    reach = np.sqrt(t8 + ahead * ahead)
+    del t8
+    t32 = t1 - reach
+    t33 = t7 + reach
+    t34 = (t31 <= t3) & (t31 <= t4) & (t31 <= t32) & (t31 <= t33)
+    del t3, t4
+    t35 = reach - t7
+    del t7
+    unreachable = np.logical_not(t34 & (t31 <= t35))
+    del t31, t34
+    t36 = _runtime.poison(invalid | unreachable)
+    t37 = _runtime.wrap_cut(-np.arctan2(t15, c1)) + t36
     folded = reach <= t2
-    t34 = 1.0 / reach
-    t35 = _runtime.select(folded, 0.0, T34 * t34)
-    no_link = a2 * f <= _runtime.VANISHING * (t1 * t1)
-    t36 = folded | no_link
+    t38 = 1.0 / reach
+    t39 = _runtime.select(folded, 0.0, T34 * t38)
+    no_link = a2 * f <= _runtime.VANISHING * t9
+    del t9
+    t40 = folded | no_link
     S = t1 + reach
     del reach, t1
-    B = np.maximum(t29, 0.0)
-    del t29
+    B = np.maximum(t33, 0.0)
+    del t33
     SB = S * B
-    A = np.maximum(t27, 0.0)
-    del t27
-    C = np.maximum(t31, 0.0)
-    del t31
+    A = np.maximum(t32, 0.0)
+    del t32
+    C = np.maximum(t35, 0.0)
+    del t35
     AC = A * C
-    t37 = 1.0 / (SB + AC)
-    t38 = _runtime.select(t36, 1.0, (SB - AC) * t37)
+    t41 = 1.0 / (SB + AC)
+    t42 = _runtime.select(t40, 1.0, (SB - AC) * t41)
     del AC, SB
-    t39 = t35 * t38
+    t43 = t39 * t42
     SA = S * A
     del A, S
     BC = B * C
     del B, C
     area = 2.0 * np.sqrt(SA * BC)
-    t40 = _runtime.select(t36, 0.0, t37 * area)
-    del t36, t37
-    t41 = root * t34
-    del root, t34
-    t42 = _runtime.select(folded, 1.0, t41)
-    t43 = t40 * t42
-    s2 = t39 + t43
-    t44 = t35 * t40
-    del t35
-    t45 = t38 * t42
-    del t42
-    t46 = t44 - t45
-    t47 = _runtime.wrap_cut(np.arctan2(s2, -t46)) + t32
+    t44 = _runtime.select(t40, 0.0, t41 * area)
+    del t40, t41
+    t45 = ahead * t38
+    del ahead, t38
+    t46 = _runtime.select(folded, 1.0, t45)
+    t47 = t44 * t46
+    s2 = t43 + t47
+    t48 = t39 * t44
+    del t39
+    t49 = t42 * t46
+    del t46
+    t50 = t48 - t49
+    t51 = _runtime.wrap_cut(np.arctan2(s2, -t50)) + t36
     no_forearm = f <= t2
     del t2
-    t48 = 1.0 / f
+    t52 = 1.0 / f
     del f
-    t49 = _runtime.select(no_forearm, 0.0, d4 * t48)
-    t50 = 1.0 / (SA + BC)
-    t51 = _runtime.select(no_link, 1.0, -((SA - BC) * t50))
+    t53 = _runtime.select(no_forearm, 0.0, d4 * t52)
+    t54 = 1.0 / (SA + BC)
+    t55 = _runtime.select(no_link, 1.0, -((SA - BC) * t54))
     del BC, SA
-    t52 = t49 * t51
-    t53 = _runtime.select(no_forearm, 1.0, a3 * t48)
-    del t48
-    t54 = _runtime.select(no_link, 0.0, area * t50)
-    del area, t50
-    t55 = t53 * t54
-    t56 = t52 + t55
-    t57 = t49 * t54
-    del t49, t54
-    t58 = t51 * t53
-    del t51, t53
-    t59 = t57 - t58
-    t60 = _runtime.wrap_cut(-np.arctan2(t56, -t59)) + t32
-    t61 = T13 * t10 + T23 * c1
-    t62 = t61 * t61
-    s23 = t46 * t56 - s2 * t59
-    c23 = t46 * t59 + s2 * t56
-    del s2, t46
-    R1_13 = T13 * c1 - T23 * t10
+    t56 = t53 * t55
+    t57 = _runtime.select(no_forearm, 1.0, a3 * t52)
+    del t52
+    t58 = _runtime.select(no_link, 0.0, area * t54)
+    del area, t54
+    t59 = t57 * t58
+    t60 = t56 + t59
+    t61 = t53 * t58
+    del t53, t58
+    t62 = t55 * t57
+    del t55, t57
+    t63 = t61 - t62
+    t64 = _runtime.wrap_cut(-np.arctan2(t60, -t63)) + t36
+    t65 = T13 * t15 + T23 * c1
+    t66 = t65 * t65
+    s23 = t50 * t60 - s2 * t63
+    c23 = t50 * t63 + s2 * t60
+    del s2, t50
+    R1_13 = T13 * c1 - T23 * t15
     R2_13 = T33 * s23 + c23 * R1_13
-    h = np.sqrt(t62 + R2_13 * R2_13)
-    t63 = _runtime.VANISHING * 16.0
-    aligned = h <= t63
-    t64 = 1.0 / h
+    h = np.sqrt(t66 + R2_13 * R2_13)
+    t67 = _runtime.VANISHING * 16.0
+    aligned = h <= t67
+    t68 = 1.0 / h
     del h
-    t65 = _runtime.select(aligned, 0.0, t61 * t64)
-    c4 = _runtime.select(aligned, 1.0, -(R2_13 * t64))
-    del t64
-    t66 = np.arctan2(t65, c4)
-    t67 = np.arctan2(t61 * t65 - R2_13 * c4, T33 * c23 - s23 * R1_13)
+    t69 = _runtime.select(aligned, 0.0, t65 * t68)
+    c4 = _runtime.select(aligned, 1.0, -(R2_13 * t68))
+    del t68
+    t70 = np.arctan2(t69, c4)
+    t71 = np.arctan2(t65 * t69 - R2_13 * c4, T33 * c23 - s23 * R1_13)
     del R2_13
-    t68 = T11 * t10 + T21 * c1
-    R1_11 = T11 * c1 - T21 * t10
-    t69 = T12 * t10 + T22 * c1
-    R1_12 = T12 * c1 - T22 * t10
-    del c1, t10
-    t70 = np.arctan2(c4 * t68 + t65 * (T31 * s23 + c23 * R1_11), c4 * t69 + t65 * (T32 * s23 + c23 * R1_12))
-    del c23, c4, s23, t65
+    t72 = T11 * t15 + T21 * c1
+    R1_11 = T11 * c1 - T21 * t15
+    t73 = T12 * t15 + T22 * c1
+    R1_12 = T12 * c1 - T22 * t15
+    del c1, t15
+    t74 = np.arctan2(c4 * t72 + t69 * (T31 * s23 + c23 * R1_11), c4 * t73 + t69 * (T32 * s23 + c23 * R1_12))
+    del c23, c4, s23, t69
     flip = _runtime.select(aligned, 0.0, 3.141592653589793)
-    s2_right_down_noflip = t39 - t43
-    del t43
-    c2_right_down_noflip = t44 + t45
-    del t45
-    t71 = np.arctan2(s2_right_down_noflip, c2_right_down_noflip)
-    t72 = _runtime.wrap_cut(t71) + t32
-    del t71
-    t73 = t52 - t55
-    del t52, t55
-    c3_right_down_noflip = t57 + t58
-    del t57, t58
-    t74 = _runtime.wrap_cut(-np.arctan2(t73, c3_right_down_noflip))
-    t75 = t74 + t32
-    del t74
-    t76 = c2_right_down_noflip * t73 - s2_right_down_noflip * c3_right_down_noflip
-    c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t73
-    del c2_right_down_noflip, s2_right_down_noflip
-    t77 = T33 * t76 - R1_13 * c23_right_down_noflip
-    h_right_down_noflip = np.sqrt(t62 + t77 * t77)
-    del t62
-    aligned_right_down_noflip = h_right_down_noflip <= t63
-    t78 = 1.0 / h_right_down_noflip
-    del h_right_down_noflip
-    t79 = _runtime.select(aligned_right_down_noflip, 0.0, t61 * t78)
-    c4_right_down_noflip = _runtime.select(aligned_right_down_noflip, 1.0, t77 * t78)
+    s2_right_down_noflip = t43 - t47
+    del t47
+    c2_right_down_noflip = t48 + t49
+    del t49
+    t75 = np.arctan2(s2_right_down_noflip, c2_right_down_noflip)
+    t76 = _runtime.wrap_cut(t75) + t36
+    del t75
+    t77 = t56 - t59
+    del t56, t59
+    c3_right_down_noflip = t61 + t62
+    del t61, t62
+    t78 = _runtime.wrap_cut(-np.arctan2(t77, c3_right_down_noflip))
+    t79 = t78 + t36
     del t78
-    t80 = np.arctan2(t79, c4_right_down_noflip)
-    t81 = np.arctan2(t61 * t79 + t77 * c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t76)
-    del R1_13, t61, t77
-    t82 = t79 * (T31 * t76 - R1_11 * c23_right_down_noflip)
+    t80 = c2_right_down_noflip * t77 - s2_right_down_noflip * c3_right_down_noflip
+    c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t77
+    del c2_right_down_noflip, s2_right_down_noflip
+    t81 = T33 * t80 - R1_13 * c23_right_down_noflip
+    h_right_down_noflip = np.sqrt(t66 + t81 * t81)
+    del t66
+    aligned_right_down_noflip = h_right_down_noflip <= t67
+    t82 = 1.0 / h_right_down_noflip
+    del h_right_down_noflip
+    t83 = _runtime.select(aligned_right_down_noflip, 0.0, t65 * t82)
+    c4_right_down_noflip = _runtime.select(aligned_right_down_noflip, 1.0, t81 * t82)
+    del t82
+    t84 = np.arctan2(t83, c4_right_down_noflip)
+    t85 = np.arctan2(t65 * t83 + t81 * c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t80)
+    del R1_13, t65, t81
+    t86 = t83 * (T31 * t80 - R1_11 * c23_right_down_noflip)
     del R1_11
-    t83 = t79 * (T32 * t76 - R1_12 * c23_right_down_noflip)
-    del R1_12, c23_right_down_noflip, t76, t79
-    t84 = np.arctan2(t68 * c4_right_down_noflip - t82, t69 * c4_right_down_noflip - t83)
-    del c4_right_down_noflip, t68, t69, t82, t83
+    t87 = t83 * (T32 * t80 - R1_12 * c23_right_down_noflip)
+    del R1_12, c23_right_down_noflip, t80, t83
+    t88 = np.arctan2(t72 * c4_right_down_noflip - t86, t73 * c4_right_down_noflip - t87)
+    del c4_right_down_noflip, t72, t73, t86, t87
     flip_right_down_flip = _runtime.select(aligned_right_down_noflip, 0.0, 3.141592653589793)
-    t85 = _runtime.wrap(flip_right_down_flip - t80) + t32
-    t86 = _runtime.wrap(t84 + flip_right_down_flip) + t32
+    t89 = _runtime.wrap(flip_right_down_flip - t84) + t36
+    t90 = _runtime.wrap(t88 + flip_right_down_flip) + t36
     del flip_right_down_flip
-    t87 = _runtime.select(free_theta1, 0.0, t7 + t9)
-    del t7, t9
-    c1_left_up_noflip = _runtime.select(free_theta1, 1.0, t11 - t12)
-    del t11, t12
-    t88 = _runtime.wrap_cut(-np.arctan2(t87, c1_left_up_noflip))
-    t89 = t88 + t32
-    del t88
-    t90 = _runtime.select(folded, 1.0, -t41)
-    del t41
-    t91 = t40 * t90
-    del t40
-    s2_left_up_noflip = t39 - t91
-    t92 = t38 * t90
-    del t38, t90
-    c2_left_up_noflip = t44 + t92
-    t93 = np.arctan2(s2_left_up_noflip, c2_left_up_noflip)
-    t94 = _runtime.wrap_cut(t93) + t32
-    del t93
-    t95 = T13 * t87 + T23 * c1_left_up_noflip
-    t96 = t95 * t95
-    t97 = t73 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip
-    c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t73 * s2_left_up_noflip
-    del c2_left_up_noflip, c3_right_down_noflip, s2_left_up_noflip, t73
-    R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t87
-    t98 = T33 * t97 - c23_left_up_noflip * R1_13_left_up_noflip
-    h_left_up_noflip = np.sqrt(t96 + t98 * t98)
-    aligned_left_up_noflip = h_left_up_noflip <= t63
-    t99 = 1.0 / h_left_up_noflip
+    t91 = _runtime.select(free_theta1, 0.0, t12 + t14)
+    del t12, t14
+    c1_left_up_noflip = _runtime.select(free_theta1, 1.0, t16 - t17)
+    del t16, t17
+    t92 = _runtime.wrap_cut(-np.arctan2(t91, c1_left_up_noflip))
+    t93 = t92 + t36
+    del t92
+    t94 = _runtime.select(folded, 1.0, -t45)
+    del t45
+    t95 = t44 * t94
+    del t44
+    s2_left_up_noflip = t43 - t95
+    t96 = t42 * t94
+    del t42, t94
+    c2_left_up_noflip = t48 + t96
+    t97 = np.arctan2(s2_left_up_noflip, c2_left_up_noflip)
+    t98 = _runtime.wrap_cut(t97) + t36
+    del t97
+    t99 = T13 * t91 + T23 * c1_left_up_noflip
+    t100 = t99 * t99
+    t101 = t77 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip
+    c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t77 * s2_left_up_noflip
+    del c2_left_up_noflip, c3_right_down_noflip, s2_left_up_noflip, t77
+    R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t91
+    t102 = T33 * t101 - c23_left_up_noflip * R1_13_left_up_noflip
+    h_left_up_noflip = np.sqrt(t100 + t102 * t102)
+    aligned_left_up_noflip = h_left_up_noflip <= t67
+    t103 = 1.0 / h_left_up_noflip
     del h_left_up_noflip
-    t100 = _runtime.select(aligned_left_up_noflip, 0.0, t95 * t99)
-    c4_left_up_noflip = _runtime.select(aligned_left_up_noflip, 1.0, t98 * t99)
-    del t99
-    t101 = np.arctan2(t100, c4_left_up_noflip)
-    R2_33_left_up_noflip = T33 * c23_left_up_noflip + t97 * R1_13_left_up_noflip
-    t102 = np.arctan2(t95 * t100 + t98 * c4_left_up_noflip, R2_33_left_up_noflip)
-    del R2_33_left_up_noflip, t98
-    t103 = T11 * t87 + T21 * c1_left_up_noflip
-    R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t87
-    t104 = T31 * t97 - c23_left_up_noflip * R1_11_left_up_noflip
-    t105 = T12 * t87 + T22 * c1_left_up_noflip
-    R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t87
-    del c1_left_up_noflip, t87
-    t106 = T32 * t97 - c23_left_up_noflip * R1_12_left_up_noflip
-    del c23_left_up_noflip, t97
-    t107 = np.arctan2(c4_left_up_noflip * t103 - t100 * t104, c4_left_up_noflip * t105 - t100 * t106)
-    del c4_left_up_noflip, t100, t104, t106
+    t104 = _runtime.select(aligned_left_up_noflip, 0.0, t99 * t103)
+    c4_left_up_noflip = _runtime.select(aligned_left_up_noflip, 1.0, t102 * t103)
+    del t103
+    t105 = np.arctan2(t104, c4_left_up_noflip)
+    R2_33_left_up_noflip = T33 * c23_left_up_noflip + t101 * R1_13_left_up_noflip
+    t106 = np.arctan2(t99 * t104 + t102 * c4_left_up_noflip, R2_33_left_up_noflip)
+    del R2_33_left_up_noflip, t102
+    t107 = T11 * t91 + T21 * c1_left_up_noflip
+    R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t91
+    t108 = T31 * t101 - c23_left_up_noflip * R1_11_left_up_noflip
+    t109 = T12 * t91 + T22 * c1_left_up_noflip
+    R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t91
+    del c1_left_up_noflip, t91
+    t110 = T32 * t101 - c23_left_up_noflip * R1_12_left_up_noflip
+    del c23_left_up_noflip, t101
+    t111 = np.arctan2(c4_left_up_noflip * t107 - t104 * t108, c4_left_up_noflip * t109 - t104 * t110)
+    del c4_left_up_noflip, t104, t108, t110
     flip_left_up_flip = _runtime.select(aligned_left_up_noflip, 0.0, 3.141592653589793)
-    t108 = _runtime.wrap(flip_left_up_flip - t101) + t32
-    t109 = _runtime.wrap(t107 + flip_left_up_flip) + t32
+    t112 = _runtime.wrap(flip_left_up_flip - t105) + t36
+    t113 = _runtime.wrap(t111 + flip_left_up_flip) + t36
     del flip_left_up_flip
-    s2_left_down_noflip = t39 + t91
-    del t39, t91
-    t110 = t44 - t92
-    del t44, t92
-    t111 = _runtime.wrap_cut(np.arctan2(s2_left_down_noflip, -t110))
-    t112 = t111 + t32
-    del t111
-    s23_left_down_noflip = t56 * t110 - t59 * s2_left_down_noflip
-    c23_left_down_noflip = t59 * t110 + t56 * s2_left_down_noflip
-    del s2_left_down_noflip, t110, t56, t59
+    s2_left_down_noflip = t43 + t95
+    del t43, t95
+    t114 = t48 - t96
+    del t48, t96
+    t115 = _runtime.wrap_cut(np.arctan2(s2_left_down_noflip, -t114))
+    t116 = t115 + t36
+    del t115
+    s23_left_down_noflip = t60 * t114 - t63 * s2_left_down_noflip
+    c23_left_down_noflip = t63 * t114 + t60 * s2_left_down_noflip
+    del s2_left_down_noflip, t114, t60, t63
     R2_13_left_down_noflip = T33 * s23_left_down_noflip + R1_13_left_up_noflip * c23_left_down_noflip
-    t113 = R2_13_left_down_noflip * R2_13_left_down_noflip
-    h_left_down_noflip = np.sqrt(t96 + t113)
-    del t113, t96
-    aligned_left_down_noflip = h_left_down_noflip <= t63
-    del t63
-    t114 = 1.0 / h_left_down_noflip
+    t117 = R2_13_left_down_noflip * R2_13_left_down_noflip
+    h_left_down_noflip = np.sqrt(t100 + t117)
+    del t100, t117
+    aligned_left_down_noflip = h_left_down_noflip <= t67
+    del t67
+    t118 = 1.0 / h_left_down_noflip
     del h_left_down_noflip
-    t115 = _runtime.select(aligned_left_down_noflip, 0.0, t95 * t114)
-    c4_left_down_noflip = _runtime.select(aligned_left_down_noflip, 1.0, -(R2_13_left_down_noflip * t114))
-    del t114
-    t116 = np.arctan2(t115, c4_left_down_noflip)
-    t117 = t95 * t115 - R2_13_left_down_noflip * c4_left_down_noflip
-    del R2_13_left_down_noflip, t95
+    t119 = _runtime.select(aligned_left_down_noflip, 0.0, t99 * t118)
+    c4_left_down_noflip = _runtime.select(aligned_left_down_noflip, 1.0, -(R2_13_left_down_noflip * t118))
+    del t118
+    t120 = np.arctan2(t119, c4_left_down_noflip)
+    t121 = t99 * t119 - R2_13_left_down_noflip * c4_left_down_noflip
+    del R2_13_left_down_noflip, t99
     R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip * s23_left_down_noflip
     del R1_13_left_up_noflip
-    t118 = np.arctan2(t117, R2_33_left_down_noflip)
-    del R2_33_left_down_noflip, t117
+    t122 = np.arctan2(t121, R2_33_left_down_noflip)
+    del R2_33_left_down_noflip, t121
     R2_11_left_down_noflip = T31 * s23_left_down_noflip + R1_11_left_up_noflip * c23_left_down_noflip
     del R1_11_left_up_noflip
-    t119 = t103 * c4_left_down_noflip + t115 * R2_11_left_down_noflip
-    del R2_11_left_down_noflip, t103
+    t123 = t107 * c4_left_down_noflip + t119 * R2_11_left_down_noflip
+    del R2_11_left_down_noflip, t107
     R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip * c23_left_down_noflip
     del R1_12_left_up_noflip, c23_left_down_noflip, s23_left_down_noflip
-    t120 = t105 * c4_left_down_noflip + t115 * R2_12_left_down_noflip
-    del R2_12_left_down_noflip, c4_left_down_noflip, t105, t115
-    t121 = np.arctan2(t119, t120)
-    del t119, t120
+    t124 = t109 * c4_left_down_noflip + t119 * R2_12_left_down_noflip
+    del R2_12_left_down_noflip, c4_left_down_noflip, t109, t119
+    t125 = np.arctan2(t123, t124)
+    del t123, t124
     flip_left_down_flip = _runtime.select(aligned_left_down_noflip, 0.0, 3.141592653589793)
-    t122 = _runtime.wrap(flip_left_down_flip - t116) + t32
-    t123 = _runtime.wrap(t121 + flip_left_down_flip) + t32
+    t126 = _runtime.wrap(flip_left_down_flip - t120) + t36
+    t127 = _runtime.wrap(t125 + flip_left_down_flip) + t36
     del flip_left_down_flip
-    t124 = free_theta1 | no_link | folded | no_forearm
+    t128 = free_theta1 | no_link | folded | no_forearm
     del folded, free_theta1, no_forearm, no_link
-    t125 = _runtime.status(invalid, unreachable, t124 | aligned)
+    t129 = _runtime.status(invalid, unreachable, t128 | aligned)
     del aligned
-    t126 = _runtime.status(invalid, unreachable, t124 | aligned_right_down_noflip)
+    t130 = _runtime.status(invalid, unreachable, t128 | aligned_right_down_noflip)
     del aligned_right_down_noflip
-    t127 = _runtime.status(invalid, unreachable, t124 | aligned_left_up_noflip)
+    t131 = _runtime.status(invalid, unreachable, t128 | aligned_left_up_noflip)
     del aligned_left_up_noflip
-    t128 = _runtime.status(invalid, unreachable, t124 | aligned_left_down_noflip)
-    del aligned_left_down_noflip, invalid, t124, unreachable
+    t132 = _runtime.status(invalid, unreachable, t128 | aligned_left_down_noflip)
+    del aligned_left_down_noflip, invalid, t128, unreachable
     return (
-        t33,
-        t47,
-        t60,
-        _runtime.wrap_cut(-t66) + t32,
-        _runtime.wrap_cut(t67) + t32,
-        _runtime.wrap_cut(t70) + t32,
-        t33,
-        t47,
-        t60,
-        _runtime.wrap(flip - t66) + t32,
-        _runtime.wrap_cut(-t67) + t32,
-        _runtime.wrap(t70 + flip) + t32,
-        t33,
-        t72,
-        t75,
-        _runtime.wrap_cut(-t80) + t32,
-        _runtime.wrap_cut(t81) + t32,
-        _runtime.wrap_cut(t84) + t32,
-        t33,
-        t72,
-        t75,
-        t85,
-        _runtime.wrap_cut(-t81) + t32,
-        t86,
+        t37,
+        t51,
+        t64,
+        _runtime.wrap_cut(-t70) + t36,
+        _runtime.wrap_cut(t71) + t36,
+        _runtime.wrap_cut(t74) + t36,
+        t37,
+        t51,
+        t64,
+        _runtime.wrap(flip - t70) + t36,
+        _runtime.wrap_cut(-t71) + t36,
+        _runtime.wrap(t74 + flip) + t36,
+        t37,
+        t76,
+        t79,
+        _runtime.wrap_cut(-t84) + t36,
+        _runtime.wrap_cut(t85) + t36,
+        _runtime.wrap_cut(t88) + t36,
+        t37,
+        t76,
+        t79,
         t89,
-        t94,
-        t75,
-        _runtime.wrap_cut(-t101) + t32,
-        _runtime.wrap_cut(t102) + t32,
-        _runtime.wrap_cut(t107) + t32,
-        t89,
-        t94,
-        t75,
-        t108,
-        _runtime.wrap_cut(-t102) + t32,
-        t109,
-        t89,
+        _runtime.wrap_cut(-t85) + t36,
+        t90,
+        t93,
+        t98,
+        t79,
+        _runtime.wrap_cut(-t105) + t36,
+        _runtime.wrap_cut(t106) + t36,
+        _runtime.wrap_cut(t111) + t36,
+        t93,
+        t98,
+        t79,
         t112,
-        t60,
-        _runtime.wrap_cut(-t116) + t32,
-        _runtime.wrap_cut(t118) + t32,
-        _runtime.wrap_cut(t121) + t32,
-        t89,
-        t112,
-        t60,
-        t122,
-        _runtime.wrap_cut(-t118) + t32,
-        t123,
-        t125,
-        t125,
+        _runtime.wrap_cut(-t106) + t36,
+        t113,
+        t93,
+        t116,
+        t64,
+        _runtime.wrap_cut(-t120) + t36,
+        _runtime.wrap_cut(t122) + t36,
+        _runtime.wrap_cut(t125) + t36,
+        t93,
+        t116,
+        t64,
         t126,
-        t126,
+        _runtime.wrap_cut(-t122) + t36,
         t127,
-        t127,
-        t128,
-        t128,
+        t129,
+        t129,
+        t130,
+        t130,
+        t131,
+        t131,
+        t132,
+        t132,
     )
 
 

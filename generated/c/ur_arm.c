@@ -1184,9 +1184,9 @@ CF_INLINE void ur_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t197 = cf_rounded(single, one, across * uc_mid) + cf_rounded(single, one, t31 * us_mid);
     const real_t t198 = CLOSEDFORM_C(1.0) / cf_divisor(single, hub_mid, r_hub);
     const real_t c_mid = cf_select(hub_mid, CLOSEDFORM_C(1.0), t197 * t198);
-    const real_t t199 = d5 * CLOSEDFORM_C(0.0009765625) + d6 * CLOSEDFORM_C(0.0009765625);
-    const real_t t200 = L2 * CLOSEDFORM_C(0.0009765625) + L3 * CLOSEDFORM_C(0.0009765625);
-    const real_t t201 = d1 * CLOSEDFORM_C(0.0009765625) + d4 * CLOSEDFORM_C(0.0009765625);
+    const real_t t199 = d5 * CLOSEDFORM_C(0.00048828125) + d6 * CLOSEDFORM_C(0.00048828125);
+    const real_t t200 = L2 * CLOSEDFORM_C(0.00048828125) + L3 * CLOSEDFORM_C(0.00048828125);
+    const real_t t201 = d1 * CLOSEDFORM_C(0.00048828125) + d4 * CLOSEDFORM_C(0.00048828125);
     const real_t t202 = t199 + (t200 + t201);
     const real_t t203 = cf_rounded(single, one, root1 * h_wrist) - t202;
     const int close = t203 <= t8;
@@ -2852,9 +2852,9 @@ CF_INLINE void ur_arm_ik_common_kernel(const int single, const real_t one,
     const real_t t182 = t181 + d5 * CLOSEDFORM_C(0.00390625) + d6 * CLOSEDFORM_C(0.00390625);
     const real_t t183 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
     const int t184 = (h1 <= t179) | (root1 - t182 <= t179) | (h_wrist <= t183);
-    const real_t t185 = d5 * CLOSEDFORM_C(0.0009765625) + d6 * CLOSEDFORM_C(0.0009765625);
-    const real_t t186 = L2 * CLOSEDFORM_C(0.0009765625) + L3 * CLOSEDFORM_C(0.0009765625);
-    const real_t t187 = d1 * CLOSEDFORM_C(0.0009765625) + d4 * CLOSEDFORM_C(0.0009765625);
+    const real_t t185 = d5 * CLOSEDFORM_C(0.00048828125) + d6 * CLOSEDFORM_C(0.00048828125);
+    const real_t t186 = L2 * CLOSEDFORM_C(0.00048828125) + L3 * CLOSEDFORM_C(0.00048828125);
+    const real_t t187 = d1 * CLOSEDFORM_C(0.00048828125) + d4 * CLOSEDFORM_C(0.00048828125);
     const real_t t188 = t185 + (t186 + t187);
     const real_t t189 = cf_rounded(single, one, root1 * h_wrist) - t188;
     const int no_link_elbow = L2 * L3 <= CLOSEDFORM_VANISHING * (full_1_1 * full_1_1);
@@ -3201,9 +3201,9 @@ CF_INLINE void ur_arm_ik_branch_kernel(const int single, const real_t one,
     const real_t t67 = t66 + d5 * CLOSEDFORM_C(0.00390625) + d6 * CLOSEDFORM_C(0.00390625);
     const int aligned_wrist = h_wrist <= CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
     const int t68 = (h1 <= t64) | (root1 - t67 <= t64) | aligned_wrist;
-    const real_t t69 = L2 * CLOSEDFORM_C(0.0009765625) + L3 * CLOSEDFORM_C(0.0009765625);
-    const real_t t70 = t69 + d1 * CLOSEDFORM_C(0.0009765625) + d4 * CLOSEDFORM_C(0.0009765625);
-    const real_t t71 = t70 + d5 * CLOSEDFORM_C(0.0009765625) + d6 * CLOSEDFORM_C(0.0009765625);
+    const real_t t69 = L2 * CLOSEDFORM_C(0.00048828125) + L3 * CLOSEDFORM_C(0.00048828125);
+    const real_t t70 = t69 + d1 * CLOSEDFORM_C(0.00048828125) + d4 * CLOSEDFORM_C(0.00048828125);
+    const real_t t71 = t70 + d5 * CLOSEDFORM_C(0.00048828125) + d6 * CLOSEDFORM_C(0.00048828125);
     const real_t t72 = cf_rounded(single, one, root1 * h_wrist) - t71;
     const int no_link_elbow = L2 * L3 <= CLOSEDFORM_VANISHING * (full_1_1 * full_1_1);
     const int t73 = t68 | (t72 <= t64) | no_link_elbow | (r_elbow <= t64);

@@ -891,7 +891,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const real_t one,
     const real_t t50 = cf_rounded(single, one, t46 * t49);
     const real_t SA = cf_rounded(single, one, S * A);
     const real_t BC = cf_rounded(single, one, B * C);
-    const real_t area = CLOSEDFORM_C(2.0) * cf_sqrt(SA * BC);
+    const real_t area = CLOSEDFORM_C(2.0) * cf_root(single, SA * BC);
     const real_t t51 = cf_select(t47, CLOSEDFORM_C(0.0), t48 * area);
     const real_t t52 = root * t45;
     const real_t t53 = cf_select(folded, CLOSEDFORM_C(1.0), t52);

@@ -8,20 +8,30 @@ from __future__ import annotations
 
 import re
 import textwrap
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import prod
 
 from closedform.derivation import Derivation
-from closedform.emit.code import COMPARE, PRODUCT, WRAPS, Printer, Text
+from closedform.emit.cguards import (
+    deciding_products,
+    final_values,
+    given_up_where,
+    not_negative,
+    unused_where,
+)
+from closedform.emit.code import COMPARE, PRODUCT, UNARY, WRAPS, Line, Printer, Text
 from closedform.emit.text import WIDTH
 from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.lower.graph import Node, constant_of, hardly_ever, reachable, strip_sign
+from closedform.lower.graph import Node, hardly_ever, reachable, strip_sign
 from closedform.lower.program import LEAVES
 from closedform.names import C_LOCALS, in_c
 
 LANES = 8
+FEW = 2
+"""So many quotients by one divisor are worth a jump each, to be infinite where it is zero."""
 CALLS = {
     "sqrt": "cf_sqrt",
     "atan2": "cf_atan2",
@@ -51,8 +61,12 @@ class CPrinter(Printer):
         self.arctangents: list[tuple[str, str]] = []
         self.head = 0
         self._arguments = self._before_arctangents()
-        self._unused_where = _unused_where(self.schedule(), lowered.roots)
-        self._deciding = set(_deciding_products(lowered))
+        self._given_up = dict(given_up_where(lowered))
+        self._unused_where = unused_where(self.schedule(), lowered.roots) | self._given_up
+        self._final = final_values(lowered)
+        self._divided = Counter(n.args[1].id for n in lowered.schedule() if n.op == "div")
+        self._tested: dict[int, str] = {}
+        self._deciding = set(deciding_products(lowered))
 
     def _before_arctangents(self) -> set[int]:
         """The nodes that need no ``atan2``."""
@@ -66,8 +80,15 @@ class CPrinter(Printer):
         return node.op == "atan2" and all(a.id in self._arguments for a in node.args)
 
     def schedule(self) -> list[Node]:
-        """Arguments of the joint ``atan2`` first, these next, then what needs them."""
-        nodes = self.lowered.schedule()
+        """Arguments of the joint ``atan2`` first, these next, then what needs them.
+
+        A quotient comes after the condition under which nothing uses it.
+        """
+
+        def operands(node: Node) -> tuple[Node, ...]:
+            return (*node.args, *self._given_up.get(node.id, ()))
+
+        nodes = list(reachable(self.lowered.roots, operands=operands))
         if sum(map(self._together, nodes)) < 2:
             self._arguments = set()
             return nodes
@@ -76,8 +97,8 @@ class CPrinter(Printer):
         )
 
     def render(self, node: Node) -> Text:
-        if node.op == "div" and (condition := self._unused_where.get(node.id)) is not None:
-            return self._quotient(node, condition)
+        if node.op == "div" and node.args[1].op != "const":
+            return self._quotient(node)
         if node.id in self._deciding:
             return Text(f"cf_rounded(single, one, {super().render(node).code})")
         if not self._together(node):
@@ -88,15 +109,36 @@ class CPrinter(Printer):
         self.arctangents.append((y, x))
         return Text(f"angles[{len(self.arctangents) - 1}]")
 
-    def _quotient(self, node: Node, unused: Node) -> Text:
+    def _quotient(self, node: Node) -> Text:
         """Divides by 1 where nothing uses the quotient: its divisor may vanish there.
 
-        The loop over the branches is part of a single call.
+        Elsewhere a division by zero is not carried out.  It gives what it would give where nothing
+        more is computed with it; NaN where something is, and of many quotients by one divisor, each
+        of which would need a jump.  The loop over the branches is part of a single call.
         """
         dividend, divisor = (self.text[a.id] for a in node.args)
-        where = "1" if self.branch else "single"
-        safe = f"cf_divisor({where}, {self.text[unused.id].code}, {divisor.code})"
-        return Text(f"{dividend.at(PRODUCT)} / {safe}", PRODUCT)
+        unused = self._unused_where.get(node.id)
+        if unused is not None:
+            where = "1" if self.branch else "single"
+            texts = [self.text[n.id] for n in unused]
+            either = " | ".join(t.at(UNARY) for t in texts) if len(texts) > 1 else texts[0].code
+            safe = f"cf_divisor({where}, {either}, {divisor.code})"
+            return Text(f"{dividend.at(PRODUCT)} / {safe}", PRODUCT)
+        if self.branch:
+            return super().render(node)
+        if node.id in self._final and self._divided[node.args[1].id] <= FEW:
+            return Text(f"cf_quotient(single, {dividend.code}, {divisor.code})")
+        return Text(f"{dividend.at(PRODUCT)} / {self._nonzero(node.args[1])}", PRODUCT)
+
+    def _nonzero(self, divisor: Node) -> str:
+        """The divisor, NaN where it is zero; tested once for all quotients by it."""
+        code = f"cf_nonzero(single, {self.text[divisor.id].code})"
+        if self._divided[divisor.id] < 2:
+            return code
+        if divisor.id not in self._tested:
+            self._tested[divisor.id] = self.names.fresh()
+            self.lines.append(Line(self._tested[divisor.id], code, False))
+        return self._tested[divisor.id]
 
     def constant(self, text: str) -> Text:
         return Text(f"CLOSEDFORM_C({text})")
@@ -112,6 +154,8 @@ class CPrinter(Printer):
             return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
         if op == "finite":
             return Text(f"{' + '.join(f'cf_nought({a})' for a in args)} == 0", COMPARE)
+        if op == "sqrt" and not not_negative(node.args[0]):
+            return Text(f"cf_root({'1' if self.branch else 'single'}, {args[0]})")
         if op in RARE and (op != "select" or self._spares(node)):
             return Text(f"{RARE[op]}({', '.join(['single', *args])})")
         return Text(f"{CALLS[op]}({', '.join(args)})")
@@ -128,47 +172,6 @@ class CPrinter(Printer):
             return False
         compares_calls = node.op in ("lt", "le", "eq", "finite") and "cf_" in text.code
         return compares_calls or super().deserves_name(node, text, uses)
-
-
-def _unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, Node]:
-    """The quotients by what is no constant that a condition, known before, always selects away."""
-    place = {node.id: k for k, node in enumerate(schedule)}
-    away: dict[int, frozenset[int]] = {root.id: frozenset() for root in roots}
-    for node in reversed(schedule):
-        for k, arg in enumerate(node.args):
-            passed = away[node.id]
-            if node.op == "select" and k == 2 and arg not in node.args[:2]:
-                passed |= {node.args[0].id}
-            away[arg.id] = away[arg.id] & passed if arg.id in away else passed
-    found = {}
-    for node in schedule:
-        if node.op == "div" and node.args[1].op != "const":
-            known = [c for c in away[node.id] if place[c] < place[node.id]]
-            if known:
-                found[node.id] = schedule[max(place[c] for c in known)]
-    return found
-
-
-def _deciding_products(lowered: Lowered) -> Iterator[int]:
-    """The products that are added to something, where a status or a condition rests on the sum.
-
-    They are rounded before the addition, as NumPy does it; a fused multiply-add could decide
-    differently at a threshold.
-    """
-    deciding = [n for n in lowered.schedule() if n.op == "status"]
-    deciding += [n for result in lowered.results if result.kind == "bool" for n in result.nodes]
-    for node in reachable(deciding):
-        if node.op in ("add", "sub"):
-            products = [n for n in map(strip_sign, node.args) if n.op == "mul"]
-            yield from (n.id for n in products if not any(map(_is_exact_factor, n.args)))
-
-
-def _is_exact_factor(node: Node) -> bool:
-    """Whether a product with it needs no rounding: a sign, or a power of two."""
-    value = constant_of(node)
-    if value is None:
-        return node.op == "sign"
-    return bool(value.is_Rational and int(abs(value.p) * value.q).bit_count() == 1)
 
 
 @dataclass(frozen=True)

@@ -199,6 +199,38 @@ CF_INLINE real_t cf_divisor(int single, int unused, real_t divisor)
 #endif
 }
 
+CF_INLINE real_t cf_sqrt(real_t x) { return CF_LIBM(sqrt)(x); }
+CF_INLINE real_t cf_abs(real_t x) { return CF_LIBM(fabs)(x); }
+CF_INLINE real_t cf_copysign(real_t size, real_t sign) { return CF_LIBM(copysign)(size, sign); }
+
+/* Whether a single call, or a batch that must not raise floating-point exceptions, takes care. */
+CF_INLINE int cf_careful(int single)
+{
+#ifdef CLOSEDFORM_TRAP_SAFE
+    (void)single;
+    return 1;
+#else
+    return single;
+#endif
+}
+
+/* a / b, of which no exception tells that b is zero. */
+CF_INLINE real_t cf_quotient(int single, real_t a, real_t b)
+{
+    if (!cf_careful(single)) return a / b;
+    const int zero = b == 0;
+    const real_t quotient = a / cf_divisor(single, zero, b);
+    const real_t infinite = cf_copysign(CLOSEDFORM_C(INFINITY), cf_copysign(1, a) * cf_copysign(1, b));
+    return cf_rarely(single, zero, a == 0 ? CLOSEDFORM_NAN : infinite, quotient);
+}
+
+/* What to divide by, of which no exception tells that it is zero: then the quotient is NaN. */
+CF_INLINE real_t cf_nonzero(int single, real_t divisor)
+{
+    if (!cf_careful(single)) return divisor;
+    return cf_rarely(single, divisor == 0, CLOSEDFORM_NAN, divisor);
+}
+
 /* NaN where `failed`, else zero: added to an answer, it is one selection for all entries. A single
  * call jumps, so that nothing waits for the condition. */
 CF_INLINE real_t cf_poison(int single, int failed)
@@ -252,9 +284,6 @@ CF_INLINE real_t cf_rounded(int single, real_t one, real_t x)
     return x * one;
 }
 
-CF_INLINE real_t cf_sqrt(real_t x) { return CF_LIBM(sqrt)(x); }
-CF_INLINE real_t cf_abs(real_t x) { return CF_LIBM(fabs)(x); }
-CF_INLINE real_t cf_copysign(real_t size, real_t sign) { return CF_LIBM(copysign)(size, sign); }
 
 /* 1 or -1; of either zero 1. */
 CF_INLINE real_t cf_sign(real_t x) { return cf_copysign(CLOSEDFORM_C(1.0), x + CLOSEDFORM_C(0.0)); }
@@ -262,6 +291,13 @@ CF_INLINE real_t cf_sign(real_t x) { return cf_copysign(CLOSEDFORM_C(1.0), x + C
 /* Unlike fmax and fmin these are one instruction: if either argument is NaN, the result is b. */
 CF_INLINE real_t cf_max(real_t a, real_t b) { return a > b ? a : b; }
 CF_INLINE real_t cf_min(real_t a, real_t b) { return a < b ? a : b; }
+
+/* The square root of what may be negative, but only where the answer is rejected: a batch takes NaN
+ * then, which raises an exception, a single call zero. */
+CF_INLINE real_t cf_root(int single, real_t x)
+{
+    return cf_sqrt(cf_careful(single) ? cf_max(CLOSEDFORM_C(0.0), x) : x);
+}
 
 /* Zero, or NaN if x is not finite: of several numbers the sum tells whether all are. */
 CF_INLINE real_t cf_nought(real_t x) { return CLOSEDFORM_C(0.0) * x; }

@@ -52,7 +52,7 @@ CF_INLINE void hybrid_five_bar_fk_kernel(const int single, const real_t one,
     const real_t t9 = L2 * CLOSEDFORM_C(2.0);
     const real_t t10 = t9 - apart;
     const real_t slack = cf_max(t10, CLOSEDFORM_C(0.0));
-    const real_t t11 = cf_sqrt(slack * (apart + t9)) * CLOSEDFORM_C(0.5);
+    const real_t t11 = cf_root(single, slack * (apart + t9)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t11);
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t2 * t6));
     const real_t t12 = height * n_1;
@@ -197,7 +197,7 @@ CF_INLINE void hybrid_five_bar_passive_angles_kernel(const int single,
     const real_t t7 = L2 * CLOSEDFORM_C(2.0);
     const real_t t8 = t7 - apart;
     const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t9 = cf_sqrt(slack * (apart + t7)) * CLOSEDFORM_C(0.5);
+    const real_t t9 = cf_root(single, slack * (apart + t7)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t9);
     const real_t t10 = n_1 * height;
     const real_t DP_r_right_of_CD = t6 - t10;
@@ -332,7 +332,7 @@ CF_INLINE void hybrid_five_bar_jacobian_parallel_kernel(const int single,
     const real_t t15 = distance * t14 * CLOSEDFORM_C(0.5);
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t7 / cf_divisor(single, coincide, apart)));
     const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t16 = cf_sqrt(slack * (apart + t5)) * CLOSEDFORM_C(0.5);
+    const real_t t16 = cf_root(single, slack * (apart + t5)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), t16);
     const real_t t17 = n_1 * height;
     const real_t DP_r_right_of_CD = t15 - t17;
@@ -482,7 +482,7 @@ CF_INLINE void hybrid_five_bar_jacobian_serial_kernel(const int single,
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
+    const real_t t10 = cf_root(single, slack * (apart + t8)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
@@ -610,7 +610,7 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const int single,
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
+    const real_t t10 = cf_root(single, slack * (apart + t8)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
@@ -627,33 +627,34 @@ CF_INLINE void hybrid_five_bar_jacobian_kernel(const int single,
     const real_t CP_y = t16 + t17;
     const real_t t19 = C_y * DP_r_right_of_CD + C_r * CP_y;
     const real_t side = distance * height;
-    const real_t t20 = c1 * CP_y;
+    const real_t t20 = cf_nonzero(single, side);
+    const real_t t21 = c1 * CP_y;
     const real_t DP_r = t7 + t11;
     const real_t along_d = t2 * DP_r + D_r * CP_y_right_of_CD;
-    const real_t t21 = CLOSEDFORM_C(0.0) + t15;
-    const real_t t22 = s1 * CP_y_right_of_CD;
-    const real_t t23 = s1 * CP_y;
+    const real_t t22 = CLOSEDFORM_C(0.0) + t15;
+    const real_t t23 = s1 * CP_y_right_of_CD;
+    const real_t t24 = s1 * CP_y;
     const real_t P_r_right_of_CD = C_r - DP_r;
-    const real_t t24 = C_y * DP_r + C_r * CP_y_right_of_CD;
+    const real_t t25 = C_y * DP_r + C_r * CP_y_right_of_CD;
     const real_t along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y;
     J[0] = s1 * P_r + t15;
-    J[1] = t18 * t19 / side + t15;
-    J[2] = -(t20 * along_d / side) + t15;
-    J[3] = t21;
-    J[4] = -(DP_r * t19 / side) + t15;
-    J[5] = DP_r_right_of_CD * along_d / side + t15;
+    J[1] = t18 * t19 / t20 + t15;
+    J[2] = -(t21 * along_d / t20) + t15;
+    J[3] = t22;
+    J[4] = -(DP_r * t19 / t20) + t15;
+    J[5] = DP_r_right_of_CD * along_d / t20 + t15;
     J[6] = c1 * P_r + t15;
-    J[7] = -(t22 * t19 / side) + t15;
-    J[8] = t23 * along_d / side + t15;
+    J[7] = -(t23 * t19 / t20) + t15;
+    J[8] = t24 * along_d / t20 + t15;
     J[9] = s1 * P_r_right_of_CD + t15;
-    J[10] = -(t20 * t24 / side) + t15;
-    J[11] = t18 * along_d_right_of_CD / side + t15;
-    J[12] = t21;
-    J[13] = DP_r_right_of_CD * t24 / side + t15;
-    J[14] = -(DP_r * along_d_right_of_CD / side) + t15;
+    J[10] = -(t21 * t25 / t20) + t15;
+    J[11] = t18 * along_d_right_of_CD / t20 + t15;
+    J[12] = t22;
+    J[13] = DP_r_right_of_CD * t25 / t20 + t15;
+    J[14] = -(DP_r * along_d_right_of_CD / t20) + t15;
     J[15] = c1 * P_r_right_of_CD + t15;
-    J[16] = t23 * t24 / side + t15;
-    J[17] = -(t22 * along_d_right_of_CD / side) + t15;
+    J[16] = t24 * t25 / t20 + t15;
+    J[17] = -(t23 * along_d_right_of_CD / t20) + t15;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -773,7 +774,7 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const int single,
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
+    const real_t t10 = cf_root(single, slack * (apart + t8)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
@@ -784,14 +785,14 @@ CF_INLINE void hybrid_five_bar_determinant_kernel(const int single,
     const real_t DP_r = t7 + t11;
     const real_t CP_y_right_of_CD = t12 - t13;
     const real_t side = distance * height;
-    const real_t t15 = t14 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side;
+    const real_t t15 = cf_quotient(single, t14 * (t2 * DP_r + D_r * CP_y_right_of_CD), side);
     const int t16 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t17 = t16 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t18 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
     const int failed = (!(t17 & (CLOSEDFORM_C(0.0) <= L2) & t18)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t9));
     const real_t t19 = cf_poison(single, failed);
     const real_t t20 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
-    const real_t t21 = t20 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
+    const real_t t21 = cf_quotient(single, t20 * (t2 * DP_r_right_of_CD + D_r * CP_y), side);
     det[0] = -t15 + t19;
     det[1] = t21 + t19;
 }
@@ -896,7 +897,7 @@ CF_INLINE void hybrid_five_bar_singularities_kernel(const int single,
     const real_t t8 = L2 * CLOSEDFORM_C(2.0);
     const real_t t9 = t8 - apart;
     const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_sqrt(slack * (apart + t8)) * CLOSEDFORM_C(0.5);
+    const real_t t10 = cf_root(single, slack * (apart + t8)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t5, CLOSEDFORM_C(0.0), t10);
     const real_t t11 = n_1 * height;
     const real_t DP_r_right_of_CD = t7 - t11;
@@ -1021,14 +1022,14 @@ CF_INLINE void hybrid_five_bar_condition_number_kernel(const int single,
     const real_t t6 = L2 * CLOSEDFORM_C(2.0);
     const real_t t7 = t6 - apart;
     const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t8 = cf_sqrt(slack * (apart + t6)) * CLOSEDFORM_C(0.5);
+    const real_t t8 = cf_root(single, slack * (apart + t6)) * CLOSEDFORM_C(0.5);
     const real_t height = cf_select(slack <= t4, CLOSEDFORM_C(0.0), t8);
     const real_t t9 = cf_select(coincide, CLOSEDFORM_C(1.0), cf_max(t5, height));
     const int t10 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t11 = t10 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
     const int t12 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
     const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= L2) & t12)) | (!(-(CLOSEDFORM_FEASIBILITY * t3) <= t7));
-    const real_t t13 = t9 / cf_min(t5, height) + cf_poison(single, failed);
+    const real_t t13 = cf_quotient(single, t9, cf_min(t5, height)) + cf_poison(single, failed);
     kappa[0] = t13;
     kappa[1] = t13;
 }
@@ -1513,7 +1514,7 @@ CF_INLINE void hybrid_five_bar_workspace_volume_kernel(const int single,
     const real_t t15 = m * CLOSEDFORM_C(16.0) * (t13 + t12 * CLOSEDFORM_C(3.0));
     const real_t t16 = CLOSEDFORM_C(3.141592653589793) * (t14 + t15);
     const int t17 = CLOSEDFORM_C(2.0) * cf_max(m, r) <= L0;
-    const real_t t18 = t12 * t13 * CLOSEDFORM_C(25.132741228718345) / cf_divisor(single, t11, L0);
+    const real_t t18 = t12 * t13 * CLOSEDFORM_C(25.132741228718345) / cf_divisor(single, (t2 <= L0) | (t3 <= L0) | t11, L0);
     const real_t t19 = t4 + t5;
     const real_t t20 = CLOSEDFORM_C(3.141592653589793) * (t19 * t19);
     const real_t t21 = t10 - r * r * r * CLOSEDFORM_C(8.377580409572783);

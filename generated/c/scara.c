@@ -564,12 +564,12 @@ CF_INLINE void scara_ik_kernel(const int single, const real_t one,
     const real_t t8 = r_elbow + t5;
     const real_t B_elbow = cf_max(t8, CLOSEDFORM_C(0.0));
     const real_t t9 = S_elbow * B_elbow;
-    const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t7 + t9);
+    const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded_elbow | no_link_elbow, t7 + t9);
     const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t7 - t9) * t10));
     const real_t t11 = t3 * (x_y * c_base_elbow);
     const real_t t12 = A_elbow * S_elbow;
     const real_t t13 = C_elbow * B_elbow;
-    const real_t area_elbow = CLOSEDFORM_C(2.0) * cf_sqrt(t12 * t13);
+    const real_t area_elbow = CLOSEDFORM_C(2.0) * cf_root(single, t12 * t13);
     const real_t s_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t10 * area_elbow);
     const real_t t14 = t3 * (x_x * s_base_elbow);
     const real_t s1 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t11 - t14);

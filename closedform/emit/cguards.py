@@ -1,0 +1,117 @@
+"""What the C of a program must know of its values: where they are not used, and what they may be.
+
+A single call raises no floating-point exception: it neither divides by zero nor takes the square
+root of what is negative, although nothing would use the result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from closedform.lower import Lowered
+from closedform.lower.graph import Node, constant_of, reachable, strip_sign
+
+
+def unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, tuple[Node, ...]]:
+    """The quotients that conditions, known before, always select away; any of them does."""
+    place = {node.id: k for k, node in enumerate(schedule)}
+    away: dict[int, frozenset[int]] = {root.id: frozenset() for root in roots}
+    for node in reversed(schedule):
+        for k, arg in enumerate(node.args):
+            passed = away[node.id]
+            if node.op == "select" and k == 2 and arg not in node.args[:2]:
+                passed |= {node.args[0].id}
+            away[arg.id] = away[arg.id] & passed if arg.id in away else passed
+    found = {}
+    for node in schedule:
+        if node.op == "div" and node.args[1].op != "const":
+            known = sorted(place[c] for c in away[node.id] if place[c] < place[node.id])
+            if known:
+                found[node.id] = tuple(schedule[k] for k in known)
+    return found
+
+
+def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
+    """For quotients of a common case the condition that their divisor is as good as zero.
+
+    Where it holds the whole program is evaluated instead.  Of the conditions known by then it is
+    the one of the value that is nearest to the divisor.
+    """
+    if lowered.results[-1].name != "rare":
+        return
+    place = {node.id: k for k, node in enumerate(lowered.schedule())}
+    conditions = [n for n in reachable(lowered.results[-1].nodes) if n.op == "le"]
+    needs = {c.id: {n.id for n in reachable([c]) if n.op in ("div", "atan2")} for c in conditions}
+    for node in lowered.schedule():
+        if node.op != "div" or node.args[1].op == "const":
+            continue
+        below = {n.id for n in reachable(node.args)}
+        near = {n.id for n in reachable(node.args[1:])}
+        known = [c for c in conditions if c.args[0].id in near and needs[c.id] <= below]
+        if known:
+            yield node.id, (max(known, key=lambda c: place[c.args[0].id]),)
+
+
+def final_values(lowered: Lowered) -> frozenset[int]:
+    """The nodes with which nothing is computed but what leaves infinity as it is, or NaN."""
+    schedule, roots = lowered.schedule(), {n.id for n in lowered.roots}
+    users: dict[int, list[Node]] = {n.id: [] for n in schedule}
+    for node in schedule:
+        for arg in node.args:
+            users[arg.id].append(node)
+    final: set[int] = set()
+    for node in reversed(schedule):
+        if all(u.id in final and _keeps_infinity(u) for u in users[node.id]) and (
+            users[node.id] or node.id in roots
+        ):
+            final.add(node.id)
+    return frozenset(final)
+
+
+def _keeps_infinity(node: Node) -> bool:
+    """Whether an operator raises no exception where an operand is infinite."""
+    if node.op in ("add", "sub"):
+        return any(a.op == "poison" for a in node.args)
+    if node.op == "mul":
+        return any(a.op == "const" and a.payload != 0 for a in map(strip_sign, node.args))
+    return node.op in ("neg", "select")
+
+
+def not_negative(node: Node) -> bool:
+    """Whether a value is never below zero, whatever the parameters are; it may be NaN."""
+    match node.op:
+        case "const" | "tolerance" | "abs" | "sqrt":
+            return True
+        case "mul":
+            return node.args[0] is node.args[1] or all(map(not_negative, node.args))
+        case "add":
+            return all(map(not_negative, node.args))
+        case "max":
+            return any(map(not_negative, node.args))
+        case "select":
+            return all(map(not_negative, node.args[1:]))
+        case "min" | "div":
+            return all(map(not_negative, node.args))
+    return False
+
+
+def deciding_products(lowered: Lowered) -> Iterator[int]:
+    """The products that are added to something, where a status or a condition rests on the sum.
+
+    They are rounded before the addition, as NumPy does it; a fused multiply-add could decide
+    differently at a threshold.
+    """
+    deciding = [n for n in lowered.schedule() if n.op == "status"]
+    deciding += [n for result in lowered.results if result.kind == "bool" for n in result.nodes]
+    for node in reachable(deciding):
+        if node.op in ("add", "sub"):
+            products = [n for n in map(strip_sign, node.args) if n.op == "mul"]
+            yield from (n.id for n in products if not any(map(_is_exact_factor, n.args)))
+
+
+def _is_exact_factor(node: Node) -> bool:
+    """Whether a product with it needs no rounding: a sign, or a power of two."""
+    value = constant_of(node)
+    if value is None:
+        return node.op == "sign"
+    return bool(value.is_Rational and int(abs(value.p) * value.q).bit_count() == 1)

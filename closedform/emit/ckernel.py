@@ -17,7 +17,7 @@ from closedform.emit.code import COMPARE, PRODUCT, WRAPS, Printer, Text
 from closedform.emit.text import WIDTH
 from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.lower.graph import Node, constant_of, hardly_ever, reachable, strip_sign
+from closedform.lower.graph import Node, constant_of, hardly_ever, strip_sign
 from closedform.lower.program import LEAVES
 from closedform.names import C_LOCALS, in_c
 
@@ -155,9 +155,7 @@ def _deciding_products(lowered: Lowered) -> Iterator[int]:
     They are rounded before the addition, as NumPy does it; a fused multiply-add could decide
     differently at a threshold.
     """
-    deciding = [n for n in lowered.schedule() if n.op == "status"]
-    deciding += [n for result in lowered.results if result.kind == "bool" for n in result.nodes]
-    for node in reachable(deciding):
+    for node in lowered.deciding():
         if node.op in ("add", "sub"):
             products = [n for n in map(strip_sign, node.args) if n.op == "mul"]
             yield from (n.id for n in products if not any(map(_is_exact_factor, n.args)))
@@ -213,7 +211,7 @@ class CProgram:
     kernel_call_single: str
     kernel_call_batch: str
     copies_params: bool
-    takes_one: bool
+    needs_one: bool
     lanes: tuple[str, ...]
     angle_blocks: tuple[str, ...]
     loads: tuple[str, ...]
@@ -281,6 +279,7 @@ class Emission:
         self.kernel_lines = self._kernel_lines()
         self.distinguishes_single = _occurs("single", self.kernel_lines)
         self.takes_one = _occurs("one", self.kernel_lines)
+        self.deciding_angles = program.deciding_angles()
         arrays = ("sines", "cosines", "principals")
         self.trig = [name for name in arrays if _occurs(name, self.kernel_lines)]
 
@@ -340,7 +339,7 @@ class Emission:
                 [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)],
             ),
             copies_params=bool(self.parameters),
-            takes_one=self.takes_one,
+            needs_one=self.takes_one or bool(self.deciding_angles),
             lanes=tuple(self._lanes()),
             angle_blocks=tuple(self._angle_blocks()),
             loads=tuple(self._loads()),
@@ -421,18 +420,19 @@ class Emission:
             ] * bool(turned)
         lanes = list(dict.fromkeys([*angles, *turned]))
         n, listed = _lanes(len(lanes)), ", ".join(map(self._place, lanes))
+        rounded, one = ("_rounded", ", one") if self.deciding_angles else ("", "")
         taken = [f"const real_t lanes[{n}] = {{ {listed} }};"]
         if not turned:
             return [
                 f"real_t sines[{n}], cosines[{n}];",
                 *taken,
-                f"cf_sincos_lanes({n}, lanes, sines, cosines);",
+                f"cf_sincos_lanes{rounded}({n}{one}, lanes, sines, cosines);",
             ]
         kept = ", ".join(f"turned[{lanes.index(node)}]" for node in turned)
         return [
             f"real_t sines[{n}], cosines[{n}], turned[{n}];",
             *taken,
-            f"cf_turned_lanes({n}, lanes, sines, cosines, turned);",
+            f"cf_turned_lanes{rounded}({n}{one}, lanes, sines, cosines, turned);",
             f"const real_t principals[{len(turned)}] = {{ {kept} }};",
         ]
 
@@ -449,7 +449,9 @@ class Emission:
             lines.append(f"real_t sines{size}, cosines{size};")
         for j, node in enumerate(self.program.angles):
             source, more = self._plane(node, f"angle_{j}")
-            lines += [*more, f"cf_sincos_block(length, {source}, sines[{j}], cosines[{j}]);"]
+            rounded, one = ("_rounded", ", one") if node.id in self.deciding_angles else ("", "")
+            block = f"cf_sincos_block{rounded}(length{one}, {source}, sines[{j}], cosines[{j}]);"
+            lines += [*more, block]
         if self.program.turned:
             lines.append(f"real_t principals[{len(self.program.turned)}][CLOSEDFORM_BLOCK];")
         for j, node in enumerate(self.program.turned):

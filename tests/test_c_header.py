@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from closedform.generated.numpy import _runtime
 from flint import arb, ctx
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -176,6 +177,40 @@ def test_sincos_in_bulk(header):
     s_odd, c_even = header("sincos_block", -x, outputs=2)
     np.testing.assert_array_equal(s_odd, -s)
     np.testing.assert_array_equal(c_even, c)
+
+
+@pytest.mark.parametrize("name", ["sincos_block_rounded", "sincos_lanes_rounded"])
+def test_rounded_sincos_is_that_of_numpy(header, name):
+    """To the last bit, with and without fused operations: statuses rest on it in both languages."""
+    if header.real is np.float32:
+        pytest.skip("NumPy computes in double precision")
+    random = np.random.default_rng(4)
+    x = np.r_[
+        near_right_angles(np.float64),
+        random.uniform(-4, 4, 100_000),
+        random.uniform(-1, 1, 20_000) * 10.0 ** random.uniform(-20, 15, 20_000),
+        patterns(np.float64, 10_000, 5),
+        [0.0, -0.0, np.inf, -np.inf, np.nan, 400000.0, np.nextafter(400000.0, np.inf)],
+    ]
+    x = np.r_[x, np.zeros(-x.size % 12)]
+    with np.errstate(all="ignore"):
+        expected = _runtime.sincos_as_in_c(x)
+    for got, values in zip(header(name, x, outputs=2), expected, strict=True):
+        np.testing.assert_array_equal(got, values)
+        np.testing.assert_array_equal(np.signbit(got)[x == 0], np.signbit(values)[x == 0])
+
+
+def test_rounded_sincos_of_one_number():
+    random = np.random.default_rng(6)
+    x = np.r_[
+        random.uniform(-7, 7, 2000), random.uniform(-1e6, 1e6, 500), patterns(np.float64, 500, 7)
+    ]
+    x = np.r_[x, 0.0, -0.0, np.inf, -np.inf, np.nan]
+    with np.errstate(all="ignore"):
+        expected = _runtime.sincos_as_in_c(x)
+        single = np.array([_runtime.sincos_as_in_c(angle) for angle in x]).T
+    np.testing.assert_array_equal(single, expected)
+    np.testing.assert_array_equal(np.signbit(single[0][x == 0]), np.signbit(x[x == 0]))
 
 
 def test_sincos_of_special_values(header):

@@ -2,6 +2,7 @@
 
 import importlib
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -59,3 +60,42 @@ def test_statuses_at_thresholds(robot: str) -> None:
         np.testing.assert_array_equal(compiled.ik(x).status, expected)
         single = np.array([compiled.ik(row).status for row in x])
         np.testing.assert_array_equal(single, expected)
+
+
+LIMITS = {
+    ("h6ar", "ik"): ((1, 1, 1.2, 0.8, 0.8, 3), (-1, -1, 0, -0.8, -0.8, -3)),
+    ("h6ar_loop_closed", "ik"): ((1, 1, 1.2, 0.8, 0.8, 3), (-1, -1, 0, -0.8, -0.8, -3)),
+    ("hybrid_five_bar", "fk"): ((3, 3, 3), (-3, -3, -3)),
+    ("hybrid_five_bar", "ik"): ((3, 3, 3), (-3, -3, -3)),
+    ("rpr_planar", "fk"): ((3, 3), (0, 0)),
+}
+"""Functions, and between which values an argument crosses a limit of what they reach."""
+
+
+def at_limit(function: Callable[..., Any], a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Between each two arguments of different statuses the last one whose status is that of a."""
+    status = function(a).status
+    crosses = (status != function(b).status).any(axis=1)
+    a, b, status = a[crosses], b[crosses], status[crosses]
+    for _ in range(60):
+        middle = a + (b - a) / 2
+        before = (function(middle).status == status).all(axis=1)[:, None]
+        a, b = np.where(before, middle, a), np.where(before, b, middle)
+    return a
+
+
+@pytest.mark.parametrize(("robot", "name"), LIMITS)
+def test_statuses_at_limits(robot: str, name: str) -> None:
+    """Straight arms, stretched wrists, and what else bounds a workspace: on it and close by."""
+    source = getattr(importlib.import_module(f"closedform.generated.numpy.{robot}"), name)
+    compiled = getattr(importlib.import_module(f"closedform.generated.c.{robot}"), name)
+    random = np.random.default_rng(0)
+    most, least = LIMITS[robot, name]
+    limits = at_limit(source, *random.uniform(least, most, (2, POSTURES // 2, len(most))))
+    x = limits[random.integers(len(limits), size=POSTURES)]
+    x += small(random)[:, None] * random.choice([0, 1], x.shape)
+    expected = source(x).status
+    assert len(np.unique(expected)) > 1
+    np.testing.assert_array_equal(compiled(x).status, expected)
+    single = np.array([compiled(row).status for row in x])
+    np.testing.assert_array_equal(single, expected)

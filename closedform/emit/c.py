@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from closedform import __version__
+from closedform import __version__, sines
 from closedform.derivation import Derivation
 from closedform.emit.ckernel import CArray, CProgram, Emission
 from closedform.emit.csize import CSize, size_of
@@ -81,6 +81,7 @@ def shared(robots: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
             for name in GENERATED
         ],
         "sizes": [(n, DOUBLE.sizes(n), FLOAT.sizes(n)) for n in range(2, HIGHEST_DEGREE + 1)],
+        "sines": sines,
         "version": __version__,
     }
 

@@ -101,9 +101,7 @@ def deciding_products(lowered: Lowered) -> Iterator[int]:
     They are rounded before the addition, as NumPy does it; a fused multiply-add could decide
     differently at a threshold.
     """
-    deciding = [n for n in lowered.schedule() if n.op == "status"]
-    deciding += [n for result in lowered.results if result.kind == "bool" for n in result.nodes]
-    for node in reachable(deciding):
+    for node in lowered.deciding():
         if node.op in ("add", "sub"):
             products = [n for n in map(strip_sign, node.args) if n.op == "mul"]
             yield from (n.id for n in products if not any(map(_is_exact_factor, n.args)))

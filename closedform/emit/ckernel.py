@@ -216,7 +216,7 @@ class CProgram:
     kernel_call_single: str
     kernel_call_batch: str
     copies_params: bool
-    takes_one: bool
+    needs_one: bool
     lanes: tuple[str, ...]
     angle_blocks: tuple[str, ...]
     loads: tuple[str, ...]
@@ -284,6 +284,7 @@ class Emission:
         self.kernel_lines = self._kernel_lines()
         self.distinguishes_single = _occurs("single", self.kernel_lines)
         self.takes_one = _occurs("one", self.kernel_lines)
+        self.deciding_angles = program.deciding_angles()
         arrays = ("sines", "cosines", "principals")
         self.trig = [name for name in arrays if _occurs(name, self.kernel_lines)]
 
@@ -343,7 +344,7 @@ class Emission:
                 [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)],
             ),
             copies_params=bool(self.parameters),
-            takes_one=self.takes_one,
+            needs_one=self.takes_one or bool(self.deciding_angles),
             lanes=tuple(self._lanes()),
             angle_blocks=tuple(self._angle_blocks()),
             loads=tuple(self._loads()),
@@ -424,18 +425,19 @@ class Emission:
             ] * bool(turned)
         lanes = list(dict.fromkeys([*angles, *turned]))
         n, listed = _lanes(len(lanes)), ", ".join(map(self._place, lanes))
+        rounded, one = ("_rounded", ", one") if self.deciding_angles else ("", "")
         taken = [f"const real_t lanes[{n}] = {{ {listed} }};"]
         if not turned:
             return [
                 f"real_t sines[{n}], cosines[{n}];",
                 *taken,
-                f"cf_sincos_lanes({n}, lanes, sines, cosines);",
+                f"cf_sincos_lanes{rounded}({n}{one}, lanes, sines, cosines);",
             ]
         kept = ", ".join(f"turned[{lanes.index(node)}]" for node in turned)
         return [
             f"real_t sines[{n}], cosines[{n}], turned[{n}];",
             *taken,
-            f"cf_turned_lanes({n}, lanes, sines, cosines, turned);",
+            f"cf_turned_lanes{rounded}({n}{one}, lanes, sines, cosines, turned);",
             f"const real_t principals[{len(turned)}] = {{ {kept} }};",
         ]
 
@@ -452,7 +454,9 @@ class Emission:
             lines.append(f"real_t sines{size}, cosines{size};")
         for j, node in enumerate(self.program.angles):
             source, more = self._plane(node, f"angle_{j}")
-            lines += [*more, f"cf_sincos_block(length, {source}, sines[{j}], cosines[{j}]);"]
+            rounded, one = ("_rounded", ", one") if node.id in self.deciding_angles else ("", "")
+            block = f"cf_sincos_block{rounded}(length{one}, {source}, sines[{j}], cosines[{j}]);"
+            lines += [*more, block]
         if self.program.turned:
             lines.append(f"real_t principals[{len(self.program.turned)}][CLOSEDFORM_BLOCK];")
         for j, node in enumerate(self.program.turned):

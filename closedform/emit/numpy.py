@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from closedform import sines
 from closedform.derivation import Derivation
 from closedform.emit.code import ATOM, LOGIC, WRAPS, Printer, Text
 from closedform.emit.docstring import docstring
@@ -96,7 +97,7 @@ def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, 
 
 def runtime() -> dict[str, Any]:
     """The context of ``numpy/_runtime.py.jinja``."""
-    return {name: repr(getattr(DOUBLE, name)) for name in GENERATED}
+    return {name: repr(getattr(DOUBLE, name)) for name in GENERATED} | {"sines": sines}
 
 
 def _function(derivation: Derivation, function: Function, program: Lowered) -> NumpyFunction:
@@ -137,9 +138,12 @@ def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:
     results = printer.run()
     lines = []
     needed = {(n.op, n.args[0].id) for n in program.schedule() if n.op in ("sin", "cos")}
+    deciding = program.deciding_angles()
     for angle, sine, cosine in printer.trig:
         code = printer.text[angle.id].code
-        if {("sin", angle.id), ("cos", angle.id)} <= needed:
+        if angle.id in deciding:
+            lines.append(f"{sine}, {cosine} = _runtime.sincos_as_in_c({code})")
+        elif {("sin", angle.id), ("cos", angle.id)} <= needed:
             lines.append(f"{sine}, {cosine} = _runtime.sincos({code})")
         elif ("sin", angle.id) in needed:
             lines.append(f"{sine} = np.sin({code})")

@@ -91,6 +91,16 @@ class Lowered:
         nodes = self.schedule() if below_angles else reachable(self.roots, LEAVES)
         return frozenset(str(n.payload) for n in nodes if n.op == "input")
 
+    def deciding(self) -> list[Node]:
+        """Every node that a status or a condition rests on, operands before operators."""
+        deciding = [n for n in self.schedule() if n.op == "status"]
+        deciding += [n for result in self.results if result.kind == "bool" for n in result.nodes]
+        return list(reachable(deciding))
+
+    def deciding_angles(self) -> frozenset[int]:
+        """The angles on whose sine or cosine a status or a condition rests."""
+        return frozenset(n.args[0].id for n in self.deciding() if n.op in ("sin", "cos"))
+
     def operations(self) -> dict[str, int]:
         """How many operators of each kind there are (a sincos counts once)."""
         counts: Counter[str] = Counter()

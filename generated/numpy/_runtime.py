@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable, Sequence
 from enum import IntEnum
@@ -105,6 +106,96 @@ def sincos(angle: Any) -> tuple[Any, Any]:
     sine += sine
     sine *= factor
     return sine, cosine
+
+
+def sincos_as_in_c(angle: Any) -> tuple[Any, Any]:
+    """Sine and cosine by the operations of ``cf_sincos`` in ``closedform.h``, in their order.
+
+    They are the same to the last bit, and so is a status that rests on them.
+    """
+    if np.ndim(angle) == 0:
+        return _sincos_of_one(float(angle))
+    size = np.abs(angle)
+    shifted, sine, cosine = _sincos_of_rest(size)
+    # by bits: the quadrant is at the end of the word, and np.where takes longer than all before
+    quadrant, s, c = shifted.view(np.int64), sine.view(np.int64), cosine.view(np.int64)
+    swap = -(quadrant & 1)
+    swap &= s ^ c
+    s ^= swap
+    c ^= swap
+    s ^= (quadrant & 2) << 62
+    quadrant += 1
+    c ^= (quadrant & 2) << 62
+    sine *= np.copysign(1.0, angle)
+    wide = size > 400000.0
+    if np.count_nonzero(wide):
+        for k in np.flatnonzero(wide):
+            sine.flat[k], cosine.flat[k] = _sincos_of_one(float(angle.flat[k]))
+    return sine, cosine
+
+
+def _sincos_of_one(angle: float) -> tuple[Any, Any]:
+    size = abs(angle)
+    if not math.isfinite(size):
+        return np.float64(np.nan), np.float64(np.nan)
+    if size > 400000.0:
+        return np.float64(math.sin(angle)), np.float64(math.cos(angle))
+    shifted, sine, cosine = _sincos_of_rest(size)
+    quadrant = int(shifted) & 3
+    if quadrant & 1:
+        sine, cosine = cosine, sine
+    sine *= math.copysign(1.0, angle) * (1 - (quadrant & 2))
+    cosine *= 1 - ((quadrant + 1) & 2)
+    return np.float64(sine), np.float64(cosine)
+
+
+def _sincos_of_rest(size: Any) -> tuple[Any, Any, Any]:
+    """The quarter turns in a size of an angle, at the end of the word; sine, cosine of the rest."""
+    shifted = size * 0.6366197723675814
+    shifted += 4503599627370496.0
+    n = shifted - 4503599627370496.0
+    part = n * 2.5633441515839558e-12
+    tail = size - n * 1.5707963267923333
+    r = tail - part
+    tail -= r
+    tail -= part
+    n *= 1.0562999066987428e-23
+    tail -= n
+    z = r * r
+    z2 = z * z
+    sine = z * 1.5895442710921173e-10
+    sine += -2.5050734577586117e-08
+    sine *= z2
+    part = z * 2.7557313539658054e-06
+    part += -0.00019841269829360994
+    sine += part
+    sine *= z2
+    part = z * 0.008333333333321842
+    part += -0.1666666666666663
+    sine += part
+    cosine = z * -1.1358749458908495e-11
+    cosine += 2.087570540007036e-09
+    cosine *= z2
+    part = z * -2.7557314217063467e-07
+    part += 2.4801587289002127e-05
+    cosine += part
+    cosine *= z2
+    part = z * -0.0013888888888873342
+    part += 0.041666666666666595
+    cosine += part
+    sine *= r * z
+    part = 0.5 * z
+    part = 1.0 - part
+    part *= tail
+    sine += part
+    sine += r
+    cosine *= z
+    cosine -= 0.5
+    cosine *= z
+    tail *= r
+    cosine -= tail
+    cosine += 1.0
+    return shifted, sine, cosine
 
 
 def principal(angle: Any) -> Any:

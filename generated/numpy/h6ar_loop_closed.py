@@ -1639,9 +1639,9 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
 
 def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
-    s_phi, c_phi = _runtime.sincos(phi)
-    s_pitch, c_pitch = _runtime.sincos(pitch)
-    s_psi, c_psi = _runtime.sincos(psi)
+    s_phi, c_phi = _runtime.sincos_as_in_c(phi)
+    s_pitch, c_pitch = _runtime.sincos_as_in_c(pitch)
+    s_psi, c_psi = _runtime.sincos_as_in_c(psi)
     principal_pitch = _runtime.principal(pitch)
     h = np.sqrt(x * x + y * y)
     t1 = L1 + L2
@@ -2614,9 +2614,9 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
 
 def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     # Where nothing vanishes; last, whether something does.
-    s_phi, c_phi = _runtime.sincos(phi)
-    s_pitch, c_pitch = _runtime.sincos(pitch)
-    s_psi, c_psi = _runtime.sincos(psi)
+    s_phi, c_phi = _runtime.sincos_as_in_c(phi)
+    s_pitch, c_pitch = _runtime.sincos_as_in_c(pitch)
+    s_psi, c_psi = _runtime.sincos_as_in_c(psi)
     principal_pitch = _runtime.principal(pitch)
     h = np.sqrt(x * x + y * y)
     t1 = lp * s_pitch

@@ -86,8 +86,8 @@ _DEFAULT = Parameters()
 
 def _fk(theta1, theta2, theta3, L0, L1, L2):
     s1, c1 = _runtime.sincos(theta1)
-    s2, c2 = _runtime.sincos(theta2)
-    s3, c3 = _runtime.sincos(theta3)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
     C_r = L1 * s2
     del s2
     t1 = C_r - L1 * s3

@@ -5,6 +5,8 @@ size_t real_size(void);
 void sincos_block(size_t n, const real_t *x, real_t *s, real_t *c);
 void sincos_lanes(size_t n, const real_t *x, real_t *s, real_t *c);
 void sincos_plain(size_t n, const real_t *x, real_t *s, real_t *c);
+void sincos_block_rounded(size_t n, const real_t *x, real_t *s, real_t *c);
+void sincos_lanes_rounded(size_t n, const real_t *x, real_t *s, real_t *c);
 void atan2_all(size_t n, const real_t *y, const real_t *x, real_t *angle);
 void lanes_all(size_t n, const real_t *y, const real_t *x, real_t *s, real_t *c, real_t *angle);
 void wrap_all(size_t n, const real_t *angle, real_t *wrapped);
@@ -31,6 +33,20 @@ CLOSEDFORM_DISPATCHED void sincos_plain(size_t n, const real_t *CF_RESTRICT x, r
                                    real_t *CF_RESTRICT c)
 {
     for (size_t i = 0; i < n; ++i) cf_sincos(x[i], &s[i], &c[i]);
+}
+
+CLOSEDFORM_DISPATCHED void sincos_block_rounded(size_t n, const real_t *x, real_t *s, real_t *c)
+{
+    cf_sincos_block_rounded(n, cf_one(), x, s, c);
+}
+
+void sincos_lanes_rounded(size_t n, const real_t *x, real_t *s, real_t *c)
+{
+    real_t turned[8];
+    for (size_t i = 0; i + 12 <= n; i += 12) {
+        cf_sincos_lanes_rounded(8, cf_one(), x + i, s + i, c + i);
+        cf_turned_lanes_rounded(4, cf_one(), x + i + 8, s + i + 8, c + i + 8, turned);
+    }
 }
 
 CLOSEDFORM_DISPATCHED void atan2_all(size_t n, const real_t *CF_RESTRICT y, const real_t *CF_RESTRICT x,

@@ -348,14 +348,14 @@ CF_RARE void cf_rescale(size_t n, const signed char *degrees, int exponent, cons
 #define CF_TWO_PI_LO CLOSEDFORM_C(-1.7484555e-7)
 
 /* relative error of sin 2^-27.9, of cos 2^-33.0, of atan 2^-27.2 */
-CF_INLINE real_t cf_sin_poly(real_t z)
+CF_INLINE real_t cf_sin_poly(real_t one, real_t z)
 {
-    return -0.166666552f + z * (0.00833218731f + z * -0.00019517896f);
+    return -0.166666552f + z * (0.00833218731f + z * -0.00019517896f * one) * one;
 }
 
-CF_INLINE real_t cf_cos_poly(real_t z)
+CF_INLINE real_t cf_cos_poly(real_t one, real_t z)
 {
-    return 0.0416666456f + z * (-0.00138873095f + z * 2.44323292e-5f);
+    return 0.0416666456f + z * (-0.00138873095f + z * 2.44323292e-5f * one) * one;
 }
 
 CF_INLINE real_t cf_atan_poly(real_t z)
@@ -380,20 +380,20 @@ CF_INLINE real_t cf_atan_poly(real_t z)
 #define CF_TWO_PI_LO CLOSEDFORM_C(2.4492935982947064e-16)
 
 /* relative error of sin 2^-57.8, of cos 2^-63.9, of atan 2^-56.7 */
-CF_INLINE real_t cf_sin_poly(real_t z)
+CF_INLINE real_t cf_sin_poly(real_t one, real_t z)
 {
     const real_t z2 = z * z;
-    return (-0.1666666666666663 + z * 0.0083333333333218424) +
-           z2 * ((-0.00019841269829360994 + z * 2.7557313539658054e-6) +
-                 z2 * (-2.5050734577586117e-8 + z * 1.5895442710921173e-10));
+    return (-0.1666666666666663 + z * 0.008333333333321842 * one) +
+           z2 * ((-0.00019841269829360994 + z * 2.7557313539658054e-06 * one) +
+                 z2 * (-2.5050734577586117e-08 + z * 1.5895442710921173e-10 * one) * one) * one;
 }
 
-CF_INLINE real_t cf_cos_poly(real_t z)
+CF_INLINE real_t cf_cos_poly(real_t one, real_t z)
 {
     const real_t z2 = z * z;
-    return (0.041666666666666595 + z * -0.0013888888888873342) +
-           z2 * ((2.4801587289002127e-5 + z * -2.7557314217063467e-7) +
-                 z2 * (2.087570540007036e-9 + z * -1.1358749458908495e-11));
+    return (0.041666666666666595 + z * -0.0013888888888873342 * one) +
+           z2 * ((2.4801587289002127e-05 + z * -2.7557314217063467e-07 * one) +
+                 z2 * (2.087570540007036e-09 + z * -1.1358749458908495e-11 * one) * one) * one;
 }
 
 CF_INLINE real_t cf_atan_poly(real_t z)
@@ -422,24 +422,25 @@ CF_INLINE real_t cf_nearest(real_t x)
 }
 
 /* Sine and cosine for |x| <= CF_TRIG_LIMIT, without a branch. Beyond it, and for NaN, the values
- * are unspecified: use cf_sincos_block, or test with cf_trig_excess. */
-CF_INLINE void cf_sincos(real_t x, real_t *s, real_t *c)
+ * are unspecified: use cf_sincos_block, or test with cf_trig_excess. If `one` is cf_one(), every
+ * product is rounded, and sincos_as_in_c of the NumPy modules gives the same bits. */
+CF_INLINE void cf_sincos_rounded(real_t one, real_t x, real_t *s, real_t *c)
 {
     const real_t ax = cf_abs(x);
     /* Adding CF_ROUND rounds to an integer, and leaves its low bits at the end of the word. */
-    const real_t shifted = ax * CLOSEDFORM_C(0.6366197723675814) + CF_ROUND;
+    const real_t shifted = ax * CLOSEDFORM_C(0.6366197723675814) * one + CF_ROUND;
     const real_t n = shifted - CF_ROUND;
     const cf_word quadrant = cf_to_word(shifted);
 
     /* ax - n pi/2 = r + tail; r1 is exact, and so is what rounding it to r leaves over. */
     const real_t r1 = ax - n * CF_PIO2_1;
     const real_t r = r1 - n * CF_PIO2_2;
-    const real_t tail = ((r1 - r) - n * CF_PIO2_2) - n * CF_PIO2_3;
+    const real_t tail = ((r1 - r) - n * CF_PIO2_2) - n * CF_PIO2_3 * one;
 
     const real_t z = r * r;
     const real_t half = CLOSEDFORM_C(0.5);
-    const real_t sin_r = r + ((r * z) * cf_sin_poly(z) + tail * (1 - half * z));
-    const real_t cos_r = 1 + (z * (z * cf_cos_poly(z) - half) - r * tail);
+    const real_t sin_r = r + ((r * z) * cf_sin_poly(one, z) * one + tail * (1 - half * z) * one);
+    const real_t cos_r = 1 + (z * (z * cf_cos_poly(one, z) * one - half) * one - r * tail * one);
 
     const cf_word sw = cf_to_word(sin_r), cw = cf_to_word(cos_r);
     const cf_word swap = (sw ^ cw) & ((cf_word)0 - (quadrant & 1u));
@@ -447,6 +448,11 @@ CF_INLINE void cf_sincos(real_t x, real_t *s, real_t *c)
     const cf_word c_sign = ((quadrant + 1u) & 2u) << (CF_TOP_BIT - 1u);
     *s = cf_from_word(sw ^ swap ^ s_sign ^ (cf_to_word(x) & CF_SIGN));
     *c = cf_from_word(cw ^ swap ^ c_sign);
+}
+
+CF_INLINE void cf_sincos(real_t x, real_t *s, real_t *c)
+{
+    cf_sincos_rounded(CLOSEDFORM_C(1.0), x, s, c);
 }
 
 /* Has its sign bit set if |x| > CF_TRIG_LIMIT or x is NaN; a loop ORs the words of its lanes. */
@@ -496,15 +502,21 @@ CF_RARE void cf_sincos_fixup(size_t n, const real_t *x, real_t *s, real_t *c)
 }
 
 /* Sine and cosine of any n angles; the arrays must not overlap. */
-CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
-                               real_t *CF_RESTRICT c)
+CF_INLINE void cf_sincos_block_rounded(size_t n, real_t one, const real_t *CF_RESTRICT x,
+                                       real_t *CF_RESTRICT s, real_t *CF_RESTRICT c)
 {
     cf_word excess = 0;
     for (size_t i = 0; i < n; ++i) {
-        cf_sincos(x[i], &s[i], &c[i]);
+        cf_sincos_rounded(one, x[i], &s[i], &c[i]);
         excess |= cf_trig_excess(x[i]);
     }
     if (excess & CF_SIGN) cf_sincos_fixup(n, x, s, c);
+}
+
+CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT s,
+                               real_t *CF_RESTRICT c)
+{
+    cf_sincos_block_rounded(n, CLOSEDFORM_C(1.0), x, s, c);
 }
 
 /* Redoes with libm what whole turns are not enough for. */
@@ -536,18 +548,24 @@ CF_INLINE void cf_principal_block(size_t n, const real_t *CF_RESTRICT x, real_t 
 
 /* Sine and cosine of the angles of one call, a constant number: 1, 2, 4 or a multiple of 8. They
  * become vectors, and eight cost little more than one. */
-CF_INLINE void cf_sincos_lanes(size_t n, const real_t *x, real_t *s, real_t *c)
+CF_INLINE void cf_sincos_lanes_rounded(size_t n, real_t one, const real_t *x, real_t *s, real_t *c)
 {
     const size_t width = n < 8 ? n : 8;
     for (size_t k = 0; k < n; k += width) {
         real_t angles[8];
         cf_side_by_side(width, x + k, angles);
-        cf_sincos_block(width, angles, s + k, c + k);
+        cf_sincos_block_rounded(width, one, angles, s + k, c + k);
     }
 }
 
+CF_INLINE void cf_sincos_lanes(size_t n, const real_t *x, real_t *s, real_t *c)
+{
+    cf_sincos_lanes_rounded(n, CLOSEDFORM_C(1.0), x, s, c);
+}
+
 /* The same, and the angles brought to one turn. */
-CF_INLINE void cf_turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, real_t *turned)
+CF_INLINE void cf_turned_lanes_rounded(size_t n, real_t one, const real_t *x, real_t *s, real_t *c,
+                                       real_t *turned)
 {
     const size_t width = n < 8 ? n : 8;
     for (size_t k = 0; k < n; k += width) {
@@ -555,7 +573,7 @@ CF_INLINE void cf_turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, 
         cf_side_by_side(width, x + k, angles);
         cf_word excess = 0;
         for (size_t i = 0; i < width; ++i) {
-            cf_sincos(angles[i], &s[k + i], &c[k + i]);
+            cf_sincos_rounded(one, angles[i], &s[k + i], &c[k + i]);
             turned[k + i] = cf_principal(angles[i]);
             excess |= cf_trig_excess(angles[i]);
         }
@@ -564,6 +582,11 @@ CF_INLINE void cf_turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, 
             cf_principal_fixup(width, angles, turned + k);
         }
     }
+}
+
+CF_INLINE void cf_turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, real_t *turned)
+{
+    cf_turned_lanes_rounded(n, CLOSEDFORM_C(1.0), x, s, c, turned);
 }
 
 /* C99 atan2, with its signed zeros, infinities and NaN, in [-CF_PI, CF_PI]; one division, no

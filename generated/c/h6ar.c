@@ -1978,7 +1978,7 @@ CF_APART void h6ar_ik_whole(const h6ar_params *params, const real_t x[6],
     const real_t one = cf_one();
     real_t sines[4], cosines[4], turned[4];
     const real_t lanes[4] = { x[4], x[5], x[3] };
-    cf_turned_lanes(4, lanes, sines, cosines, turned);
+    cf_turned_lanes_rounded(4, one, lanes, sines, cosines, turned);
     const real_t principals[1] = { turned[1] };
     real_t status_real[4];
     h6ar_ik_whole_kernel(1, one, params, x, sines, cosines, principals, q, status_real);
@@ -2371,9 +2371,9 @@ CF_INLINE void h6ar_ik_common_batch(size_t n, const h6ar_params *params,
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, x + 4 * x_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, x + 5 * x_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, x + 3 * x_stride + start, sines[2], cosines[2]);
+        cf_sincos_block_rounded(length, one, x + 4 * x_stride + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, x + 5 * x_stride + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, x + 3 * x_stride + start, sines[2], cosines[2]);
         real_t principals[1][CLOSEDFORM_BLOCK];
         cf_principal_block(length, x + 5 * x_stride + start, principals[0]);
         real_t status_real[4][CLOSEDFORM_BLOCK];
@@ -2630,7 +2630,7 @@ CF_INLINE void h6ar_ik_branches(const h6ar_params *params, const real_t x[6],
     const real_t one = cf_one();
     real_t sines[4], cosines[4], turned[4];
     const real_t lanes[4] = { x[4], x[5], x[3] };
-    cf_turned_lanes(4, lanes, sines, cosines, turned);
+    cf_turned_lanes_rounded(4, one, lanes, sines, cosines, turned);
     const real_t principals[1] = { turned[1] };
     real_t q_lanes[6][4];
     real_t status_lanes[1][4];

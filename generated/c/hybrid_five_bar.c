@@ -96,7 +96,7 @@ void hybrid_five_bar_fk(const hybrid_five_bar_params *params,
     const real_t one = cf_one();
     real_t sines[4], cosines[4];
     const real_t lanes[4] = { q[0], q[1], q[2] };
-    cf_sincos_lanes(4, lanes, sines, cosines);
+    cf_sincos_lanes_rounded(4, one, lanes, sines, cosines);
     real_t status_real[2];
     hybrid_five_bar_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
     for (size_t i = 0; i < 2; ++i)
@@ -140,8 +140,8 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
         cf_sincos_block(length, q + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[2], cosines[2]);
         real_t status_real[2][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {

@@ -901,7 +901,7 @@ CF_INLINE void puma560_ik_kernel(const int single, const real_t one,
     const real_t t55 = cf_rounded(single, one, t51 * t54);
     const real_t SA = cf_rounded(single, one, S * A);
     const real_t BC = cf_rounded(single, one, B * C);
-    const real_t area = CLOSEDFORM_C(2.0) * cf_sqrt(SA * BC);
+    const real_t area = CLOSEDFORM_C(2.0) * cf_root(single, SA * BC);
     const real_t t56 = cf_select(t52, CLOSEDFORM_C(0.0), t53 * area);
     const real_t t57 = ahead * t50;
     const real_t t58 = cf_select(folded, CLOSEDFORM_C(1.0), t57);

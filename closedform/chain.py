@@ -318,4 +318,10 @@ def lengths_in_numbers(place: sp.Expr) -> sp.Expr:
     return total
 
 
-__all__ = ["Chain", "Choice", "lengths_in_numbers"]
+def numbers_of_tool(derivation: Derivation) -> list[float]:
+    """Of each coordinate of the tool: a number in the place of a parameter is as large as one."""
+    poses = [f.outputs[0].entries for f in derivation.functions if f.name == "pose"]
+    return [float(lengths_in_numbers(place)) for entries in poses for place in entries[3:12:4]]
+
+
+__all__ = ["Chain", "Choice", "lengths_in_numbers", "numbers_of_tool"]

@@ -21,7 +21,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 from closedform.arrays import columns
-from closedform.chain import lengths_in_numbers
+from closedform.chain import numbers_of_tool
 from closedform.derivation import Derivation, Inverse
 from closedform.functions import Bound, Function, Let, Require, Vanishes, substitute
 from closedform.lower import lower
@@ -146,7 +146,7 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     margins = [_margins(function, symbols, signs) for _, signs in function.cases()]
     entries = len(exprs) // len(cases)
     flags = [_margins(function, symbols, signs, Vanishes) for _, signs in function.cases()]
-    lengths = _lengths_in_numbers(derivation)
+    lengths = numbers_of_tool(derivation)
     for sample in joint_samples(derivation, function):
         sample = _round(_thinned(sample, len(exprs)), backend)
         if not len(sample.values):
@@ -182,12 +182,6 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     if not finding.worst <= allowed:
         finding.fail(f"{finding.worst:.3g} ulp: {finding.where}")
     return finding
-
-
-def _lengths_in_numbers(derivation: Derivation) -> list[float]:
-    """Of each coordinate of the tool: a number in the place of a parameter is as large as one."""
-    poses = [f.outputs[0].entries for f in derivation.functions if f.name == "pose"]
-    return [float(lengths_in_numbers(place)) for entries in poses for place in entries[3:12:4]]
 
 
 def check_boolean(derivation: Derivation, function: Function, backend: Backend) -> Finding:
@@ -297,7 +291,12 @@ class _Truth:
         self._sliding = np.array([u in slides for u in inverse.unknowns])
         self._turns = np.array([x in inverse.angles for x in function.symbols])
         sized = {*parameters, *slides}
-        self._sized = [np.array([bool(e.free_symbols & sized) for e in m]) for m in maps]
+        places = (3, 7, 11) if len(function.symbols) == 16 else ()
+        self._sized = [
+            np.array([bool(e.free_symbols & sized) or k in places for k, e in enumerate(m)])
+            for m in maps
+        ]
+        self._in_numbers = max(numbers_of_tool(derivation), default=0.0)
         given = (*function.symbols, *parameters)
         self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
         required = [e for s in function.body if isinstance(s, Require) for e in s.values]
@@ -337,7 +336,8 @@ class _Truth:
 
         Lengths are counted in the sum of those of links and slides, angles as they are.
         """
-        size = np.abs(parameters).sum() + np.abs(solutions * self._sliding).sum(axis=-1)
+        fixed = np.abs(parameters).sum() + self._in_numbers
+        size = fixed + np.abs(solutions * self._sliding).sum(axis=-1)
         apart = []
         for image, sized in zip(images, self._sized, strict=True):
             difference = (image - given).astype(float)

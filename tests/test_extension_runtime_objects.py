@@ -244,7 +244,7 @@ def test_an_array_may_change_while_what_follows_is_converted(native: Any, change
         ]
 
     for array, call in attempts():
-        with contextlib.suppress(ValueError):
+        with contextlib.suppress(ValueError, TypeError):
             result = call(array)
             lead = len(result[0] if isinstance(result, tuple) else result)
             assert lead == 100 or lead == array.size / 2

@@ -342,5 +342,5 @@ def test_a_proposal_has_no_names_but_its_own(
     with pytest.raises(ValueError, match="is not a name"):
         source(sp.Symbol(OPEN) + 1)
     with pytest.raises(NameError):
-        Proposal("none", (OPEN,), ()).apply(Chain(d, from_dh(d, [(L, 0, 0, t)]).pose))
+        Proposal("none", (OPEN,), (), 1).apply(Chain(d, from_dh(d, [(L, 0, 0, t)]).pose))
     assert not (tmp_path / MADE).exists()

@@ -366,8 +366,9 @@ def test_the_wrist_limit(model) -> None:
     np.testing.assert_allclose(limit, np.arccos(P.d / (P.al + P.gs)), rtol=1e-14)
     x = np.array([0.75, 0.1, 0.6, limit, 0.0, 0.2])
     solutions = model.ik(x)
-    assert (solutions.status == OK).any()
-    off = model.fk(solutions.q[solutions.status == OK]) - x
+    found = solutions.status == SINGULAR  # joints do not determine the tip to twelve digits
+    assert found.any() and not (solutions.status == OK).any()
+    off = model.fk(solutions.q[found]) - x
     assert np.abs(off[:, 3:]).max() < TOL
     assert np.abs(off).max() < 1e-8  # l_W goes with a root: joints are no finer than that
     assert (model.ik(x + 1e-9 * np.eye(6)[3]).status == UNREACHABLE).all()
@@ -445,7 +446,8 @@ def test_arms_of_equal_links_folded_onto_their_shoulders(closed, small: float, w
     solutions, status = closed.ik(x, equal)
     found = np.isin(status, (OK, SINGULAR))
     assert found.any(-1).all()
-    assert (status == SINGULAR).any() == (small < 1e-12)
+    singular = (status[found] == SINGULAR).mean()
+    assert singular > 0.3 if small < 1e-12 else singular < 0.1
     off = missed(closed, solutions, x, equal)
     assert np.abs(off[found]).max() < TOL
 

@@ -478,7 +478,7 @@ def test_the_inverse_is_counted_step_by_step() -> None:
     assert prove_inverse(d, inverse).method == "step by step"
     first, second, third = inverse.stages
     for stages, message in (
-        ((first, second), "every equation and every unknown once"),
+        ((first, second), "every equation and every unknown exactly once"),
         ((first, replace(second, given={}), third), "an earlier equation"),
         ((second, first, third), "an unknown of a later stage"),
         ((Stage(second.unknowns, (0, 1), {}), Stage(first.unknowns, (), {}), third), "later stage"),

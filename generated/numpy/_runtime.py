@@ -255,8 +255,12 @@ def status(invalid: Any, unreachable: Any, singular: Any) -> Any:
 
 def evaluate(kernel: Kernel, args: Sequence[ArrayLike], params: Sequence[ArrayLike], out: Any) -> Any:
     """Apply a kernel to arrays whose leading axes broadcast; returns an array or a tuple."""
-    arrays = [_core(kernel, spec, arg) for spec, arg in zip(kernel.inputs, args, strict=True)]
+    given = [
+        arg if _is_plain(arg) else _converted(kernel, spec.name, arg)
+        for spec, arg in zip(kernel.inputs, args, strict=True)
+    ]
     fields = _parameters(kernel, params)
+    arrays = [_core(kernel, spec, array) for spec, array in zip(kernel.inputs, given, strict=True)]
     lead = _leading_axes(kernel, arrays, fields)
     results = _results(kernel, lead, out)
     targets = results
@@ -274,9 +278,8 @@ def evaluate(kernel: Kernel, args: Sequence[ArrayLike], params: Sequence[ArrayLi
     return results[0] if len(results) == 1 else tuple(results)
 
 
-def _core(kernel: Kernel, spec: Array, arg: ArrayLike) -> NDArray[np.float64]:
+def _core(kernel: Kernel, spec: Array, array: NDArray[np.float64]) -> NDArray[np.float64]:
     """The argument with its core axes flattened to one."""
-    array = arg if _is_plain(arg) else _converted(kernel, spec.name, arg)
     split = array.ndim - len(spec.shape)
     if split < 0 or array.shape[split:] != spec.shape:
         expected = ", ".join(["...", *map(str, spec.shape)])

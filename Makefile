@@ -70,7 +70,7 @@ test: all  ## run the tests on all cores; ARGS="-k name" selects
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
 # Nothing here may depend on all, which would first mend what is to be found.
-check: lint types regenerated warnings analysed  ## lint, types, C checkers; generated/ is what is printed
+check: lint types regenerated warnings  ## lint, types, warnings of C; generated/ is what is printed
 
 lint: .venv/installed.stamp
 	$(BIN)/ruff check .

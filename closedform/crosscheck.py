@@ -300,7 +300,7 @@ class _Truth:
         given = (*function.symbols, *parameters)
         self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
         required = [e for s in function.body if isinstance(s, Require) for e in s.values]
-        self._required = Evaluator(given, required)
+        self._required = Evaluator(given, function.explicit(required, {})[0])
         factors = next((f for f in derivation.functions if f.name == "singularities"), None)
         entries: list[sp.Expr] = []
         if factors and self.has_images:

@@ -505,11 +505,11 @@ class Derivation:
             raise ValueError(f"{where}: a result is one of {', '.join(RESULTS)}, not {result!r}")
         if result is not None and arrays[-1] != RESULTS[result]:
             raise ValueError(f"{where}: the output of {result} is called {RESULTS[result]}")
-        taken = ["status"] if result else []
-        for array_name in arrays:
-            check_argument(array_name, taken, where)
+        statuses = ["status"] if result else []
+        for k, array_name in enumerate(arrays):
+            others = [*arrays[:k], *arrays[k + 1 :], *statuses]
+            check_argument(array_name, others, where)
             check_own(array_name, self.name, [*known, name], where)
-            taken.append(array_name)
 
     def _check_new(self, name: str) -> None:
         check_symbol(name, self.name)

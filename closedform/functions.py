@@ -229,7 +229,8 @@ class Function:
                 known.add(entry)
         names = [s.symbol.name for s in self.body if isinstance(s, (Let, Bound, Vanishes))]
         names += [str(k) for k in known]
-        for name in (*names, *(str(s) for _, signs in self.cases() for s in signs)):
+        names += sorted({str(s) for _, signs in self.cases() for s in signs})
+        for name in names:
             check_identifier(name, self.name)
         for statement in self.body:
             check_text(self.name, getattr(statement, "meaning", ""))

@@ -11,7 +11,7 @@ from portability.exceptions import requests
 from portability.flags import RELEASE
 
 COMPILER = next((name for name in ("gcc", "clang") if shutil.which(name)), None)
-OVERFLOW = 4
+OVERFLOW, INVALID = 4, 3
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="there is neither gcc nor clang")
 
@@ -27,10 +27,12 @@ def answers(program: Program, *, single: bool) -> Iterator[tuple[Request, Answer
 
 
 def raised(request: Request, answer: Answer) -> Iterator[str]:
-    """Only what is too large for the type may raise an overflow."""
+    """Only what is too large for the type may raise an overflow, and what is INVALID anything."""
     finite = np.isfinite(answer.single).all(axis=1)
-    for row, flags, defined in zip(request.rows, answer.exceptions, finite, strict=True):
-        if flags & ~(0 if defined else OVERFLOW):
+    invalid = (answer.single == INVALID).any(axis=1) & ~finite
+    rows = zip(request.rows, answer.exceptions, finite, invalid, strict=True)
+    for row, flags, defined, refused in rows:
+        if flags & ~(0 if defined else OVERFLOW) and not refused:
             yield f"{request.name} {flags} at {row.tolist()}, {request.parameters}"
 
 

@@ -270,7 +270,7 @@ def test_mistakes_in_a_script_are_named() -> None:
         d.parameter("k", value=0.1, unit="m", meaning="")
     with pytest.raises(ValueError, match="double is a word of Python or C"):
         d.parameter("double", value=1, unit="m", meaning="")
-    with pytest.raises(ValueError, match=r"arm: k: 'a\\nb' must be one line of printable text"):
+    with pytest.raises(ValueError, match=r"polar: k: 'a\\nb' must be one line of printable text"):
         d.parameter("k", value=1, unit="m", meaning="a\nb")
     with pytest.raises(ValueError, match="'my arm' is not a name of a module"):
         Derivation("my arm", "", PAPER, "")

@@ -74,12 +74,12 @@ static void check(const cf_function *f, size_t n, void *const *out, const size_t
     for (size_t i = 0; i < n; ++i)
         for (size_t b = 0; b < branches; ++b) {
             const uint8_t told = status[b * stride[1] + i];
-            int finite = 1;
+            int numbers = 1;
             for (size_t j = 0; j < joints; ++j)
-                finite &= isfinite(q[(b * joints + j) * stride[0] + i]) != 0;
-            if (told > 3 || finite != (told == 0 || told == 2)) {
-                fprintf(stderr, "%s: status %d beside %s numbers\n", f->name, told,
-                    finite ? "finite" : "other");
+                numbers &= !isnan(q[(b * joints + j) * stride[0] + i]);
+            if (told > 3 || numbers != (told == 0 || told == 2)) {
+                fprintf(stderr, "%s: status %d beside %s\n", f->name, told,
+                    numbers ? "numbers" : "NaN");
                 exit(1);
             }
         }

@@ -350,6 +350,8 @@ class _Truth:
         self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]
     ) -> float:
         """The same for one answer, in Arb."""
+        if not np.isfinite(solution.astype(float)).all():
+            return math.inf
         point = [*map(float, solution), *map(float, parameters)]
         balls = [forward(point) for forward in self._maps]
         offsets = [

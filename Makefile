@@ -75,6 +75,7 @@ check: lint types regenerated warnings  ## lint, types, warnings of C; generated
 lint: .venv/installed.stamp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports --no-logo
 
 types: .venv/installed.stamp
 	$(BIN)/mypy
@@ -104,13 +105,13 @@ analysed:  ## cppcheck and clang-tidy on the C, where they are installed
 	@if command -v cppcheck >/dev/null; then \
 		cppcheck --quiet --std=c99 --enable=warning,performance,portability --error-exitcode=1 \
 			--suppress=missingIncludeSystem --suppressions-list=tests/cppcheck-suppressions.txt \
-			-Igenerated/c -Iclosedform/extension $(PORTABLE) closedform/extension/closedform_rows.c \
-			closedform/extension/closedform_sweep.c && echo "$@: cppcheck clean"; \
+			-Igenerated/c -Iclosedform/runtime/extension $(PORTABLE) closedform/runtime/extension/closedform_rows.c \
+			closedform/runtime/extension/closedform_sweep.c && echo "$@: cppcheck clean"; \
 	else echo "$@: there is no cppcheck, skipped"; fi
 	@if command -v clang-tidy >/dev/null; then \
 		clang-tidy --quiet --checks='$(TIDY)' --warnings-as-errors='*' $(PORTABLE) \
-			closedform/extension/closedform_rows.c closedform/extension/closedform_sweep.c \
-			-- -std=c99 -Igenerated/c -Iclosedform/extension && echo "$@: clang-tidy clean"; \
+			closedform/runtime/extension/closedform_rows.c closedform/runtime/extension/closedform_sweep.c \
+			-- -std=c99 -Igenerated/c -Iclosedform/runtime/extension && echo "$@: clang-tidy clean"; \
 	else echo "$@: there is no clang-tidy, skipped"; fi
 
 portability: all  ## try compilers, other processors and Pythons that are here; ARGS=--all

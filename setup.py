@@ -13,10 +13,17 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy
-from setuptools import Extension, setup
+from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
 
-FOLDERS = (Path("closedform/extension"), Path("generated/c"))
+MAPPED = ("derivations", "generated", "templates")
+"""Folders of the checkout that are packages below closedform."""
+PACKAGES = [
+    *find_packages(include=["closedform", "closedform.*"]),
+    *(f"closedform.{folder}" for folder in MAPPED),
+    *(f"closedform.{folder}.{name}" for folder in MAPPED for name in find_packages(folder)),
+]
+FOLDERS = (Path("closedform/runtime/extension"), Path("generated/c"))
 SOURCES = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.c"))
 HEADERS = sorted(str(path) for folder in FOLDERS for path in folder.glob("*.h"))
 # For AVX-512, AVX2 and the baseline; with CLOSEDFORM_DISPATCH=0 for the baseline alone.
@@ -120,6 +127,8 @@ class BuildExtension(build_ext):
 
 
 setup(
+    packages=PACKAGES,
+    package_dir={f"closedform.{folder}": folder for folder in MAPPED},
     cmdclass={"build_ext": BuildExtension},
     ext_modules=[
         Extension(

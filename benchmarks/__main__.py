@@ -24,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
-from closedform.disk import replace
+from closedform.pipeline.disk import replace
 
 from . import batches, inverses, native
 from .cases import CASES, Case, NotApplicableError, check

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import sympy as sp
 
-from closedform.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
 
 Assignments: TypeAlias = "list[tuple[sp.Symbol, sp.Expr]]"
 

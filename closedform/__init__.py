@@ -2,32 +2,49 @@
 
 The NumPy module of a mechanism is an attribute, ``closedform.puma560``; the same module is
 ``closedform.generated.numpy.puma560``, and ``closedform.generated.c.puma560`` is the compiled one.
+
+What a derivation is written with is here too: ``from closedform import Chain, Derivation``.  These
+names are listed in ``__init__.pyi`` and loaded when they are asked for, because they need
+SymPy; the mechanisms need NumPy only.
 """
 
 from types import ModuleType as _ModuleType
+from typing import Any as _Any
 
-__version__ = "0.1.0"
+from closedform._version import __version__ as __version__
 
 
-def __getattr__(name: str) -> _ModuleType:
+def __getattr__(name: str) -> _Any:
+    import sys
     from importlib import import_module
 
     if name == "generated":
         return import_module("closedform.generated")
+    if home := _authors_names().get(name):
+        if "IPython" in sys.modules:
+            import_module("closedform.emit.notebook")
+        return getattr(import_module(home), name)
     if name in _mechanisms():
         return import_module(f"closedform.generated.numpy.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), "generated", *_mechanisms()})
+    return sorted({*globals(), "generated", *_mechanisms(), *_authors_names()})
 
 
 def _mechanisms() -> set[str]:
-    """The printed mechanisms, but for those that have the name of a module of the toolkit."""
+    """The printed mechanisms, except those that have a name of the toolkit."""
     from importlib import import_module
 
     from closedform.lazy import submodules
 
-    printed = import_module("closedform.generated.numpy")
-    return submodules(printed.__path__) - submodules(__path__)
+    printed: _ModuleType = import_module("closedform.generated.numpy")
+    return submodules(printed.__path__) - submodules(__path__) - _authors_names().keys()
+
+
+def _authors_names() -> dict[str, str]:
+    """The names that an author imports, each with its module."""
+    from closedform.lazy import homes
+
+    return homes(__path__)

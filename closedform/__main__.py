@@ -2,7 +2,7 @@
 
 import sys
 
-from closedform.cli import main
+from closedform.cli.commands import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -1,9 +1,12 @@
-"""Packages whose modules are imported when they are asked for."""
+"""Modules and names that are imported when they are asked for."""
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Iterable
+from functools import cache
 from importlib import import_module
+from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
 
@@ -24,3 +27,19 @@ def attach(
         raise AttributeError(f"module {package!r} has no attribute {name!r}")
 
     return getattribute, lambda: sorted(submodules(path))
+
+
+def homes(path: Iterable[str]) -> dict[str, str]:
+    """The names that the stub of a package hands on, each with the module that defines it."""
+    return _homes(Path(next(iter(path))) / "__init__.pyi")
+
+
+@cache
+def _homes(stub: Path) -> dict[str, str]:
+    return {
+        alias.name: statement.module
+        for statement in ast.parse(stub.read_bytes()).body
+        if isinstance(statement, ast.ImportFrom) and statement.module
+        for alias in statement.names
+        if not alias.name.startswith("_") and statement.module.startswith("closedform.")
+    }

@@ -49,10 +49,19 @@ from closedform.derivations.h6ar_mechanism import (
 from closedform.derivations.papers import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
-from closedform.derivation import Derivation, Inverse, Reduction
-from closedform.frames import homogeneous, rotation
-from closedform.functions import Program, branches, choose, real, sign_of
-from closedform.lemmas import two_sines
+from closedform import (
+    Derivation,
+    Inverse,
+    Program,
+    Reduction,
+    branches,
+    choose,
+    homogeneous,
+    real,
+    rotation,
+    sign_of,
+    two_sines,
+)
 
 d = Derivation(
     "h6ar",

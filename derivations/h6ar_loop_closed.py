@@ -40,10 +40,18 @@ from closedform.derivations.h6ar_mechanism import (
 from closedform.derivations.papers import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
-from closedform.derivation import Derivation, Inverse, Reduction
-from closedform.frames import rotation
-from closedform.functions import Program, branches, real, sign_of
-from closedform.two_link import elbow_squares, two_link_arm_beside
+from closedform import (
+    Derivation,
+    Inverse,
+    Program,
+    Reduction,
+    branches,
+    elbow_squares,
+    real,
+    rotation,
+    sign_of,
+    two_link_arm_beside,
+)
 
 d = Derivation(
     "h6ar_loop_closed",

@@ -13,11 +13,20 @@ from typing import NamedTuple
 import sympy as sp
 from sympy import Rational, atan2, cos, pi, sin, sqrt
 
-from closedform.derivation import Derivation
-from closedform.frames import denavit_hartenberg, homogeneous, rotation
-from closedform.functions import Program, choose, real, used_up
-from closedform.lemmas import Lemma, linear_pair, sine_cosine
-from closedform.two_link import two_link_arm
+from closedform import (
+    Derivation,
+    Lemma,
+    Program,
+    choose,
+    denavit_hartenberg,
+    homogeneous,
+    linear_pair,
+    real,
+    rotation,
+    sine_cosine,
+    two_link_arm,
+    used_up,
+)
 
 theta2A, theta23A = real("theta2A"), real("theta23A")
 alpha, beta = real("alpha"), real("beta")

@@ -7,17 +7,26 @@ from closedform.derivations.claims.hybrid_five_bar import state
 from closedform.derivations.papers import CHABLAT_WENGER_ANGELES
 from sympy import atan2, cos, sin, sqrt
 
-from closedform.algebra import normal
-from closedform.derivation import Continuum, Derivation, Inverse, Solved, Stage
-from closedform.frames import merge_angles, rotation
-from closedform.functions import Bound, Program, branches, choose, real
-from closedform.lemmas import (
+from closedform import (
+    Bound,
+    Continuum,
+    Derivation,
+    Inverse,
+    Program,
+    Solved,
+    Stage,
+    branches,
+    choose,
     circle_intersection,
     linear_pair,
+    merge_angles,
+    normal,
+    real,
+    rotation,
     triangle_angles,
     two_link_triangle_by_square,
+    velocity_matrices,
 )
-from closedform.loops import velocity_matrices
 
 d = Derivation(
     "hybrid_five_bar",

@@ -5,11 +5,7 @@ from typing import NamedTuple
 import sympy as sp
 from sympy import cos, pi, sin, sqrt
 
-from closedform.algebra import positive_form
-from closedform.derivation import Derivation
-from closedform.functions import Program, real
-from closedform.loops import degree, eliminate
-from closedform.volumes import lens
+from closedform import Derivation, Program, degree, eliminate, lens, positive_form, real
 
 L0, L1, L2 = lengths = tuple(real(name, positive=True) for name in ("L0", "L1", "L2"))
 y, rho = plane = real("y"), real("rho")

@@ -10,20 +10,20 @@ from closedform.derivations.irb260_linkage import double_parallelogram
 from closedform.derivations.papers import SHI_ZHU_LI
 from sympy import atan2, cos, pi, sin
 
-from closedform.derivation import Derivation
-from closedform.frames import (
+from closedform import (
+    Derivation,
     adjoint,
     denavit_hartenberg,
     determinant,
     exponential,
     homogeneous,
     inverse,
+    real,
     revolute_twist,
     simplest,
     twist_matrix,
     twist_of,
 )
-from closedform.functions import real
 
 d = Derivation(
     "irb260",

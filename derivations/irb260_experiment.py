@@ -3,8 +3,7 @@
 import sympy as sp
 from sympy import pi
 
-from closedform.derivation import Derivation, Table
-from closedform.functions import real
+from closedform import Derivation, Table, real
 
 
 def experiment(

@@ -3,9 +3,18 @@
 import sympy as sp
 from sympy import atan2, cos, pi, sin, sqrt
 
-from closedform.derivation import Continuum, Derivation, Inverse, Solved
-from closedform.functions import Program, branches, choose, real
-from closedform.lemmas import linear_pair, two_link_triangle
+from closedform import (
+    Continuum,
+    Derivation,
+    Inverse,
+    Program,
+    Solved,
+    branches,
+    choose,
+    linear_pair,
+    real,
+    two_link_triangle,
+)
 
 TARGET = (real("px"), real("py"), real("pz"), real("psi"))
 

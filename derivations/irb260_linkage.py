@@ -3,9 +3,7 @@
 import sympy as sp
 from sympy import cos, pi, sin
 
-from closedform.derivation import Derivation
-from closedform.functions import real
-from closedform.lemmas import Lemma, parallelogram
+from closedform import Derivation, Lemma, parallelogram, real
 
 
 def double_parallelogram(

@@ -1,6 +1,6 @@
 """The papers behind the derivations."""
 
-from closedform.derivation import Paper
+from closedform import Paper
 
 REDDY_BABU = Paper(
     "reddy-babu",

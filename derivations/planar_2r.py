@@ -5,10 +5,25 @@ from closedform.derivations.claims.planar_2r import Arm, state
 from closedform.derivations.papers import REDDY_BABU
 from sympy import atan2, cos, sin, sqrt
 
-from closedform.derivation import Continuum, Derivation, Inverse, Solved
-from closedform.frames import chain, denavit_hartenberg, determinant, jacobian, rotation
-from closedform.functions import SINGLE, Program, branches, choose, real
-from closedform.lemmas import linear_pair, triangle_angles, two_link_triangle_by_square
+from closedform import (
+    SINGLE,
+    Continuum,
+    Derivation,
+    Inverse,
+    Program,
+    Solved,
+    branches,
+    chain,
+    choose,
+    denavit_hartenberg,
+    determinant,
+    jacobian,
+    linear_pair,
+    real,
+    rotation,
+    triangle_angles,
+    two_link_triangle_by_square,
+)
 
 d = Derivation(
     "planar_2r",

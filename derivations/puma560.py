@@ -5,13 +5,26 @@ from closedform.derivations.claims.puma560 import Puma, state
 from closedform.derivations.papers import PUMA_TEXTBOOKS
 from sympy import cos, pi, sin, sqrt
 
-from closedform.derivation import Derivation, Solved
-from closedform.frames import chain, denavit_hartenberg, rotation
-from closedform.functions import Program, branches, real
-from closedform.lemmas import linear_pair
-from closedform.pairs import direction, sine_cosine_pair, triangle_pairs
-from closedform.serial import export_jacobians, export_pose, given_transform, product
-from closedform.wrists import export_determinant, export_inverse
+from closedform import (
+    Derivation,
+    Program,
+    Solved,
+    branches,
+    chain,
+    denavit_hartenberg,
+    direction,
+    export_determinant,
+    export_inverse,
+    export_jacobians,
+    export_pose,
+    given_transform,
+    linear_pair,
+    product,
+    real,
+    rotation,
+    sine_cosine_pair,
+    triangle_pairs,
+)
 
 d = Derivation(
     "puma560",

@@ -4,10 +4,17 @@ import sympy as sp
 from closedform.derivations.papers import TEXTBOOK
 from sympy import atan2, cos, sin, sqrt
 
-from closedform.derivation import Continuum, Derivation, Inverse
-from closedform.functions import SINGLE, Program, branches, real
-from closedform.lemmas import circle_intersection
-from closedform.loops import velocity_matrices
+from closedform import (
+    SINGLE,
+    Continuum,
+    Derivation,
+    Inverse,
+    Program,
+    branches,
+    circle_intersection,
+    real,
+    velocity_matrices,
+)
 
 d = Derivation(
     "rpr_planar",

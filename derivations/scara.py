@@ -4,10 +4,7 @@ import sympy as sp
 from closedform.derivations.papers import TEXTBOOK
 from sympy import pi
 
-from closedform.arm import from_dh
-from closedform.chain import Chain
-from closedform.derivation import Derivation
-from closedform.linklemmas import remainder, slide, two_links
+from closedform import Chain, Derivation, from_dh, remainder, slide, two_links
 
 d = Derivation(
     "scara",

@@ -5,18 +5,23 @@ from closedform.derivations.claims.spherical_wrist import Wrist, state
 from closedform.derivations.papers import REDDY_BABU
 from sympy import cos, sin
 
-from closedform.derivation import Continuum, Derivation, Inverse, Solved
-from closedform.frames import (
+from closedform import (
+    Continuum,
+    Derivation,
+    Inverse,
+    Program,
+    Solved,
     angular_velocity_matrix,
+    branches,
     chain,
     denavit_hartenberg,
     determinant,
     homogeneous,
+    real,
     rotation,
+    rotation_parametrisation,
+    zyz_angles,
 )
-from closedform.functions import Program, branches, real
-from closedform.lemmas import zyz_angles
-from closedform.solutions import rotation_parametrisation
 
 d = Derivation(
     "spherical_wrist",

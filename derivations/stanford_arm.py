@@ -4,14 +4,23 @@ import sympy as sp
 from closedform.derivations.papers import STANFORD_TEXTBOOKS
 from sympy import cos, pi, sin, sqrt
 
-from closedform.claims import Identity
-from closedform.derivation import Derivation, Solved
-from closedform.frames import denavit_hartenberg
-from closedform.functions import Program, branches, real
-from closedform.lemmas import linear_pair
-from closedform.pairs import direction, sine_cosine_pair
-from closedform.serial import export_jacobians, export_pose, given_transform
-from closedform.wrists import export_determinant, export_inverse
+from closedform import (
+    Derivation,
+    Identity,
+    Program,
+    Solved,
+    branches,
+    denavit_hartenberg,
+    direction,
+    export_determinant,
+    export_inverse,
+    export_jacobians,
+    export_pose,
+    given_transform,
+    linear_pair,
+    real,
+    sine_cosine_pair,
+)
 
 d = Derivation(
     "stanford_arm",

@@ -4,12 +4,17 @@ import sympy as sp
 from closedform.derivations.papers import TEXTBOOK
 from sympy import pi
 
-from closedform.arm import from_dh
-from closedform.chain import Chain
-from closedform.derivation import Derivation
-from closedform.linklemmas import Reaching, turn, two_links, zyz
-from closedform.pairs import Pair
-from closedform.tangent import LinksAndWrist
+from closedform import (
+    Chain,
+    Derivation,
+    LinksAndWrist,
+    Pair,
+    Reaching,
+    from_dh,
+    turn,
+    two_links,
+    zyz,
+)
 
 d = Derivation(
     "ur_arm",

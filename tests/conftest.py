@@ -8,7 +8,7 @@ from extension_toy.build import compile_toy, loaded
 from hypothesis import settings
 from sharing import shared
 
-from closedform.crosscheck import Finding, table
+from closedform.check.crosscheck import Finding, table
 
 # The same examples on every run: a failure can be repeated, and a build is stable.
 settings.register_profile("repeatable", deadline=None, derandomize=True)

@@ -4,7 +4,7 @@ SLIDER = '''"""A slider along x, with an offset."""
 
 import sympy as sp
 
-from closedform.derivation import Derivation, Paper
+from closedform.model.derivation import Derivation, Paper
 
 d = Derivation("slider", "Slider", Paper("toy", "Toys", ("A. Nonymous",)), "One joint.", task=["x"])
 a = d.parameter("a", value=2, unit="m", meaning="offset")

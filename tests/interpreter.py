@@ -3,7 +3,7 @@
 import math
 
 from closedform.lower import Lowered
-from closedform.tolerances import DOUBLE
+from closedform.model.tolerances import DOUBLE
 
 RULES = {
     "add": lambda a, b: a + b,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from closedform.disk import locked
+from closedform.pipeline.disk import locked
 
 
 def shared(

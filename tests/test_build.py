@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from closedform import disk, pipeline
+from closedform.pipeline import disk
+from closedform.pipeline import run as pipeline
 
 ROOT = Path(__file__).parents[1]
 SUFFIX = sysconfig.get_config_var("EXT_SUFFIX")
@@ -55,7 +56,7 @@ def toy(tmp_path: Path) -> Path:
     for name in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, tmp_path)
     for name, text in (
-        ("closedform/extension/module.c", MODULE),
+        ("closedform/runtime/extension/module.c", MODULE),
         ("generated/c/answer.c", "int answer(void);\nint answer(void) { return 42; }\n"),
     ):
         (tmp_path / name).parent.mkdir(parents=True)
@@ -242,7 +243,7 @@ for mapping in (finder.MAPPING, finder.NAMESPACES):
         moved = [p.replace(OLD, NEW) for p in ([place] if isinstance(place, str) else place)]
         mapping[name] = moved[0] if isinstance(place, str) else moved
 if __name__ == "__main__":
-    from closedform.cli import main
+    from closedform.cli.commands import main
     sys.exit(main())
 """
 

@@ -7,8 +7,10 @@ import sympy as sp
 from closedform.derivations import planar_2r, spherical_wrist
 from sympy import cos, pi, sin, sqrt
 
-from closedform.algebra import Undecided
-from closedform.claims import (
+from closedform.algebra.normal_form import Undecided
+from closedform.model.derivation import Derivation
+from closedform.model.functions import real
+from closedform.proof.checks import (
     APPROXIMATION,
     NOT_DECIDABLE,
     PROVED,
@@ -28,8 +30,6 @@ from closedform.claims import (
     Under,
     Verdict,
 )
-from closedform.derivation import Derivation
-from closedform.functions import real
 
 x, y, t = real("x"), real("y"), real("t")
 r = real("r", positive=True)

@@ -13,19 +13,20 @@ from pathlib import Path
 import pytest
 from derivations_for_tests import SLIDER
 
-from closedform import pipeline
-from closedform.cli import main
-from closedform.console import Progress
+from closedform.cli.commands import main
+from closedform.cli.console import Progress
+from closedform.pipeline import run as pipeline
+from closedform.pipeline.imports import package, sources_of
 
 README = Path(__file__).parents[1] / "README.md"
 
 
 CLAIM = """
-from closedform.claims import Enumeration
+from closedform.proof.checks import Enumeration
 d.claim("table", "4 edges", Enumeration(4, lambda: {}[3], "edges"))
 """
 WRONG_SIGN = """
-from closedform.claims import Identity
+from closedform.proof.checks import Identity
 d.claim("eq. (1)", "x = a - q_1", Identity(a - q1, a + q1))
 """
 
@@ -33,7 +34,7 @@ d.claim("eq. (1)", "x = a - q_1", Identity(a - q1, a + q1))
 @pytest.fixture(autouse=True)
 def no_progress(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is written to stderr does not hang on the time it takes."""
-    monkeypatch.setattr("closedform.console.PATIENCE", float("inf"))
+    monkeypatch.setattr("closedform.cli.console.PATIENCE", float("inf"))
 
 
 @pytest.fixture
@@ -150,7 +151,7 @@ def test_a_difference_found_by_the_cross_check_fails(
     slider: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
 ) -> None:
     """The page says what differs, and so does the command."""
-    from closedform import cli
+    from closedform.cli import commands as cli
 
     write = cli._write
 
@@ -257,12 +258,18 @@ def test_a_proof_is_kept_until_something_it_depends_on_changes(
     assert not kept()
 
 
-def test_proofs_depend_on_nothing_outside_their_digest() -> None:
-    """What the digest leaves out is not imported by a proof."""
-    code = "import sys, closedform.prove; print(*(m for m in sys.modules if 'closedform' in m))"
+def test_the_digest_of_a_proof_holds_what_is_run() -> None:
+    """Every module of ours that a derivation and its proof load is read for the digest."""
+    code = (
+        "import sys, closedform.derivations.ur_arm, closedform.proof.prove;"
+        "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('closedform')))"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    left_out = {name.removesuffix(".py") for name in pipeline.TOOLS | pipeline.OUTPUT}
-    assert not left_out & {name.split(".")[1] for name in done.stdout.split() if "." in name}
+    (source,) = pipeline.find(["ur_arm"])
+    read = sources_of([source.path, package() / "proof" / "prove.py"])
+    assert {Path(name) for name in done.stdout.split()} <= set(read)
+    rooms = {path.relative_to(package()).parts[0] for path in read if package() in path.parents}
+    assert not rooms & {"emit", "lower", "check", "scaffold", "pipeline", "cli"}
 
 
 def test_processes_print_the_same(slider: Path, tmp_path: Path) -> None:
@@ -348,7 +355,7 @@ def test_progress_is_shown_only_when_it_takes_long(monkeypatch: pytest.MonkeyPat
     for patience, shown in ((60.0, False), (0.0, True)):
         stderr = io.StringIO()
         monkeypatch.setattr(sys, "stderr", stderr)
-        monkeypatch.setattr("closedform.console.PATIENCE", patience)
+        monkeypatch.setattr("closedform.cli.console.PATIENCE", patience)
         with Progress() as progress:
             progress("planar_2r", "inverse: ik")
             time.sleep(0.5)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from closedform.pipeline import generated
+from closedform.pipeline.run import generated
 
 CONSUMER = Path(__file__).parent / "consumer"
 

@@ -8,10 +8,10 @@ import pytest
 import sympy as sp
 from interpreter import run
 
-from closedform import pipeline
-from closedform.derivation import Derivation, Paper
-from closedform.functions import Program, choose, real, used_up
 from closedform.lower import Lowered, lower
+from closedform.model.derivation import Derivation, Paper
+from closedform.model.functions import Program, choose, real, used_up
+from closedform.pipeline import run as pipeline
 
 SINGULAR = 2
 x, y, z = (real(n) for n in "xyz")

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 from derivations_for_tests import SLIDER
 
-from closedform import console, pipeline, versions
-from closedform.cli import main
+from closedform.cli import console, main
+from closedform.pipeline import run as pipeline
+from closedform.pipeline import versions
 
 COMMANDS = [["list"], ["errata"], ["--help"], ["--version"], ["derive", "--help"]]
 FULL = Path("/dev/full")
@@ -21,7 +22,7 @@ ESCAPE = re.compile(r"\\u[0-9a-f]{4}|\\x[0-9a-f]{2}")
 @pytest.fixture(autouse=True)
 def no_progress(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is written to stderr does not hang on the time it takes."""
-    monkeypatch.setattr("closedform.console.PATIENCE", float("inf"))
+    monkeypatch.setattr("closedform.cli.console.PATIENCE", float("inf"))
 
 
 def call(*arguments: str) -> int:

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from closedform.clibrary import CLibrary
-from closedform.crosscheck import (
+from closedform.check.clibrary import CLibrary
+from closedform.check.crosscheck import (
     Backend,
     Finding,
     check_boolean,
@@ -17,8 +17,8 @@ from closedform.crosscheck import (
     float_backend,
     module_backend,
 )
-from closedform.derivation import Derivation
-from closedform.tolerances import DOUBLE
+from closedform.model.derivation import Derivation
+from closedform.model.tolerances import DOUBLE
 
 ROBOTS = (
     "h6ar",

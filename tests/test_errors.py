@@ -5,15 +5,16 @@ import dataclasses
 import pytest
 import sympy as sp
 
-from closedform.arm import RowError, from_dh, from_screws
-from closedform.chain import Chain
-from closedform.derivation import Derivation, Inverse, Paper, Solved
-from closedform.functions import Program, branches, real
-from closedform.lemmas import linear_pair, sine_cosine, two_link_triangle
-from closedform.linklemmas import remainder, slide, turn, two_links, zyz
-from closedform.prove import prove
-from closedform.require import ProofError
-from closedform.shapes import ShapeError, coefficients
+from closedform.algebra.shapes import ShapeError, coefficients
+from closedform.lemmas.chain import Chain
+from closedform.lemmas.links import remainder, slide, turn, two_links, zyz
+from closedform.lemmas.sine_cosine import linear_pair, sine_cosine
+from closedform.lemmas.triangle import two_link_triangle
+from closedform.mechanics.arm import RowError, from_dh, from_screws
+from closedform.model.derivation import Derivation, Inverse, Paper, Solved
+from closedform.model.functions import Program, branches, real
+from closedform.proof.prove import prove
+from closedform.proof.require import ProofError
 
 THETA1, THETA2 = real("theta1"), real("theta2")
 

@@ -9,16 +9,16 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from closedform.arm import from_dh, from_screws
-from closedform.chain import Chain
-from closedform.cli import main
-from closedform.derivation import Derivation, Paper
+from closedform.algebra.formulas import FormulaError, formula, number
+from closedform.cli.commands import main
 from closedform.emit.latex import Page
-from closedform.formulas import FormulaError, formula, number
-from closedform.functions import Program, real
-from closedform.pipeline import find, load
-from closedform.propose import Proposal, source
-from closedform.prove import InverseResult, Proof
+from closedform.lemmas.chain import Chain
+from closedform.mechanics.arm import from_dh, from_screws
+from closedform.model.derivation import Derivation, Paper
+from closedform.model.functions import Program, real
+from closedform.pipeline.run import find, load
+from closedform.proof.prove import InverseResult, Proof
+from closedform.scaffold.propose import Proposal, source
 
 HEADER = "a, alpha, d, theta\n"
 MADE = "made"

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import closedform
-from closedform import pipeline
+from closedform.pipeline import run as pipeline
 
 ROBOTS = [source.name for source in pipeline.sources()]
 

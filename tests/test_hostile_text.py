@@ -17,16 +17,16 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from closedform.claims import Undecidable
-from closedform.clibrary import compiler
-from closedform.derivation import Derivation, Inverse, Paper, Table
+from closedform.check.clibrary import compiler
+from closedform.check.report import _page
 from closedform.emit.c import shared
 from closedform.emit.numpy import runtime
 from closedform.emit.render import pages, render, shared_files
-from closedform.functions import Branches, Program, branches, choose, real
-from closedform.names import check_symbol
-from closedform.prove import ClaimResult, Proof
-from closedform.report import _page
+from closedform.model.derivation import Derivation, Inverse, Paper, Table
+from closedform.model.functions import Branches, Program, branches, choose, real
+from closedform.model.names import check_symbol
+from closedform.proof.checks import Undecidable
+from closedform.proof.prove import ClaimResult, Proof
 
 Strings = Callable[[str], str]
 
@@ -223,7 +223,7 @@ def test_hostile_texts_compile(tmp_path: Path) -> None:
 
 
 def compile_c(sources: list[Path], *flags: str) -> None:
-    headers = Path(__file__).parents[1] / "closedform" / "extension"
+    headers = Path(__file__).parents[1] / "closedform" / "runtime" / "extension"
     command = [compiler(), "-std=c99", "-fsyntax-only", "-Wall", "-Wextra", "-Wcomment"]
     command += ["-Wtrigraphs", "-Wshadow", "-Werror", f"-I{headers}", *flags]
     run = subprocess.run([*command, *map(str, sources)], capture_output=True, text=True)

@@ -11,9 +11,9 @@ import sympy as sp
 from closedform.derivations import hybrid_five_bar
 from closedform.derivations import hybrid_five_bar_design as design
 
-from closedform.derivation import Stage
-from closedform.prove import prove_inverse
-from closedform.require import ProofError
+from closedform.model.derivation import Stage
+from closedform.proof.prove import prove_inverse
+from closedform.proof.require import ProofError
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 DESIGNS = [(7, 8, 5), (0, 1, 1), (3, 1, 3), (1, 1, 2), (1, 1, 3), (0.2, 3, 1), (2.5, 1, 3)]

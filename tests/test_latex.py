@@ -11,16 +11,17 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from closedform.claims import Every, Identity, Undecidable
-from closedform.derivation import Continuum, Derivation, Inverse, Paper, Solved
 from closedform.emit.errata import markdown, part, together
-from closedform.emit.latex import Page, Printer, decimal, document, measure, notebook
+from closedform.emit.latex import Page, Printer, decimal, document, measure
+from closedform.emit.notebook import notebook
 from closedform.emit.prose import Prose, escape, loosen, mixed, spaced, symbol_name
 from closedform.emit.render import render
 from closedform.emit.show import show
-from closedform.functions import Program, branches, choose, real
-from closedform.lemmas import linear_pair
-from closedform.prove import ClaimResult, InverseResult, Proof, prove
+from closedform.lemmas.sine_cosine import linear_pair
+from closedform.model.derivation import Continuum, Derivation, Inverse, Paper, Solved
+from closedform.model.functions import Program, branches, choose, real
+from closedform.proof.checks import Every, Identity, Undecidable
+from closedform.proof.prove import ClaimResult, InverseResult, Proof, prove
 
 ROBOTS = ("planar_2r", "spherical_wrist")
 ROOT = Path(__file__).parents[1]

@@ -5,26 +5,22 @@ import dataclasses
 import pytest
 import sympy as sp
 
-from closedform.algebra import positive_form
-from closedform.functions import Program, real
-from closedform.lemmas import (
-    Lemma,
-    circle_intersection,
-    linear_pair,
-    parallelogram,
-    sine_cosine,
-    two_link_triangle,
-    two_link_triangle_by_square,
-    two_sines,
-    zyz_angles,
-)
-from closedform.loops import eliminate, velocity_matrices
-from closedform.pairs import sine_cosine_pair, triangle_pairs
-from closedform.prove_lemma import prove_lemma
-from closedform.require import ProofError
-from closedform.solutions import rotation_parametrisation
-from closedform.two_link import two_link_arm, two_link_arm_beside
-from closedform.volumes import lens
+from closedform.algebra.normal_form import positive_form
+from closedform.algebra.solutions import rotation_parametrisation
+from closedform.lemmas.circles import circle_intersection
+from closedform.lemmas.pairs import sine_cosine_pair, triangle_pairs
+from closedform.lemmas.parallelogram import parallelogram
+from closedform.lemmas.sine_cosine import linear_pair, sine_cosine
+from closedform.lemmas.triangle import two_link_triangle, two_link_triangle_by_square
+from closedform.lemmas.two_link import two_link_arm, two_link_arm_beside
+from closedform.lemmas.two_sines import two_sines
+from closedform.lemmas.zyz import zyz_angles
+from closedform.mechanics.loops import eliminate, velocity_matrices
+from closedform.mechanics.volumes import lens
+from closedform.model.functions import Program, real
+from closedform.model.lemma import Lemma
+from closedform.proof.lemma import prove_lemma
+from closedform.proof.require import ProofError
 
 x, y, z = (real(n) for n in ("x", "y", "z"))
 a, b, c = (real(n) for n in "abc")

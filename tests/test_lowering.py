@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from interpreter import run
 from sympy import cos, sin, sqrt
 
-from closedform.derivation import Derivation, Paper
-from closedform.frames import exponential
-from closedform.functions import Function, Program, array, choose, real
 from closedform.lower import Lowered, lower
 from closedform.lower.graph import Graph, hardly_ever, reachable
+from closedform.mechanics.frames import exponential
+from closedform.model.derivation import Derivation, Paper
+from closedform.model.functions import Function, Program, array, choose, real
 
 x, y, z = (real(n) for n in "xyz")
 SYMBOLS = (x, y, z)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from closedform.cli import main
+from closedform.cli.commands import main
 
 ELBOW = """\
 # h = 0.4 m: height of the shoulder

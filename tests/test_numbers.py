@@ -6,15 +6,15 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-import closedform.crosscheck
-from closedform import pipeline
-from closedform.crosscheck import check_forward, check_inverse, module_backend
-from closedform.derivation import Derivation
+import closedform.check.crosscheck
+from closedform.check.crosscheck import check_forward, check_inverse, module_backend
+from closedform.check.report import _module
+from closedform.check.samples import Sample
 from closedform.emit.render import pages, shared_files
-from closedform.new import new
-from closedform.prove import Proof, prove
-from closedform.report import _module
-from closedform.samples import Sample
+from closedform.model.derivation import Derivation
+from closedform.pipeline import run as pipeline
+from closedform.proof.prove import Proof, prove
+from closedform.scaffold.new import new
 
 UNREACHABLE = 1
 HEADER = "a, alpha, d, theta\n"
@@ -125,12 +125,12 @@ def test_a_posture_at_two_limits_at_once_is_not_lost(
     quarter, e = np.pi / 2, 1e-9
     posture = np.array([[1e-6 - np.pi, -np.pi - e, -quarter, np.pi, e - np.pi, 0.1 - quarter]])
     sample = Sample("two limits", posture, ())
-    monkeypatch.setattr(closedform.crosscheck, "inverse_postures", lambda *_: [sample])
+    monkeypatch.setattr(closedform.check.crosscheck, "inverse_postures", lambda *_: [sample])
     backend = module_backend("numpy", printed(tmp_path, d))
     (inverse,) = d.inverses
     assert check_inverse(d, d["ik"], inverse, backend).failures == []
     quarters = Sample("elsewhere", np.array([[0.3, 1.0, 0.7, 0.4, 0.9, 0.2]]), ())
-    monkeypatch.setattr(closedform.crosscheck, "inverse_postures", lambda *_: [quarters])
+    monkeypatch.setattr(closedform.check.crosscheck, "inverse_postures", lambda *_: [quarters])
 
     def without_half(name: str):
         def changed(*arguments):
@@ -141,7 +141,9 @@ def test_a_posture_at_two_limits_at_once_is_not_lost(
         return changed
 
     printed_module = _module(tmp_path, d.name)
-    broken = closedform.crosscheck.Backend("broken", without_half, np.float64, backend.tolerances)
+    broken = closedform.check.crosscheck.Backend(
+        "broken", without_half, np.float64, backend.tolerances
+    )
     assert "is not among" in check_inverse(d, d["ik"], inverse, broken).failures[0]
 
 

@@ -12,7 +12,7 @@ import numpy
 import pytest
 from sharing import shared
 
-from closedform.pipeline import checkout
+from closedform.pipeline.run import checkout
 
 ROOT = checkout()
 pytest.importorskip("build", reason="the package build is not installed: pip install build")
@@ -115,7 +115,7 @@ def test_the_command_line_says_what_is_missing(installed: Path) -> None:
         """
 import contextlib, io
 sys.modules.update(dict.fromkeys(["sympy", "flint", "jinja2"]))
-from closedform.cli import main
+from closedform.cli.commands import main
 assert main(["list"]) == 0
 assert main(["errata"]) == 0
 for command in (["derive", "-o", "nowhere"], ["check"], ["show", "planar_2r"]):
@@ -135,7 +135,7 @@ def test_the_wheel_derives_with_the_extra(installed: Path, tmp_path: Path) -> No
         installed,
         f"""
 sys.path.append({site!r})
-from closedform.cli import main
+from closedform.cli.commands import main
 assert main(["derive"]) == 2
 assert main(["derive", "planar_2r", "-o", {str(tmp_path)!r}, "--backend", "numpy"]) == 0
 """,

@@ -6,12 +6,12 @@ import pytest
 import sympy as sp
 from sympy import pi
 
-from closedform.arm import Serial, from_dh, from_screws
-from closedform.chain import Chain
-from closedform.derivation import Derivation, Paper
-from closedform.propose import NoChainError, propose
-from closedform.prove import prove
-from closedform.require import ProofError
+from closedform.lemmas.chain import Chain
+from closedform.mechanics.arm import Serial, from_dh, from_screws
+from closedform.model.derivation import Derivation, Paper
+from closedform.proof.prove import prove
+from closedform.proof.require import ProofError
+from closedform.scaffold.propose import NoChainError, propose
 
 LENGTHS = ("a", "b", "c", "e", "f", "g")
 

@@ -8,10 +8,10 @@ import pytest
 import sympy as sp
 from closedform.generated.numpy import _runtime
 
-from closedform.functions import real
 from closedform.lower.build import Builder
 from closedform.lower.graph import Graph
 from closedform.lower.ranges import Ranges, UnboundedError
+from closedform.model.functions import real
 
 x, y, length = real("x"), real("y"), real("length", nonnegative=True)
 norm = sp.sqrt(x**2 + y**2)

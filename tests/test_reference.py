@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import acos, asin, atan2, cos, pi, sin, sqrt, tan
 
-from closedform.reference import Evaluator, Undetermined, evaluate, to_float
+from closedform.algebra.balls import Evaluator, Undetermined, evaluate, to_float
 
 x, y, t = sp.symbols("x y t", real=True)
 

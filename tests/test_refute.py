@@ -10,7 +10,7 @@ import pytest
 import sympy as sp
 from sympy import Rational, cos, pi, sin, sqrt
 
-from closedform.refute import find_counterexample
+from closedform.algebra.counterexample import find_counterexample
 
 x, y, theta = sp.symbols("x y theta", real=True)
 l1, l2 = sp.symbols("l1 l2", positive=True)
@@ -69,7 +69,7 @@ def test_exact_angles_give_exact_values() -> None:
 
 def test_same_point_for_every_hash_seed() -> None:
     program = (
-        "import sympy as sp; from closedform.refute import find_counterexample\n"
+        "import sympy as sp; from closedform.algebra.counterexample import find_counterexample\n"
         "v = sp.symbols('u v w z', real=True)\n"
         "f = sp.prod(v) * sp.prod([a**2 - k for a in v for k in (1, 4, 9)])\n"
         "print(find_counterexample(f).describe())"

@@ -18,7 +18,7 @@ SINGLE = """
 import importlib, sys
 from pathlib import Path
 import numpy as np
-from closedform.clibrary import CLibrary
+from closedform.check.clibrary import CLibrary
 d = importlib.import_module("closedform.derivations." + sys.argv[1]).d
 flags = ["-fsanitize=undefined", "-fno-sanitize-recover=all", "-static-libubsan"]
 library = CLibrary(d, Path(sys.argv[2]), Path(sys.argv[3]), single=True, flags=flags)

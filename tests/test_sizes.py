@@ -8,7 +8,7 @@ from sizes import LENGTHS, lengths, powers, scaled
 
 from closedform.lower.degrees import degrees
 from closedform.lower.graph import Graph
-from closedform.tolerances import DOUBLE, FLOAT, HIGHEST_DEGREE
+from closedform.model.tolerances import DOUBLE, FLOAT, HIGHEST_DEGREE
 
 ROBOTS = [*LENGTHS, "puma560", "ur_arm", "spherical_wrist"]
 EXPONENTS = (-900, -700, -300, -100, 8, 100, 300, 700, 1000)

@@ -6,8 +6,8 @@ import pytest
 import sympy as sp
 from sympy import cos, sin
 
-from closedform.algebra import is_zero
-from closedform.solutions import (
+from closedform.algebra.normal_form import is_zero
+from closedform.algebra.solutions import (
     InfinitelyManyError,
     Method,
     count_solutions,

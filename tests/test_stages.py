@@ -6,10 +6,10 @@ import importlib
 import pytest
 import sympy as sp
 
-from closedform.derivation import Derivation
-from closedform.functions import Let
-from closedform.prove import prove_inverse
-from closedform.require import ProofError
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Let
+from closedform.proof.prove import prove_inverse
+from closedform.proof.require import ProofError
 
 
 @pytest.fixture

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from closedform.cli import main
-from closedform.pipeline import find, load
+from closedform.cli.commands import main
+from closedform.pipeline.run import find, load
 
 HEADER = "a, alpha, d, theta\n"
 AXIS = '[[axes]]\njoint = "t1"\ndirection = [0, 0, 1]\n'

@@ -13,13 +13,14 @@ import pytest
 import sympy as sp
 from sympy import cos, sin, sqrt
 
-from closedform.clibrary import CLibrary
-from closedform.crosscheck import Backend, crosscheck, float_backend, module_backend
-from closedform.derivation import Derivation, Inverse, Paper, Solved
+from closedform.check.clibrary import CLibrary
+from closedform.check.crosscheck import Backend, crosscheck, float_backend, module_backend
 from closedform.emit.c import shared
 from closedform.emit.numpy import runtime
 from closedform.emit.render import pages, render
-from closedform.frames import (
+from closedform.lemmas.sine_cosine import linear_pair
+from closedform.lemmas.triangle import two_link_triangle
+from closedform.mechanics.frames import (
     adjoint,
     chain,
     denavit_hartenberg,
@@ -29,11 +30,11 @@ from closedform.frames import (
     revolute_twist,
     vee,
 )
-from closedform.functions import Program, branches, choose, real
-from closedform.lemmas import linear_pair, two_link_triangle
-from closedform.prove import prove
-from closedform.require import ProofError
-from closedform.tolerances import DOUBLE
+from closedform.model.derivation import Derivation, Inverse, Paper, Solved
+from closedform.model.functions import Program, branches, choose, real
+from closedform.model.tolerances import DOUBLE
+from closedform.proof.prove import prove
+from closedform.proof.require import ProofError
 
 PAPER = Paper("toy", "Mechanisms of the tests", ("The closedform authors",))
 X, Y, Z = (sp.Matrix(v) for v in ([1, 0, 0], [0, 1, 0], [0, 0, 1]))

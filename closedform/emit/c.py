@@ -11,15 +11,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from closedform import __version__, sines
-from closedform.derivation import Derivation
+from closedform._version import __version__
+from closedform.emit import sines
 from closedform.emit.ckernel import CArray, CProgram, Emission
 from closedform.emit.csize import CSize, size_of
 from closedform.emit.docstring import comment, docstring
 from closedform.emit.text import WIDTH, banner, interface
-from closedform.functions import Function
 from closedform.lower import Lowered
-from closedform.tolerances import DOUBLE, FLOAT, GENERATED, HIGHEST_DEGREE
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
+from closedform.model.tolerances import DOUBLE, FLOAT, GENERATED, HIGHEST_DEGREE
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import prod
 
-from closedform.derivation import Derivation
 from closedform.emit.cguards import (
     deciding_products,
     final_values,
@@ -23,11 +22,12 @@ from closedform.emit.cguards import (
 )
 from closedform.emit.code import COMPARE, PRODUCT, UNARY, WRAPS, Line, Printer, Text
 from closedform.emit.text import WIDTH
-from closedform.functions import Function
 from closedform.lower import Lowered
 from closedform.lower.graph import Node, hardly_ever, reachable, strip_sign
 from closedform.lower.program import LEAVES
-from closedform.names import C_LOCALS, in_c
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
+from closedform.model.names import C_LOCALS, in_c
 
 LANES = 8
 FEW = 2

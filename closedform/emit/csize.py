@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from closedform.derivation import Derivation
 from closedform.emit.ckernel import CArray, folded
 from closedform.lower import Lowered
+from closedform.model.derivation import Derivation
 
 
 @dataclass(frozen=True)

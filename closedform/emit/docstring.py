@@ -16,9 +16,9 @@ from typing import Literal
 
 import sympy as sp
 
-from closedform.derivation import Derivation
-from closedform.functions import Array, Function, Require
 from closedform.lower.turns import Turns
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Array, Function, Require
 
 Language = Literal["python", "c"]
 

@@ -8,10 +8,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from closedform.claims import PROVED, VERDICTS
-from closedform.derivation import Derivation
 from closedform.emit.prose import Prose
-from closedform.prove import ClaimResult, Proof
+from closedform.model.claims import PROVED, VERDICTS
+from closedform.model.derivation import Derivation
+from closedform.proof.prove import ClaimResult, Proof
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Prints a derivation as a LaTeX article and as a notebook cell.
+"""Prints a derivation as a LaTeX article.
 
 Python prepares the formulas and the sentences; the templates lay them out.  A formula that fits is
 aligned; a longer one is set in a paragraph, where TeX itself breaks it at operators.  For that the
@@ -15,12 +15,12 @@ from typing import Any
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
-from closedform.claims import REFUTED
-from closedform.derivation import Continuum, Derivation, Inverse, Joint, Step
+from closedform.algebra.formulas import PRINTED, formula
 from closedform.emit.prose import Prose, escape, loosen, mixed, spaced, symbol_name, upright
 from closedform.emit.text import citation
-from closedform.formulas import PRINTED, formula
-from closedform.functions import (
+from closedform.model.claims import REFUTED
+from closedform.model.derivation import Continuum, Derivation, Inverse, Joint, Step
+from closedform.model.functions import (
     Array,
     Bound,
     Determined,
@@ -31,9 +31,9 @@ from closedform.functions import (
     Vanishes,
     real,
 )
-from closedform.prove import InverseResult, Proof
+from closedform.proof.prove import InverseResult, Proof
 
-__all__ = ["document", "notebook"]
+__all__ = ["Page", "document"]
 
 FITS = 84.0
 """Widest formula that is set on one line, in average letters of 10 pt."""
@@ -465,21 +465,6 @@ def blocks(equations: Sequence[tuple[str, str]]) -> list[str]:
 def formulas(texts: Sequence[str]) -> str:
     """Formulas in a sentence."""
     return ", ".join(rf"$\displaystyle {t}$" for t in texts)
-
-
-def notebook(derivation: Derivation) -> str:
-    """What Jupyter shows of a derivation: the forward map and the inverse."""
-    page = Page(derivation, Proof(derivation.name, derivation.paper.key, (), 0, ()))
-    rows = [rf"&\textbf{{{escape(derivation.title)}}}"]
-    for function in derivation.functions:
-        if function.name in ("fk", "ik"):
-            rows.append(rf"&\text{{{escape(function.summary)}}}")
-            for s in function.body:
-                if isinstance(s, Let | Bound):
-                    rows += [f"{a} &= {b}" for a, b in page.equations(s.symbol, s.value)]
-            rows += [f"{a} &= {b}" for a, b in page.outputs(function)]
-    rows += [f"{short} &= {full}" for short, full in page.legend()]
-    return r"$\displaystyle \begin{aligned}" + " \\\\\n".join(rows) + r"\end{aligned}$"
 
 
 def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:

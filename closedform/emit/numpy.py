@@ -8,16 +8,16 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from closedform import sines
-from closedform.derivation import Derivation
+from closedform.emit import sines
 from closedform.emit.code import ATOM, LOGIC, WRAPS, Printer, Text
 from closedform.emit.docstring import docstring
 from closedform.emit.text import WIDTH, banner, call_signature, interface
-from closedform.functions import Function
 from closedform.lower import Lowered
 from closedform.lower.graph import Node
-from closedform.names import in_python
-from closedform.tolerances import DOUBLE, GENERATED
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
+from closedform.model.names import in_python
+from closedform.model.tolerances import DOUBLE, GENERATED
 
 CALLS = {
     "sqrt": "np.sqrt",

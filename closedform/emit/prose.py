@@ -7,8 +7,8 @@ import re
 import sympy as sp
 from sympy.core.alphabets import greeks
 
-from closedform.derivation import Derivation, Step
-from closedform.functions import Bound, Let
+from closedform.model.derivation import Derivation, Step
+from closedform.model.functions import Bound, Let
 
 GREEK = {*greeks, *(g.capitalize() for g in greeks), "lambda", "varphi"}
 SYMBOL_NAMES = {"det": r"\det", "lamda": r"\lambda", "loff": r"l_{\mathrm{off}}"}

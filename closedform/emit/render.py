@@ -11,13 +11,13 @@ from typing import Any
 
 import jinja2
 
-from closedform.derivation import Derivation
 from closedform.emit import c, latex, numpy
 from closedform.emit.errata import Part, part, together
 from closedform.emit.escape import FILTERS
 from closedform.emit.table import csv
 from closedform.lower import lower
-from closedform.prove import Proof
+from closedform.model.derivation import Derivation
+from closedform.proof.prove import Proof
 
 BACKENDS = ("numpy", "c", "latex", "data")
 

@@ -11,10 +11,10 @@ import sympy as sp
 from sympy.printing.pretty.pretty import PrettyPrinter
 from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
-from closedform.derivation import Derivation
 from closedform.emit.text import citation
-from closedform.functions import Bound, Determined, Function, Let, Match, Statement, Vanishes
-from closedform.prove import Proof
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Bound, Determined, Function, Let, Match, Statement, Vanishes
+from closedform.proof.prove import Proof
 
 WIDTH = 100
 

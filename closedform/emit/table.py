@@ -5,9 +5,9 @@ from __future__ import annotations
 import io
 from csv import writer
 
-from closedform.derivation import Derivation, Table
-from closedform.functions import reject_floats
-from closedform.reference import Evaluator, to_float
+from closedform.algebra.balls import Evaluator, to_float
+from closedform.model.derivation import Derivation, Table
+from closedform.model.functions import reject_floats
 
 
 def csv(derivation: Derivation, table: Table) -> str:

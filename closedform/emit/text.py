@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from closedform import __version__
-from closedform.derivation import Derivation
-from closedform.functions import Function
+from closedform._version import __version__
 from closedform.lower import Lowered
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
 
 WIDTH = 96
 

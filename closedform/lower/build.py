@@ -13,8 +13,8 @@ from functools import reduce
 
 import sympy as sp
 
-from closedform.functions import reject_floats
 from closedform.lower.graph import Graph, Node
+from closedform.model.functions import reject_floats
 
 RELATIONS = {
     sp.StrictLessThan: ("lt", False, False),

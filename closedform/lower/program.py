@@ -10,8 +10,16 @@ from itertools import islice
 
 import sympy as sp
 
-from closedform.derivation import Derivation
-from closedform.functions import (
+from closedform.lower.build import Builder, angle_divisors
+from closedform.lower.common import common_case
+from closedform.lower.degrees import NUMBERS, Degrees, degrees
+from closedform.lower.graph import Graph, Node, reachable
+from closedform.lower.ranges import Ranges, UnboundedError
+from closedform.lower.roots import fewer_roots
+from closedform.lower.share import share
+from closedform.lower.turns import Turns
+from closedform.model.derivation import Derivation
+from closedform.model.functions import (
     Array,
     Bound,
     Determined,
@@ -21,15 +29,7 @@ from closedform.functions import (
     Require,
     Vanishes,
 )
-from closedform.lower.build import Builder, angle_divisors
-from closedform.lower.common import common_case
-from closedform.lower.degrees import NUMBERS, Degrees, degrees
-from closedform.lower.graph import Graph, Node, reachable
-from closedform.lower.ranges import Ranges, UnboundedError
-from closedform.lower.roots import fewer_roots
-from closedform.lower.share import share
-from closedform.lower.turns import Turns
-from closedform.tolerances import HIGHEST_DEGREE
+from closedform.model.tolerances import HIGHEST_DEGREE
 
 LEAVES = frozenset({
     "const", "input", "nan", "tolerance", "true", "false", "sin", "cos", "principal",

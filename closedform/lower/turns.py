@@ -14,8 +14,8 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.derivation import Derivation
-from closedform.functions import Function, Let
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function, Let
 
 Expr = Any
 

@@ -7,8 +7,8 @@ import sympy as sp
 from closedform.derivations import hybrid_five_bar_design as design
 from sympy import Abs, atan2, cos, sin, sqrt
 
-from closedform.claims import Check, Every, Holds, Identity
-from closedform.functions import real
+from closedform import real
+from closedform.proof.checks import Check, Every, Holds, Identity
 
 DEFAULT = (7, 8, 5)
 Eq, Ne, Lt, Gt = (partial(relation, evaluate=False) for relation in (sp.Eq, sp.Ne, sp.Lt, sp.Gt))

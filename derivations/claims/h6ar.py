@@ -7,10 +7,17 @@ import sympy as sp
 from closedform.derivations.h6ar_mechanism import arm_frames, product
 from sympy import asin, cos, sin, sqrt, tan
 
-from closedform.claims import Count, Enumeration, Every, Identity, Undecidable, Under
-from closedform.derivation import Derivation
-from closedform.frames import denavit_hartenberg
-from closedform.functions import real
+from closedform import (
+    Count,
+    Derivation,
+    Enumeration,
+    Every,
+    Identity,
+    Undecidable,
+    Under,
+    denavit_hartenberg,
+    real,
+)
 
 
 class Robot(NamedTuple):

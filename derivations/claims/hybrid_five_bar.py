@@ -18,10 +18,18 @@ from closedform.derivations.claims.five_bar_postures import (
 )
 from sympy import cos, pi, sin, sqrt
 
-from closedform.claims import Enumeration, Every, Holds, Identity, Refuted, Undecidable, Under
-from closedform.derivation import Derivation
-from closedform.functions import real
-from closedform.solutions import count_solutions
+from closedform import (
+    Derivation,
+    Enumeration,
+    Every,
+    Holds,
+    Identity,
+    Refuted,
+    Undecidable,
+    Under,
+    count_solutions,
+    real,
+)
 
 
 def state(d: Derivation, bar: FiveBar) -> None:

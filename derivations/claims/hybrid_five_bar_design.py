@@ -21,8 +21,8 @@ from closedform.derivations.claims.five_bar_postures import (
 from closedform.derivations.hybrid_five_bar_design import decrease
 from sympy import Abs, cos, pi, sin, sqrt, tan
 
-from closedform.algebra import positive_form
-from closedform.claims import (
+from closedform import Derivation, positive_form, real
+from closedform.proof.checks import (
     Check,
     Enumeration,
     Every,
@@ -32,8 +32,6 @@ from closedform.claims import (
     Undecidable,
     Under,
 )
-from closedform.derivation import Derivation
-from closedform.functions import real
 
 NO_DIMENSIONS = "a figure, drawn for lengths that are not given"
 

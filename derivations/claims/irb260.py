@@ -6,10 +6,21 @@ import sympy as sp
 from closedform.derivations.claims.irb260_equations import Palletiser, equations, symbols
 from sympy import cos, pi, sin
 
-from closedform.claims import Count, Enumeration, Every, Identity, Refuted, Undecidable, Under
-from closedform.derivation import Derivation
-from closedform.frames import homogeneous, inverse, rotation, twist_of
-from closedform.functions import real
+from closedform import (
+    Count,
+    Derivation,
+    Enumeration,
+    Every,
+    Identity,
+    Refuted,
+    Undecidable,
+    Under,
+    homogeneous,
+    inverse,
+    real,
+    rotation,
+    twist_of,
+)
 
 
 def state(d: Derivation, arm: Palletiser) -> None:

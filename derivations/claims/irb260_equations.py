@@ -6,21 +6,25 @@ from typing import NamedTuple
 import sympy as sp
 from sympy import cos, pi, sin
 
-from closedform.claims import Deferred, Enumeration, Every, Identity, Refuted
-from closedform.derivation import Derivation
-from closedform.frames import (
+from closedform import (
+    Deferred,
+    Derivation,
+    Enumeration,
+    Every,
+    Identity,
+    Lemma,
+    Refuted,
     adjoint,
     exponential,
     hat,
     homogeneous,
     inverse,
+    real,
     revolute_twist,
     rotation,
     twist_matrix,
     twist_of,
 )
-from closedform.functions import real
-from closedform.lemmas import Lemma
 
 FORWARD = "IV. Kinematics, A. Forward Kinematics"
 JACOBIAN = "IV. Kinematics, B. Spatial Jacobian"

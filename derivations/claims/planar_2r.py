@@ -6,18 +6,23 @@ from typing import NamedTuple
 import sympy as sp
 from sympy import atan2, cos, pi, sin, sqrt, tan
 
-from closedform.claims import Count, Decimal, Every, Identity, Posture, Undecidable
-from closedform.derivation import Derivation
-from closedform.frames import (
+from closedform import (
+    Count,
+    Decimal,
+    Derivation,
+    Every,
+    Identity,
+    Posture,
+    Undecidable,
     denavit_hartenberg,
     exponential,
     hat,
     homogeneous,
     prismatic_twist,
+    real,
     revolute_twist,
     rotation,
 )
-from closedform.functions import real
 
 DENAVIT_HARTENBERG = "Kinematic Analysis By Denavit – Hartenberg Convention"
 

@@ -10,12 +10,15 @@ from typing import NamedTuple
 import sympy as sp
 from sympy import atan2, cos, pi, sin, sqrt
 
-from closedform.claims import Check, Count, Decimal, Deferred, Enumeration, Every, Identity
-from closedform.derivation import Derivation
-from closedform.frames import denavit_hartenberg, rotation
-from closedform.functions import real
-from closedform.serial import product
-from closedform.solutions import rotation_parametrisation
+from closedform import (
+    Derivation,
+    denavit_hartenberg,
+    product,
+    real,
+    rotation,
+    rotation_parametrisation,
+)
+from closedform.proof.checks import Check, Count, Decimal, Deferred, Enumeration, Every, Identity
 
 CRAIG = "Craig, Introduction to Robotics: Unimation PUMA 560"
 CORKE = "Corke, Robotics Toolbox: p560"

@@ -7,8 +7,16 @@ from typing import NamedTuple
 import sympy as sp
 from sympy import atan2, cos, pi, sin, sqrt
 
-from closedform.algebra import equal
-from closedform.claims import (
+from closedform import (
+    Derivation,
+    denavit_hartenberg,
+    equal,
+    exponential,
+    real,
+    rotation,
+    rotation_parametrisation,
+)
+from closedform.proof.checks import (
     Check,
     Count,
     Deferred,
@@ -19,10 +27,6 @@ from closedform.claims import (
     Refuted,
     Undecidable,
 )
-from closedform.derivation import Derivation
-from closedform.frames import denavit_hartenberg, exponential, rotation
-from closedform.functions import real
-from closedform.solutions import rotation_parametrisation
 
 ORIENTATION = "Orientation Aspects of A Spherical Wrist"
 SIGNS = {"upper signs": +1, "lower signs": -1}

@@ -15,7 +15,7 @@ import numpy as np
 from .toy import ROWS
 
 ROOT = Path(__file__).parents[2]
-RUNTIME = ROOT / "closedform" / "extension"
+RUNTIME = ROOT / "closedform" / "runtime" / "extension"
 TOY = Path(__file__).parent / "toy.c"
 SANITIZED = bool(os.environ.get("CLOSEDFORM_TEST_SANITIZE"))
 SANITIZE = ["-fsanitize=address,undefined", "-fno-sanitize-recover=undefined", "-O1"]

@@ -18,7 +18,7 @@ from .outcome import Failure, Outcome
 NAME = "kernels"
 CALLS = 20_000
 ROOT = Path(__file__).parents[2]
-GENERATED, RUNTIME = ROOT / "generated" / "c", ROOT / "closedform" / "extension"
+GENERATED, RUNTIME = ROOT / "generated" / "c", ROOT / "closedform" / "runtime" / "extension"
 SANITIZE = ("-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 

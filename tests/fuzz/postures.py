@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from closedform.tolerances import DOUBLE
+from closedform.model.tolerances import DOUBLE
 
 from .lengths import draw_lengths, draw_postures
 from .outcome import Failure, Outcome, hexed, unhexed

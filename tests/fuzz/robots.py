@@ -9,7 +9,7 @@ from types import ModuleType
 
 import numpy as np
 
-from closedform import pipeline
+from closedform.pipeline import run as pipeline
 
 BACKENDS = ("numpy", "c")
 NEEDED = {"h6ar": ("L1", "L2", "d"), "h6ar_loop_closed": ("L1", "L2", "d")}

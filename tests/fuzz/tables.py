@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from closedform.new import new
+from closedform.scaffold.new import new
 
 from .outcome import Failure, Outcome
 

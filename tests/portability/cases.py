@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from closedform.derivation import Derivation
-from closedform.functions import Function
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
 
 from .driver import (
     HEADER,

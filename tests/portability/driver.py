@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from closedform.derivation import Derivation
-from closedform.functions import Function
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
 
 ROOT = Path(__file__).parents[2]
 SOURCES = ROOT / "generated" / "c"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from closedform.samples import Sample, inverse_postures, joint_samples, perturbed
+from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
 
 from .driver import Request, derivation, numpy_values
 

@@ -1,0 +1,178 @@
+"""The zero test that proves identities.
+
+`is_zero` proves: the normal form (see `closedform.algebra.tower`) of every entry is zero.  `decide`
+also refutes, by a counterexample, and raises `Undecided` where it can do neither.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+
+import sympy as sp
+
+from closedform.algebra.counterexample import Counterexample, find_counterexample
+from closedform.algebra.tower import (
+    Expr,
+    Fraction,
+    Problem,
+    Tower,
+    Undecided,
+    content,
+    converted,
+    entries_of,
+    guard,
+    shortened,
+)
+
+__all__ = [
+    "Decision",
+    "Undecided",
+    "ZeroResult",
+    "decide",
+    "determinant",
+    "equal",
+    "is_zero",
+    "normal",
+    "positive_form",
+]
+
+
+@dataclass(frozen=True)
+class ZeroResult:
+    """Outcome of the zero test; `zero` means that every normal form is zero, which is a proof."""
+
+    zero: bool
+    nonzero: tuple[int, ...]
+    """Indices of the entries whose normal form is not zero."""
+    assumptions: tuple[Expr, ...]
+    """Expressions that were taken to be nonnegative, of those the caller licensed."""
+    terms: int
+    """The largest number of terms of any polynomial on the way."""
+    _tower: Tower = field(repr=False, compare=False)
+    _residues: tuple[Fraction, ...] = field(repr=False, compare=False)
+
+    def __bool__(self) -> bool:
+        return self.zero
+
+    @property
+    def denominators(self) -> tuple[Expr, ...]:
+        """The identity is claimed where none of these vanishes."""
+        return self._tower.denominators()
+
+    @property
+    def remainders(self) -> tuple[Expr, ...]:
+        """Numerators of the normal forms, entry by entry."""
+        return tuple(self._tower.expression(a.num) for a in self._residues)
+
+
+@dataclass(frozen=True)
+class Decision:
+    """A proof or a refutation, and nothing in between."""
+
+    holds: bool
+    verdict: str
+    """As in the errata: `proved`, `proved under assumption` or `refuted`."""
+    assumptions: tuple[Expr, ...]
+    proof: ZeroResult | None
+    counterexample: Counterexample | None
+
+
+def is_zero(problem: Problem, nonnegative: Iterable[Expr] = ()) -> ZeroResult:
+    """Whether the normal form of every entry is zero.
+
+    `nonnegative` lists expressions (or relations `a >= b`) that the caller assumes; they license
+    `sqrt(p*q) = sqrt(p)*sqrt(q)` and `|p| = p`, and the result names those that were used.
+    """
+    tower, residues = converted(problem, nonnegative)
+    nonzero = tuple(i for i, a in enumerate(residues) if not a.num.is_zero())
+    assumptions = tuple(tower.assumptions)
+    return ZeroResult(not nonzero, nonzero, assumptions, tower.peak, tower, tuple(residues))
+
+
+def equal(a: Expr, b: Expr, nonnegative: Iterable[Expr] = ()) -> bool:
+    """Whether `a - b` (matrices: entry by entry) has normal form zero."""
+    return is_zero(a - b, nonnegative).zero
+
+
+def normal(e: Expr, nonnegative: Iterable[Expr] = ()) -> Expr:
+    """The normal form as a SymPy fraction, expanded, with a rational denominator."""
+    tower, (value,) = converted(e, nonnegative)
+    value = tower.rationalised(value)
+    scale = content(value.den)
+    num, den = value.num / scale, value.den / scale
+    return tower.expression(num) / tower.expression(den)
+
+
+def determinant(J: sp.MatrixBase) -> Expr:
+    """The normal form of a determinant without denominators, expanded by minors.
+
+    Every minor of the first columns is reduced at once, which keeps twists of general axes short;
+    the sparsest columns come first.
+    """
+    tower, entries = converted(J, ())
+    n = J.rows
+    columns = [entries[j::n] for j in range(n)]
+    order = sorted(range(n), key=lambda j: sum(len(e.num) for e in columns[j]))
+    swaps = sum(order[a] > order[b] for a, b in combinations(range(n), 2))
+    minors: dict[tuple[int, ...], Fraction] = {(): tower.one}
+    for k, j in enumerate(order):
+        longer: dict[tuple[int, ...], Fraction] = {}
+        for rows, minor in minors.items():
+            for i, entry in enumerate(columns[j]):
+                if i in rows or entry.num.is_zero():
+                    continue
+                chosen = tuple(sorted((*rows, i)))
+                term = tower.product(minor, entry, (-1) ** (k - chosen.index(i)))
+                longer[chosen] = tower.sum(longer[chosen], term) if chosen in longer else term
+        minors = longer
+    (value,) = minors.values() or (tower.zero,)
+    return (-1) ** swaps * tower.expression(value.num) / tower.expression(value.den)
+
+
+def positive_form(expr: Expr, slack: Sequence[tuple[sp.Symbol, Expr]]) -> Expr:
+    """``expr`` with symbols written in nonnegative ones, so that all its coefficients are positive.
+
+    Such a form proves that the expression is not negative where the new symbols are not.
+    """
+    top, bottom = sp.fraction(sp.together(sp.expand(expr.subs(slack))))
+    for part in (top, bottom):
+        polynomial = sp.Poly(part, sp.Dummy("one"), *sorted(part.free_symbols, key=str))
+        if any(c.is_negative for c in polynomial.coeffs()):
+            raise ValueError(f"{expr}: not evidently positive as {polynomial.as_expr()}")
+    return sp.expand(top) / bottom
+
+
+def decide(
+    problem: Problem,
+    nonnegative: Iterable[Expr] = (),
+    seed: int = 0,
+    *,
+    sides: Sequence[Sequence[Expr]] = (),
+) -> Decision:
+    """Prove that every entry is zero, or refute it at a point where the assumptions hold.
+
+    With ``sides``, the expressions that each entry is the difference of, the counterexample is a
+    point where these have values too.
+    """
+    guards = [guard(g) for g in nonnegative]
+    try:
+        result, obstacle = is_zero(problem, guards), ""
+    except Undecided as reason:
+        result, obstacle = None, str(reason)
+    if result:
+        verdict = "proved under assumption" if result.assumptions else "proved"
+        return Decision(True, verdict, result.assumptions, result, None)
+    witness = find_counterexample(
+        sp.Matrix(entries_of(problem)), conditions=[g >= 0 for g in guards], seed=seed, sides=sides
+    )
+    if witness:
+        return Decision(False, "refuted", tuple(guards), result, witness)
+    if result is not None:
+        entry = result.nonzero[0]
+        obstacle = f"entry {entry} leaves {shortened(result.remainders[entry])}"
+    raise Undecided(
+        f"{shortened(entries_of(problem))}: {obstacle}, and no counterexample was found; "
+        "give the guards under which its square roots split as `nonnegative`"
+    )

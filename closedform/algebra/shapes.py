@@ -1,0 +1,56 @@
+"""The shape of the equation that a lemma solves, to say early and plainly that another is meant."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.tower import shortened
+
+LINEAR = "a sin x + b cos x = c"
+"""The lemma for an equation that is linear in the sine and the cosine of the unknown."""
+PAIR = "atan2 of a linear pair"
+"""The lemma that reads a direction; what it is read from may turn with other joints."""
+
+
+class ShapeError(ValueError):
+    """A lemma applied to an equation of another shape."""
+
+
+def require_shape(lemma: str, equation: Any, unknown: sp.Symbol) -> None:
+    """Raise :class:`ShapeError` if ``equation = 0`` is nothing that the lemma solves."""
+    if lemma == LINEAR:
+        coefficients(equation, unknown)
+    elif lemma == PAIR and not equation.has(unknown):
+        raise ShapeError(
+            f"the lemma {lemma!r} for {unknown} needs an equation in sin({unknown}) and "
+            f"cos({unknown}); 0 = {shortened(equation)} does not hold {unknown} at all"
+        )
+
+
+def coefficients(equation: Any, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """``a, b, c`` of an equation ``a sin x + b cos x - c = 0``.
+
+    >>> l, y = sp.symbols("l y")
+    >>> coefficients(2 * l * sp.sin(x := sp.Symbol("x")) - y, x)
+    (2*l, 0, y)
+    """
+    s, c = sp.Dummy("s"), sp.Dummy("c")
+    expanded = sp.expand(sp.expand_trig(sp.expand(equation)))
+    renamed = expanded.xreplace({sp.sin(x): s, sp.cos(x): c})
+    needs = f"the lemma {LINEAR!r} for {x} needs an equation that is linear in sin({x}), cos({x})"
+    if renamed.has(x):
+        raise ShapeError(f"{needs}; in 0 = {shortened(equation)} the unknown stands elsewhere")
+    try:
+        polynomial = sp.Poly(renamed, s, c)
+    except sp.PolynomialError as error:
+        raise ShapeError(f"{needs}; 0 = {shortened(equation)} is no polynomial in them") from error
+    if polynomial.is_ground:
+        raise ShapeError(f"{needs}; 0 = {shortened(equation)} does not hold {x} at all")
+    for (i, j), value in polynomial.terms():
+        if i + j > 1:
+            term = value * sp.sin(x) ** i * sp.cos(x) ** j
+            raise ShapeError(f"{needs}; 0 = {shortened(equation)} has the term {shortened(term)}")
+    a, b, rest = (polynomial.coeff_monomial(m) for m in (s, c, 1))
+    return a, b, -rest

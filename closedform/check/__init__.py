@@ -1,0 +1,1 @@
+"""The cross-check of generated code against its derivation."""

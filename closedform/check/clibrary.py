@@ -1,0 +1,93 @@
+"""Generated C, compiled on the spot and called through ctypes: how single precision is checked."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shutil
+import subprocess
+from collections.abc import Callable, Sequence
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from closedform.lower import Lowered, lower
+from closedform.model.derivation import Derivation
+
+FLAGS = ("-std=c99", "-O3", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-shared")
+
+
+def compiler() -> str:
+    """The C compiler: ``$CC``, or ``cc``, ``gcc``, ``clang``, whichever is found first."""
+    for name in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
+        if name and shutil.which(name):
+            return name
+    raise FileNotFoundError("no C compiler found: install gcc or clang, or set CC")
+
+
+class CompileError(Exception):
+    """The C compiler refuses a file, and the first thing it says about it."""
+
+
+class CLibrary:
+    """The C of one robot as a shared library, called through its ``_batch`` functions."""
+
+    def __init__(
+        self,
+        derivation: Derivation,
+        sources: Path,
+        scratch: Path,
+        *,
+        single: bool = False,
+        flags: Sequence[str] = (),
+    ):
+        self.dtype = np.float32 if single else np.float64
+        self._real = ctypes.c_float if single else ctypes.c_double
+        self._name = derivation.name
+        self._programs = {f.name: lower(f, derivation) for f in derivation.functions}
+        self._fields = len(derivation.parameters)
+        library = scratch / f"{derivation.name}_{'float' if single else 'double'}.so"
+        define = ["-DCLOSEDFORM_FLOAT"] if single else []
+        command = [compiler(), *FLAGS, *define, *flags, f"-I{sources}"]
+        source = sources / f"{derivation.name}.c"
+        command += [str(source), "-o", str(library), "-lm"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            first = next((e for e in done.stderr.splitlines() if "error" in e), done.stderr[:200])
+            raise CompileError(f"{command[0]} does not compile {source}: {first}")
+        self._library = ctypes.CDLL(str(library))
+
+    def function(self, name: str) -> Callable[..., Any]:
+        """``name(*inputs, params)`` over arrays with at most one leading axis."""
+        program = self._programs[name]
+        batch = getattr(self._library, f"{self._name}_{name}_batch")
+
+        def call(*arguments: Any) -> Any:
+            *inputs, params = arguments
+            return self._run(batch, program, inputs, params)
+
+        return call
+
+    def _run(self, batch: Any, program: Lowered, inputs: Sequence[Any], params: Any) -> Any:
+        planes = [self._planes(x, a.size) for x, a in zip(inputs, program.inputs, strict=True)]
+        n = planes[0].shape[1] if planes else 1
+        fields = (self._real * self._fields)(*map(float, params))
+        arguments: list[Any] = [ctypes.c_size_t(n), ctypes.byref(fields)]
+        outputs = []
+        for result in program.results:
+            dtype = self.dtype if result.kind == "real" else np.uint8
+            outputs.append(np.empty((prod(result.shape), n), dtype))
+        for array in (*planes, *outputs):
+            arguments += [array.ctypes.data_as(ctypes.c_void_p), ctypes.c_size_t(n)]
+        batch(*arguments)
+        lead = (n,) if inputs else ()
+        shaped = [
+            o.T.reshape((*lead, *r.shape)) for o, r in zip(outputs, program.results, strict=True)
+        ]
+        return shaped[0] if len(shaped) == 1 else tuple(shaped)
+
+    def _planes(self, value: Any, size: int) -> np.ndarray[Any, Any]:
+        array = np.asarray(value, self.dtype)
+        return np.ascontiguousarray(array.reshape(-1, size).T)

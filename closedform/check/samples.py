@@ -1,0 +1,185 @@
+"""Where generated code breaks: the postures and dimensions at which it is compared.
+
+Home, multiples of a right angle approached to 1e-15, huge angles, denormals, merging branches and
+the boundary of the workspace; then random ones.  All are ordinary arrays of doubles, the same on
+every run.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from closedform.algebra.balls import Evaluator, to_float
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Function
+
+Array = NDArray[np.float64]
+
+APPROACHES = (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1e-1)
+HUGE = (1e4, 4e5, 1e7, 1e15, 1e22, 1e300)
+TINY = (5e-324, 2.2250738585072014e-308, 1e-160, 1e-20)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A named batch: one row of joint values (or other inputs) a posture, one set of parameters."""
+
+    name: str
+    values: Array
+    parameters: tuple[float, ...]
+
+
+def parameter_sets(derivation: Derivation, rng: np.random.Generator) -> Iterator[tuple[float, ...]]:
+    """The example dimensions, all equal, all random, very unequal."""
+    n = len(derivation.parameters)
+    if not n:
+        yield ()
+        return
+    yield tuple(float(p.value) for p in derivation.parameters)
+    yield (1.0,) * n
+    yield tuple(rng.uniform(0.1, 3.0, n))
+    yield tuple(10.0 ** rng.uniform(-3, 3, n))
+
+
+def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> list[Sample]:
+    """Inputs of a function of joint values (or of any free real numbers)."""
+    rng = np.random.default_rng(seed)
+    n = len(function.symbols)
+    if n == 0:
+        none = np.empty((1, 0))
+        return [Sample("constant", none, p) for p in parameter_sets(derivation, rng)]
+    rows = {
+        "home": np.zeros((1, n)),
+        "random": rng.uniform(-np.pi, np.pi, (60, n)),
+        "right angles": _approaches(rng, n, 40),
+        "tiny": rng.choice(TINY, (8, n)) * rng.choice((-1, 1), (8, n)),
+        "huge": rng.choice(HUGE, (24, n)) * rng.uniform(-1, 1, (24, n)),
+    }
+    return [
+        Sample(
+            name,
+            values if name == "huge" else drawn_beside(derivation, function.symbols, values),
+            parameters,
+        )
+        for parameters in parameter_sets(derivation, rng)
+        for name, values in rows.items()
+    ]
+
+
+def inverse_postures(
+    derivation: Derivation, unknowns: Sequence[sp.Symbol], seed: int = 2
+) -> list[Sample]:
+    """Joint values whose images are the targets of an inverse, singular ones among them."""
+    rng = np.random.default_rng(seed)
+    n = len(unknowns)
+    rows = {
+        "random": rng.uniform(-np.pi, np.pi, (60, n)),
+        "right angles": _approaches(rng, n, 60),
+        "one joint singular": _one_singular(rng, n),
+    }
+    return [
+        Sample(name, drawn_beside(derivation, unknowns, values), parameters)
+        for parameters in parameter_sets(derivation, rng)
+        for name, values in rows.items()
+    ]
+
+
+def drawn_beside(derivation: Derivation, symbols: Sequence[sp.Symbol], values: Array) -> Array:
+    """A joint that stays beside another is drawn close to it."""
+    values = values.copy()
+    for joint in derivation.joints:
+        if joint.beside is not None and joint.symbol in symbols:
+            own, other = symbols.index(joint.symbol), symbols.index(joint.beside)
+            for start, fraction in ((0, 8.0), (1, 32.0), (2, 512.0)):
+                rows = values[start::3]
+                values[start::3, own] = rows[:, other] + rows[:, own] / fraction
+    return values
+
+
+def perturbed(targets: Array, seed: int = 3) -> Array:
+    """Targets moved off by relative amounts down to an ulp: in and out across the boundary."""
+    rng = np.random.default_rng(seed)
+    steps = rng.choice((1e-16, 1e-14, 1e-9, 1e-3, 0.3), (len(targets), 1))
+    return np.asarray(targets * (1 + steps * rng.choice((-1, 1), (len(targets), 1))))
+
+
+def _approaches(rng: np.random.Generator, n: int, rows: int) -> Array:
+    """Every joint a multiple of a right angle, up to a small or vanishing deviation."""
+    corners = rng.choice((-np.pi, -np.pi / 2, 0.0, np.pi / 2, np.pi), (rows, n))
+    return np.asarray(corners + rng.choice(APPROACHES, (rows, n)) * rng.choice((-1, 1), (rows, n)))
+
+
+def _one_singular(rng: np.random.Generator, n: int) -> Array:
+    """All joints random but one, which approaches 0 or pi."""
+    rows = []
+    for joint in range(n):
+        for corner in (0.0, np.pi, -np.pi):
+            for approach in APPROACHES:
+                row = rng.uniform(-np.pi, np.pi, n)
+                row[joint] = corner - np.copysign(approach, corner) if corner else approach
+                rows.append(row)
+    return np.array(rows)
+
+
+class Magnitudes:
+    """The natural scales of values: all signs positive, sines and cosines at their largest.
+
+    What is divided by keeps its value.  Nested expressions are gone through once for each of their
+    parts: as a tree they are far too large.
+    """
+
+    def __init__(self, symbols: Sequence[sp.Symbol], exprs: Sequence[sp.Expr]):
+        self._places = {s: k for k, s in enumerate(symbols)}
+        self._steps: list[Callable[[list[Any], Sequence[Any]], Any]] = []
+        self._known: dict[sp.Basic, int] = {}
+        self._divisors: list[sp.Expr] = []
+        self._results = [self._place(sp.sympify(e, strict=True)) for e in exprs]
+        self._evaluate = Evaluator(tuple(symbols), self._divisors)
+
+    def __call__(self, values: Sequence[float], dtype: type = float) -> list[float]:
+        """Infinite where the float type overflows, zero where the value does not exist."""
+        found = [abs(to_float(d)) for d in self._evaluate(values)] if self._divisors else []
+        with np.errstate(all="ignore"):
+            given = [dtype(abs(v)) for v in (*values, *found)]
+            done: list[Any] = []
+            for step in self._steps:
+                done.append(step(done, given))
+            scales = [float(done[k]) for k in self._results]
+        return [0.0 if math.isnan(s) else s for s in scales]
+
+    def _place(self, e: sp.Basic) -> int:
+        if e not in self._known:
+            step = self._step(e)
+            self._steps.append(step)
+            self._known[e] = len(self._steps) - 1
+        return self._known[e]
+
+    def _step(self, e: sp.Basic) -> Callable[[list[Any], Sequence[Any]], Any]:
+        if isinstance(e, (sp.sin, sp.cos)):
+            return lambda done, given: 1.0
+        if isinstance(e, (sp.atan2, sp.asin, sp.acos, sp.atan)):
+            return lambda done, given: math.pi
+        if e.is_Number or e.is_NumberSymbol:
+            number = abs(float(e))
+            return lambda done, given: number
+        if e in self._places:
+            place = self._places[e]
+            return lambda done, given: given[place]
+        if isinstance(e, (sp.Add, sp.Mul, sp.Max, sp.Min, sp.Piecewise, sp.Abs)):
+            branches = [b for b, _ in e.args] if isinstance(e, sp.Piecewise) else e.args
+            parts = [self._place(b) for b in branches]
+            total = math.prod if isinstance(e, sp.Mul) else sum
+            return lambda done, given: total(done[k] for k in parts)
+        if isinstance(e, sp.Pow) and e.exp.is_Number and e.exp > 0:
+            base, power = self._place(e.base), float(e.exp)
+            return lambda done, given: np.power(done[base], power)
+        self._divisors.append(e)
+        place = len(self._places) + len(self._divisors) - 1
+        return lambda done, given: given[place]

@@ -1,0 +1,3 @@
+"""The command line."""
+
+from closedform.cli.commands import main as main

@@ -1,0 +1,391 @@
+"""The command line: list, show, derive, check, new, errata.
+
+Results go to stdout, progress and errors to stderr.  The exit code is 0 on success, 1 where a proof
+or a comparison failed, 2 where the command was called wrongly.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import difflib
+import importlib.util
+import os
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from closedform._version import __version__
+from closedform.cli import console
+from closedform.cli.console import Progress
+from closedform.pipeline import run as pipeline
+from closedform.pipeline import versions
+from closedform.pipeline.disk import locked
+
+DIFF_LINES = 20
+NAMED = 4
+"""Files that are named where many have changed."""
+PRETTY = "─│⎡⎣√θ₁"
+"""What a formula in two dimensions is drawn with; a terminal without it gets ASCII."""
+
+
+class CommandError(Exception):
+    """The command did not succeed; the exit code and what to tell the user."""
+
+    def __init__(self, message: str, code: int = 1):
+        super().__init__(message)
+        self.code = code
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code."""
+    console.open_streams()
+    try:
+        options = _parsed(arguments)
+        command: Callable[[argparse.Namespace], None] = options.command
+        command(options)
+    except CommandError as error:
+        return _complain(str(error), error.code)
+    except (pipeline.DerivationError, console.StreamError) as error:
+        return _complain(str(error))
+    except BrokenPipeError:
+        return 1
+    except OSError as error:
+        return _complain(_reason(error))
+    except KeyboardInterrupt:
+        return _complain("interrupted", 130)
+    return 0
+
+
+def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
+    try:
+        return parser().parse_args(arguments)
+    except SystemExit as stop:
+        if not stop.code:
+            console.write("")  # argparse does not mind a help that could not be written
+        raise
+
+
+def _complain(message: str, code: int = 1) -> int:
+    console.say(f"closedform: {message}")
+    return code
+
+
+def _reason(error: OSError) -> str:
+    """What failed, and with which file."""
+    try:
+        os.getcwd()
+    except OSError:
+        return "the current folder does not exist any more"
+    reason = error.strerror or str(error)
+    return f"{error.filename}: {reason}" if error.filename else reason
+
+
+def parser() -> argparse.ArgumentParser:
+    """The commands and their options."""
+    top = argparse.ArgumentParser(
+        prog="closedform",
+        description="Published mechanisms as proved, fast, closed-form kinematics.",
+    )
+    top.add_argument("--version", action="version", version=f"closedform {__version__}")
+    commands = top.add_subparsers(required=True, metavar="COMMAND")
+
+    def command(
+        name: str, function: Callable[[argparse.Namespace], None]
+    ) -> argparse.ArgumentParser:
+        summary = (function.__doc__ or "").partition("\n")[0]
+        added = commands.add_parser(name, help=summary, description=function.__doc__)
+        added.set_defaults(command=function)
+        return added
+
+    command("list", list_command)
+    show = command("show", show_command)
+    show.add_argument("name", metavar="NAME")
+    show.add_argument("--format", choices=("text", "latex"), default="text")
+    derive = command("derive", derive_command)
+    derive.add_argument("names", metavar="NAME", nargs="*", help="all if none is given")
+    derive.add_argument("-o", "--output", metavar="DIR", type=Path)
+    derive.add_argument(
+        "--backend", action="append", choices=pipeline.BACKENDS, help="repeatable; all by default"
+    )
+    derive.add_argument(
+        "--no-crosscheck",
+        action="store_true",
+        help="with -o: do not compare the printed code with the symbolic source",
+    )
+    check = command("check", check_command)
+    for added in (derive, check):
+        added.add_argument("-j", "--jobs", type=_positive, metavar="N", help="processes to use")
+        added.add_argument("--fresh", action="store_true", help="prove everything again")
+    new = command("new", new_command)
+    new.add_argument("name", metavar="NAME")
+    new.add_argument(
+        "--from",
+        dest="table",
+        nargs=2,
+        required=True,
+        metavar=("KIND", "FILE"),
+        help="dh TABLE.csv, or screws FILE.toml",
+    )
+    new.add_argument("--modified", action="store_true", help="the dh table is Craig's (proximal)")
+    new.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, default=Path(), help="by default the current"
+    )
+    errata = command("errata", errata_command)
+    errata.add_argument("paper", metavar="PAPER", nargs="?", help="the key of one paper")
+    return top
+
+
+def _positive(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise ValueError
+    return value
+
+
+def list_command(options: argparse.Namespace) -> None:
+    """List the derivations."""
+    sources = pipeline.sources()
+    width = max((len(s.name) for s in sources), default=0)
+    console.write("".join(f"{s.name:<{width}}  {s.title}\n" for s in sources))
+
+
+def show_command(options: argparse.Namespace) -> None:
+    """Show one derivation, with what was proved if it has been."""
+    (source,) = _find([options.name])
+    _require_extra()
+    from closedform.emit.show import show
+
+    with Progress() as progress:
+        progress(source.name, "derivation")
+        derivation = pipeline.load(source)
+        kept = pipeline.default_store().get(source)
+        pretty = console.has(PRETTY)
+        text = show(derivation, kept[0] if kept else None, options.format, pretty=pretty)
+    console.write(text.rstrip("\n") + "\n")
+
+
+def derive_command(options: argparse.Namespace) -> None:
+    """Derive, prove and print; NAME is a derivation or the path of a script."""
+    chosen = _find(options.names)
+    backends = tuple(b for b in pipeline.BACKENDS if b in (options.backend or pipeline.BACKENDS))
+    root = options.output or pipeline.generated()
+    own = root.resolve() == pipeline.generated().resolve()
+    if own:
+        _require_checkout(chosen)
+    elif root.exists() and not root.is_dir():
+        raise CommandError(f"cannot write to {root}: it is not a folder")
+    result = _run(options, chosen, backends, pipeline.sources() if own else chosen)
+    printed = result.files if own else pipeline.standalone(result.files)
+    if own:
+        _update(root, printed, backends if not options.names else ())
+    else:
+        _write(root, printed)
+    for failure in result.neighbours:
+        console.say(f"closedform: warning: {failure}")
+    if result.neighbours:
+        console.say("closedform: warning: the files that all robots share were left as they are")
+    if not own and not options.no_crosscheck:
+        _crosscheck(root, chosen, backends)
+    width = max(len(robot.name) for robot in result.robots)
+    lines = [robot.line(width) for robot in result.robots]
+    if not own:
+        for robot, source in zip(result.robots, chosen, strict=True):
+            lines.append(f"{robot.proof.outcome()}; next: {_next(robot, source, root, backends)}")
+    console.write("".join(f"{line}\n" for line in lines))
+
+
+def _update(root: Path, printed: pipeline.Files, whole: Sequence[str]) -> None:
+    """Bring the generated package up to date; of the ``whole`` back ends, remove what is stale."""
+    with _alone():
+        changed = _write(root, printed)
+        for path in pipeline.extra_files(root, printed, whole):
+            (root / path).unlink(missing_ok=True)
+            changed.append(path)
+    if changed:
+        names = ", ".join(str(path) for path in changed[:NAMED])
+        more = f" and {len(changed) - NAMED} more" if len(changed) > NAMED else ""
+        console.say(f"closedform: changed in {root}: {names}{more}")
+
+
+def _next(
+    robot: pipeline.Printed, source: pipeline.Source, root: Path, backends: Sequence[str]
+) -> str:
+    """What to do with one robot that was printed into a folder of the user's."""
+    if not robot.proof.inverses:
+        return f"write the inverse in {source.path.name}; docs/adding-a-mechanism.md says how"
+    names = {"numpy": f"{robot.name}.py", "c": f"{robot.name}.c", "latex": f"{robot.name}.tex"}
+    printed = [str(root / b / names[b]) for b in backends if b in names]
+    return f"use {' and '.join(printed) or root}"
+
+
+def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
+    """Compare what was printed with the symbolic source, and write down what was found."""
+    from closedform.check.clibrary import CompileError
+    from closedform.check.report import report
+
+    with Progress() as progress:
+        for source in chosen:
+            progress(source.name, "cross-check")
+            try:
+                text, failures = report(pipeline.load(source), root, backends)
+            except CompileError as error:
+                raise CommandError(f"{source.name}: {error}") from error
+            _write(root, {Path(f"{source.name}-crosscheck.md"): text})
+            if failures:
+                raise CommandError(
+                    f"{source.name}: the generated code differs from its symbolic source; see "
+                    f"{root / f'{source.name}-crosscheck.md'}: {failures[0]}"
+                )
+
+
+def check_command(options: argparse.Namespace) -> None:
+    """Print everything anew and compare it, byte for byte, with what is in generated/."""
+    root = pipeline.generated()
+    printed = _run(options, pipeline.sources(), pipeline.BACKENDS, pipeline.sources()).files
+    with _alone():
+        differences = list(_differences(root, printed))
+    if differences:
+        console.write("\n".join(differences) + "\n")
+        raise CommandError(f"{root} is not what the derivations print: run make")
+    console.write(f"{len(printed)} generated files are up to date\n")
+
+
+def new_command(options: argparse.Namespace) -> None:
+    """Write the skeleton of a derivation, with pose, Jacobians and a proposed inverse."""
+    kind, path = options.table[0], Path(options.table[1])
+    if kind not in ("dh", "screws"):
+        raise CommandError(f"--from dh TABLE.csv or --from screws FILE.toml, not {kind}", 2)
+    if not path.is_file():
+        raise CommandError(f"{path} is no file" if path.exists() else f"there is no file {path}", 2)
+    if options.modified and kind != "dh":
+        raise CommandError("--modified goes with --from dh: axes have no convention", 2)
+    _require_extra()
+    from closedform.scaffold.new import check_name, new
+
+    try:
+        check_name(options.name)
+        target = options.output / f"{options.name}.py"
+        if os.path.lexists(target):
+            raise CommandError(f"{target} exists already")
+        script = new(options.name, kind, path, modified=options.modified)
+    except (ValueError, TypeError) as error:
+        raise CommandError(str(error)) from error
+    for note in script.notes:
+        console.say(f"closedform: note: {note}")
+    _write(options.output, {Path(target.name): script.text})
+    console.write(f"{target}: {script.inverse}; next: closedform derive {target} -o out\n")
+
+
+def errata_command(options: argparse.Namespace) -> None:
+    """Print every claim of the papers, or of one, that is not simply proved."""
+    console.write(_errata_of(options) if options.paper else _errata())
+
+
+def _errata() -> str:
+    path = pipeline.generated() / "errata.md"
+    if not path.is_file():
+        raise CommandError(f"{path} is missing: run make")
+    return path.read_text("utf-8")
+
+
+def _errata_of(options: argparse.Namespace) -> str:
+    _require_extra()
+    derivations = {source: pipeline.load(source) for source in pipeline.sources()}
+    papers = sorted({d.paper.key for d in derivations.values()})
+    chosen = {s: d for s, d in derivations.items() if d.paper.key == options.paper}
+    if not chosen:
+        raise CommandError(_unknown("paper", options.paper, papers), 2)
+    return _run(options, list(chosen), ("latex",), list(chosen)).shared[Path("errata.md")]
+
+
+def _require_extra() -> None:
+    missing = [name for name in pipeline.EXTRA if importlib.util.find_spec(name) is None]
+    if missing:
+        raise CommandError(
+            f"this needs {', '.join(missing)}, not installed: pip install 'closedform[derive]'"
+        )
+    for difference in versions.warnings():
+        console.say(f"closedform: warning: {difference}")
+
+
+def _find(names: Sequence[str]) -> list[pipeline.Source]:
+    try:
+        return pipeline.find(names)
+    except pipeline.UnknownNameError as error:
+        known = [source.name for source in pipeline.sources()]
+        raise CommandError(_unknown("derivation", str(error), known), 2) from error
+
+
+def _unknown(kind: str, name: str, known: Sequence[str]) -> str:
+    close = difflib.get_close_matches(name, known)
+    hint = f"did you mean {' or '.join(close)}?" if close else f"known: {', '.join(known)}"
+    if name.endswith(".py"):
+        hint = f"there is no such file; {hint}"
+    return f"unknown {kind} {name}; {hint}"
+
+
+def _require_checkout(chosen: Sequence[pipeline.Source]) -> None:
+    """The generated package is only written in a checkout, and only from its own scripts."""
+    if pipeline.checkout() is None:
+        raise CommandError(
+            "this is an installed package, not a checkout: give a folder with -o DIR", 2
+        )
+    for source in chosen:
+        if not source.module:
+            raise CommandError(
+                f"{source.path} is not in {pipeline.scripts()}: give a folder with -o DIR", 2
+            )
+
+
+def _run(
+    options: argparse.Namespace,
+    chosen: Sequence[pipeline.Source],
+    backends: Sequence[str],
+    together: Sequence[pipeline.Source],
+) -> pipeline.Result:
+    _require_extra()
+    with Progress() as progress:
+        progress("", "starting")
+        result = pipeline.run(
+            chosen,
+            backends,
+            together=together,
+            fresh=getattr(options, "fresh", False),
+            jobs=getattr(options, "jobs", None) or pipeline.default_jobs(),
+            report=progress,
+        )
+    if result.failures:
+        raise CommandError("\nclosedform: ".join(map(str, result.failures)))
+    return result
+
+
+def _write(root: Path, printed: pipeline.Files) -> list[Path]:
+    try:
+        return pipeline.write(root, printed)
+    except OSError as error:
+        raise CommandError(f"cannot write to {root}: {_reason(error)}") from error
+
+
+def _alone() -> contextlib.AbstractContextManager[None]:
+    """No other process changes the generated package."""
+    root = pipeline.checkout()
+    return locked(root / "build" / "generated.lock") if root else contextlib.nullcontext()
+
+
+def _differences(root: Path, printed: pipeline.Files) -> Iterable[str]:
+    for path, text in sorted(printed.items()):
+        target = root / path
+        if not target.is_file():
+            yield f"missing: {target}"
+        elif target.read_bytes() != text.encode():
+            yield f"differs: {target}"
+            diff = difflib.unified_diff(
+                target.read_bytes().decode(errors="replace").splitlines(),
+                text.splitlines(),
+                "committed",
+                "printed now",
+                lineterm="",
+            )
+            yield from list(diff)[:DIFF_LINES]
+    for path in pipeline.extra_files(root, printed, pipeline.BACKENDS):
+        yield f"extra: {root / path}"

@@ -1,0 +1,32 @@
+"""Prints records as the LaTeX that a notebook shows.
+
+Importing this module is enough: it registers its printers with :mod:`closedform.model.display`.
+"""
+
+# mypy: allow-untyped-calls
+# SymPy is only partly annotated.
+
+from __future__ import annotations
+
+from closedform.emit.latex import Page
+from closedform.emit.prose import escape
+from closedform.model.derivation import Derivation
+from closedform.model.display import prints
+from closedform.model.functions import Bound, Let
+from closedform.proof.prove import Proof
+
+
+@prints(Derivation)
+def notebook(derivation: Derivation) -> str:
+    """What Jupyter shows of a derivation: the forward map and the inverse."""
+    page = Page(derivation, Proof(derivation.name, derivation.paper.key, (), 0, ()))
+    rows = [rf"&\textbf{{{escape(derivation.title)}}}"]
+    for function in derivation.functions:
+        if function.name in ("fk", "ik"):
+            rows.append(rf"&\text{{{escape(function.summary)}}}")
+            for s in function.body:
+                if isinstance(s, Let | Bound):
+                    rows += [f"{a} &= {b}" for a, b in page.equations(s.symbol, s.value)]
+            rows += [f"{a} &= {b}" for a, b in page.outputs(function)]
+    rows += [f"{short} &= {full}" for short, full in page.legend()]
+    return r"$\displaystyle \begin{aligned}" + " \\\\\n".join(rows) + r"\end{aligned}$"

@@ -1,0 +1,327 @@
+"""An inverse as a chain of lemmas, each applied to what the earlier ones have left.
+
+A :class:`Chain` is built like the inverse is explained: *solve the first joint from this equation,
+turn the target into its frame, solve the next*.  Each lemma hands its joint on as a sine-cosine
+pair.  The chain knows what every name stands for at a posture, so that the proof is the same for
+every robot (see :mod:`closedform.proof.chain`):
+
+- each lemma, for the coefficients it is applied to as free symbols, is sound and gives all
+  solutions of its equations;
+- these equations follow from the forward map, so no posture is lost;
+- together they determine the target from the joints, so no answer is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.applied import Applied
+from closedform.lemmas.pairs import Pair
+from closedform.model.derivation import Derivation, Inverse, Link, Solved
+from closedform.model.functions import (
+    SINGLE,
+    Let,
+    Program,
+    Statement,
+    branches,
+    choose,
+    real,
+    substitute,
+)
+from closedform.model.lemma import Lemma
+
+Choice = Mapping[int, str]
+
+
+@dataclass
+class Chain:
+    """Collects the links of an inverse.
+
+    ``forward`` is the 4x4 pose of the tool, or the task coordinates in joint variables; those
+    named in ``angles`` count modulo a turn.
+    """
+
+    d: Derivation
+    forward: Any
+    angles: Sequence[str] = ()
+    name: str = "ik"
+    program: Program = field(default_factory=Program)
+    links: list[Link] = field(default_factory=list)
+    choices: list[tuple[sp.Symbol, Choice]] = field(default_factory=list)
+    values: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    meaning: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    defined: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    lengths: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
+    coefficients: set[sp.Symbol] = field(default_factory=set)
+    """Names of the coefficients of lemmas, which are proved for all values of them."""
+
+    def __post_init__(self) -> None:
+        self.joints = self.d.actuated
+        lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
+        sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
+        self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
+        places = self.forward[:3, 3] if self.is_pose else self.forward
+        self.size = sp.Add(*sized) + max(map(lengths_in_numbers, places))
+        if self.is_pose:
+            self.T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
+            self.R, self.p = self.T[:3, :3], self.T[:3, 3]
+            n, o, a = (self.R[:, j] for j in range(3))
+            bottom = [*self.T[3, :3], self.T[3, 3] - 1]
+            self.program.require(
+                [*(n.cross(o) - a), n.dot(n) - 1, o.dot(o) - 1, n.dot(o), *bottom],
+                1,
+                "a homogeneous transform with a proper rotation",
+            )
+            self.targets: tuple[sp.Symbol, ...] = tuple(self.T)
+            self.images: tuple[sp.Expr, ...] = tuple(self.forward)
+        else:
+            self.x = tuple(real(f"x_{name}") for name in self.d.task)
+            self.targets, self.images = self.x, tuple(self.forward)
+
+    def target(self, name: str) -> sp.Symbol:
+        """The target value of a task coordinate."""
+        return self.x[self.d.task.index(name)]
+
+    # Names
+
+    def let(self, name: str, value: Any) -> sp.Expr:
+        """Name a coefficient; what is a symbol or a number already keeps its name."""
+        value = sp.sympify(value, strict=True)
+        if value.is_Symbol or value.is_number:
+            return value
+        return self.program.let(name, value)
+
+    def named(self, name: str, value: Any, **assumptions: bool) -> sp.Symbol:
+        """A name for a coefficient of a lemma."""
+        symbol = self.program.let(name, value, **assumptions)
+        self.coefficients.add(symbol)
+        return symbol
+
+    def coefficient(self, name: str, value: sp.Expr, **assumptions: bool) -> sp.Expr:
+        """A symbol, its negative or a number as it is; anything else under a name."""
+        if value.is_Symbol or (-value).is_Symbol or value.is_number:
+            return value
+        return self.named(name, value, **assumptions)
+
+    def vector(self, name: str, value: sp.Matrix) -> sp.Matrix:
+        return sp.Matrix([self.let(f"{name}_{i}", v) for i, v in zip("xyz", value, strict=False)])
+
+    def matrix(self, name: str, value: sp.Matrix) -> sp.Matrix:
+        return sp.Matrix(
+            *value.shape,
+            [
+                self.let(f"{name}_{i + 1}{j + 1}", value[i, j])
+                for i in range(value.rows)
+                for j in range(value.cols)
+            ],
+        )
+
+    def direction(self, name: str, x: sp.Expr, y: sp.Expr) -> Pair:
+        """The pair of ``atan2(y, x)`` for a vector of parameters; where both are 0, that of 0."""
+        p = self.program
+        length = p.let(f"size_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
+        nothing = p.vanishes(f"no_{name}", length, 0, "it has no direction")
+        pair = Pair(choose(nothing, 0, y / length), choose(nothing, 1, x / length))
+        named = pair.known_as(p, f"_{name}")
+        self.meaning |= {named.s: y / sp.sqrt(x**2 + y**2), named.c: x / sp.sqrt(x**2 + y**2)}
+        return named
+
+    def angle(self, name: str, value: sp.Expr) -> sp.Symbol:
+        """An auxiliary angle: a sum of joints with integer coefficients, and a constant."""
+        symbol = real(name)
+        self.defined[symbol] = value
+        return symbol
+
+    def length(self, name: str, value: sp.Expr) -> sp.Symbol:
+        """An auxiliary length, with its value at a posture."""
+        symbol = real(name)
+        self.lengths[symbol] = value
+        return symbol
+
+    def sign(self, name: str, choice: Choice) -> sp.Symbol:
+        """A branch sign and the names of its two values."""
+        symbol = real(f"sigma_{name}")
+        self.choices.append((symbol, choice))
+        return symbol
+
+    # Lemmas
+
+    def solve(self, lemma: Any, *arguments: Any, **options: Any) -> Any:
+        """Apply a lemma of :mod:`closedform.lemmas.links`; returns what it hands on."""
+        start = len(self.program.body)
+        exact = [sp.Integer(a) if type(a) is int else a for a in arguments]
+        applied: Applied = lemma(self, *exact, **options)
+        body: tuple[Statement, ...] = tuple(
+            s
+            for s in self.program.body[start:]
+            if not (isinstance(s, Let) and s.symbol in self.coefficients)
+        )
+        for unknown in applied.lemma.solution:
+            self._check_unknown(unknown, applied.lemma)
+        self._check_coefficients(applied.lemma)
+        self.links.append(
+            Link(applied.lemma, body, dict(applied.means), dict(applied.given), applied.degenerate)
+        )
+        self.meaning |= applied.means
+        solved = {u: substitute(v, self.values) for u, v in applied.lemma.solution.items()}
+        self.values |= solved
+        self.notes += [f"SINGULAR: {case.meaning}" for case in applied.degenerate if case.free]
+        return applied.result
+
+    def _check_unknown(self, unknown: sp.Symbol, lemma: Lemma) -> None:
+        if unknown not in {*self.joints, *self.defined, *self.lengths}:
+            raise ShapeError(
+                f"{self.d.name}: the lemma {lemma.name!r} solves for {unknown}, which is neither "
+                f"a joint nor an auxiliary angle or length of the chain; make it with d.joint, "
+                f"ik.angle or ik.length"
+            )
+        if unknown in self.values:
+            raise ShapeError(
+                f"{self.d.name}: the lemma {lemma.name!r} solves for {unknown}, which an earlier "
+                f"lemma has solved"
+            )
+
+    def _check_coefficients(self, lemma: Lemma) -> None:
+        made = {s.symbol: s.value for s in self.program.body if isinstance(s, Let)}
+        made |= self.meaning
+        held: set[sp.Basic] = set()
+        pending = {s for e in lemma.equations for s in e.free_symbols}
+        while pending:
+            symbol = pending.pop()
+            held.add(symbol)
+            pending |= made[symbol].free_symbols - held if symbol in made else set()
+        solvable = {*self.joints, *self.defined, *self.lengths}
+        early = sorted((held & solvable) - {*lemma.solution, *self.values}, key=str)
+        if early:
+            unknowns = ", ".join(map(str, lemma.solution))
+            raise ShapeError(
+                f"{self.d.name}: the lemma {lemma.name!r} for {unknowns} cannot be applied here: "
+                f"{early[0]} stands in its coefficients, which no lemma has solved yet; solve for "
+                f"{early[0]} before, or take an equation without it"
+            )
+
+    def pair_of(self, total: sp.Expr) -> Pair | None:
+        """The sine and the cosine of a sum of angles that have pairs, of the target or solved.
+
+        An angle that is read from them needs no reduction: a sum of angles may need several turns.
+        None if an angle has no pair, or stands there more than once.
+        """
+        pairs: dict[sp.Basic, dict[type, sp.Expr]] = {}
+        for name, meaning in self.meaning.items():
+            if isinstance(meaning, sp.sin | sp.cos):
+                pairs.setdefault(meaning.args[0], {})[type(meaning)] = name
+        result = Pair(sp.S.Zero, sp.S.One)
+        given = {*self.targets, *(p.symbol for p in self.d.parameters)}
+        for term, factor in sp.expand(total).as_coefficients_dict().items():
+            known = pairs.get(term, {})
+            s, c = known.get(sp.sin), known.get(sp.cos)
+            if not term.free_symbols:
+                s, c, factor = sp.sin(factor * term), sp.cos(factor * term), sp.S.One
+            elif term in given:
+                s, c = sp.sin(term), sp.cos(term)
+            if s is None or c is None or abs(factor) != 1:
+                return None
+            result += Pair(factor * s, c)
+        return result
+
+    def by_angles(self, total: sp.Expr) -> sp.Expr:
+        """A sum in solved unknowns: a joint by the solved auxiliary angle that holds it alone."""
+        found = {}
+        for symbol, value in self.defined.items():
+            held = [j for j in self.joints if value.has(j)]
+            if symbol in self.values and len(held) == 1 and held[0] not in self.values:
+                (joint,) = held
+                sense = value.diff(joint)
+                if abs(sense) == 1:
+                    found[joint] = sense * (symbol - value.xreplace({joint: sp.S.Zero}))
+        return sp.expand(total.xreplace(found))
+
+    # The end
+
+    def _solve_sums(self) -> None:
+        """Joints that stand in auxiliary angles of which all else is known."""
+        progress = True
+        while progress:
+            progress = False
+            for symbol, value in self.defined.items():
+                left = [j for j in self.joints if value.has(j) and j not in self.values]
+                if symbol in self.values and len(left) == 1:
+                    (joint,) = left
+                    (solved,) = sp.solve(value - symbol, joint)
+                    pair = self.pair_of(solved)
+                    self.values[joint] = pair.angle if pair else substitute(solved, self.values)
+                    progress = True
+
+    def finish(self, summary: str, *, source: str = "", notes: Sequence[str] = ()) -> Inverse:
+        """Export the inverse."""
+        d = self.d
+        self._solve_sums()
+        missing = [j for j in self.joints if j not in self.values]
+        if missing:
+            raise ShapeError(
+                f"{d.name}: no lemma solves for {missing[0]}; ik.finish needs every joint, solved "
+                f"for itself or left over in an auxiliary angle"
+            )
+        choices = branches(*self.choices) if self.choices else SINGLE
+        if self.name == "ik":
+            d.branches = choices.labels
+        inputs = {"T": self.T} if self.is_pose else {"x": self.x}
+        d.function(
+            self.name,
+            summary,
+            inputs,
+            {"q": [self.values[j] for j in self.joints]},
+            program=self.program,
+            branches=choices,
+            result="Solutions",
+            source=source,
+            notes=(*dict.fromkeys([*notes, *self.notes]),),
+        )
+        for link in self.links:
+            unknown = next(iter(link.lemma.solution))
+            shown = next((e for e in link.lemma.equations if e.has(unknown)), sp.S.Zero)
+            d.solved.append(Solved(self.name, unknown, link.lemma, shown))
+        inverse = Inverse(
+            self.name,
+            self.joints,
+            self.targets,
+            self.images,
+            angles=tuple(real(f"x_{n}") for n in self.angles),
+            chain=tuple(self.links),
+            meaning={**self.meaning},
+            defined={**self.defined},
+            lengths={**self.lengths},
+            units=tuple(self.units),
+        )
+        d.inverses.append(inverse)
+        return inverse
+
+
+def lengths_in_numbers(place: sp.Expr) -> sp.Expr:
+    """The lengths in a coordinate that are numbers, not parameters: 3 of 3 cos(theta)."""
+    total = sp.S.Zero
+    for term in sp.Add.make_args(sp.expand(place)):
+        number, rest = term.as_independent(*term.free_symbols, as_Add=False)
+        if all(
+            isinstance(f.as_base_exp()[0], sp.sin | sp.cos)
+            for f in sp.Mul.make_args(rest)
+            if f != 1
+        ):
+            total += abs(number)
+    return total
+
+
+def numbers_of_tool(derivation: Derivation) -> list[float]:
+    """Of each coordinate of the tool: a number in the place of a parameter is as large as one."""
+    poses = [f.outputs[0].entries for f in derivation.functions if f.name == "pose"]
+    return [float(lengths_in_numbers(place)) for entries in poses for place in entries[3:12:4]]
+
+
+__all__ = ["Chain", "Choice", "lengths_in_numbers", "numbers_of_tool"]

@@ -1,0 +1,84 @@
+"""The points that two circles share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.model.functions import Program, choose
+from closedform.model.lemma import Lemma
+
+
+@dataclass(frozen=True)
+class Chord:
+    """Where two circles meet, seen from the line of their centres.
+
+    ``direction`` points from the first centre to the second, ``distance`` is between them; a common
+    point is ``along`` that line from the first centre and ``height`` to its left or right.
+    """
+
+    direction: tuple[sp.Expr, sp.Expr]
+    distance: sp.Expr
+    along: sp.Expr
+    height: sp.Expr
+    flag: sp.Symbol
+
+
+def circle_intersection(
+    program: Program,
+    centres: tuple[sp.Expr, sp.Expr],
+    first: sp.Expr,
+    second: sp.Expr,
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    sigma: sp.Symbol,
+    scale: sp.Expr,
+    *,
+    free: tuple[sp.Symbol, ...] = (),
+    suffix: str = "",
+) -> tuple[Lemma, Chord]:
+    """The points at the distances ``first`` and ``second`` from two points.
+
+    ``centres`` is the vector from the first to the second, and ``unknowns`` the vector from the
+    first to the point.  With the factors of Heron's formula the height of the triangle is
+    ``sqrt(S A B C) / (2 d)``.  ``scale`` is the size of the coordinates, whose rounding decides
+    what counts as zero.  Where the radii are equal and the centres coincide, the point is free on
+    a circle; for one radius the convention is that of centres which are parted along the first
+    axis, for two it is the point on this axis.  Circles that touch meet in one point.
+    """
+    x, y = unknowns
+    apart = program.let(
+        f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True
+    )
+    S = first + second + apart
+    A = program.bound(f"slack{suffix}", first + second - apart, scale, "the bars meet")
+    touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")
+    flag = program.vanishes(f"coincide{suffix}", apart, scale, "the centres coincide", free)
+    n: tuple[sp.Expr, sp.Expr] = (
+        choose(flag, 1, centres[0] / apart),
+        choose(flag, 0, centres[1] / apart),
+    )
+    if first == second:
+        d = program.let(f"distance{suffix}", choose(flag, 0, apart), nonnegative=True)
+        along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
+    else:
+        d = apart
+        B = program.bound(f"outer{suffix}", apart + first - second, scale, "the bars meet")
+        C = program.bound(f"inner{suffix}", apart - first + second, scale, "the bars meet")
+        along = choose(flag, first, (apart + (first - second) * (first + second) / apart) / 2)
+        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * apart)
+        height = choose(flag, 0, rise)
+    n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
+    height = program.let(f"height{suffix}", choose(touching, 0, height), nonnegative=True)
+    return Lemma(
+        "circle intersection",
+        r"|\mathbf x| = r_1,\ |\mathbf x - \mathbf d| = r_2 \;\Rightarrow\; \mathbf x = "
+        r"\frac{d^2 + r_1^2 - r_2^2}{2 d}\,\mathbf n + \sigma h\,\mathbf n^\perp,\quad "
+        r"h = \frac{\sqrt{S A B C}}{2 d}",
+        (
+            x**2 + y**2 - first**2,
+            (x - centres[0]) ** 2 + (y - centres[1]) ** 2 - second**2,
+        ),
+        {x: along * n[0] - sigma * height * n[1], y: along * n[1] + sigma * height * n[0]},
+        2,
+    ), Chord(n, d, along, height, flag)

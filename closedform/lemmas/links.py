@@ -1,0 +1,454 @@
+"""The lemmas of :mod:`closedform.lemmas` as links of a chain: each hands its joint on as a pair.
+
+The first argument is the :class:`~closedform.lemmas.chain.Chain`.  A coefficient is a symbol or a
+number; any other expression gets a name, so that the lemma is proved for all its values.  Boundary
+and degenerate cases are as in :mod:`closedform.lemmas`: products of differences under the roots,
+``atan2`` at the output, a convention where a joint is free.  A case that the numbers of an arm rule
+out gets no flag.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.algebra.solutions import rotation_parametrisation
+from closedform.lemmas.applied import Applied
+from closedform.lemmas.chain import Chain, Choice
+from closedform.lemmas.pairs import Pair, amplitude_lemma, nearly_tangent
+from closedform.lemmas.tangent import Links, Turn, Turned, leaving
+from closedform.lemmas.triangle import heron_factors
+from closedform.model.derivation import Degenerate
+from closedform.model.functions import Let, choose, real
+from closedform.model.lemma import Lemma, label
+from closedform.model.tolerances import FLOAT
+
+
+def turned(pair: Pair) -> sp.Matrix:
+    """The rotation about z by the angle of a pair."""
+    return sp.Matrix([[pair.c, -pair.s, 0], [pair.s, pair.c, 0], [0, 0, 1]])
+
+
+def named(chain: Chain, angle: sp.Symbol, pair: Pair) -> tuple[Pair, dict[sp.Symbol, sp.Expr]]:
+    """The pair, named ``s`` and ``c`` with the number of the joint, and what the names mean."""
+    names = pair.known_as(chain.program, label(angle))
+    return names, {names.s: sp.sin(angle), names.c: sp.cos(angle)}
+
+
+def differs_from_zero(chain: Chain, value: sp.Expr, scale: sp.Expr) -> bool:
+    """Whether a value is a number that no tolerance takes for zero on its scale, a number as well.
+
+    Where the scale holds a parameter, a number may be as small beside it as one likes.
+    """
+    numbers = {
+        s.symbol: s.value for s in chain.program.body if isinstance(s, Let) and s.value.is_number
+    }
+    value, scale = sp.sympify(value).xreplace(numbers), sp.sympify(scale).xreplace(numbers)
+    if not (value.is_number and scale.is_number):
+        return False
+    return bool(abs(value) > 2 * sp.Rational(FLOAT.feasibility) * scale)
+
+
+def vanishing(*coefficients: sp.Expr) -> dict[sp.Symbol, sp.Expr] | None:
+    """Where all coefficients vanish; None where one is a number other than zero."""
+    if any(e.is_number and e != 0 for e in coefficients):
+        return None
+    return {s: sp.S.Zero for e in coefficients for s in e.free_symbols}
+
+
+def degenerate(
+    flag: sp.Basic,
+    loci: Sequence[Mapping[sp.Symbol, sp.Expr] | None],
+    free: sp.Symbol | None,
+    meaning: str,
+) -> tuple[Degenerate, ...]:
+    """The cases of a flag to prove: none where there is no flag, or the case cannot occur."""
+    if not isinstance(flag, sp.Symbol):
+        return ()
+    return tuple(Degenerate((flag,), locus, free, meaning) for locus in loci if locus is not None)
+
+
+def turn(
+    chain: Chain,
+    x: sp.Symbol,
+    a: sp.Expr,
+    b: sp.Expr,
+    c: sp.Expr,
+    choice: Choice,
+    *,
+    toward: Links | None = None,
+    name: str = "",
+) -> Applied:
+    """``a sin x + b cos x = c``: both solutions.  x is free where ``a = b = c = 0``.
+
+    Where both solutions nearly meet, rounding of the target turns x by a multiple.  ``toward`` says
+    what later joints have to reach; there x is turned to where they do.
+    """
+    p, tag = chain.program, name or label(x)
+    sigma = chain.sign(tag, choice)
+    a, b, c = (
+        chain.coefficient(f"{n}_turn{tag}", e) for n, e in zip("abc", (a, b, c), strict=True)
+    )
+    h = p.let(f"h{tag}", sp.sqrt(a**2 + b**2), nonnegative=True)
+    half = chain.size / 2  # what is clamped stays well within the round trip that is promised
+    below = p.bound(f"below{tag}", h - c, half, "the amplitude is not smaller than c")
+    above = p.bound(f"above{tag}", h + c, half, "the amplitude is not smaller than -c")
+    flag: Any = sp.false
+    if not any(differs_from_zero(chain, e, chain.size) for e in (a, b, c)):
+        flag = p.vanishes(f"free{tag}", h, chain.size, f"the axis of {x.name} is met", free=(x,))
+    root = p.let(f"root{tag}", sp.sqrt(below) * sp.sqrt(above), nonnegative=True)
+    width = p.let(f"width{tag}", below + above, nonnegative=True)
+    away = Pair(2 * sigma * root / width, (above - below) / width)
+    both = Pair(a / h, b / h) + away
+    found = Pair(choose(flag, 0, both.s), choose(flag, 1, both.c))
+    if toward is not None:
+        tangent = nearly_tangent(p, root, chain.size, tag)
+        near = toward.reached(Turn(chain, found, root, c, tag).renamed(found, f"{tag}_1"))
+        found = Pair(choose(tangent, near.s, found.s), choose(tangent, near.c, found.c))
+    pair, means = named(chain, x, found)
+    lemma = amplitude_lemma(x, a, b, c, pair)
+    meaning = f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned."
+    cases = degenerate(flag, [vanishing(a, b, c)], x, meaning)
+    return Applied(lemma, Turned(pair.s, pair.c, root), means, {}, cases)
+
+
+def two_links(
+    chain: Chain,
+    first: sp.Symbol,
+    second: sp.Symbol,
+    x: sp.Expr,
+    y: sp.Expr,
+    l1: sp.Expr,
+    l2: sp.Expr,
+    choice: Choice,
+    *,
+    scale: sp.Expr | None = None,
+    name: str = "elbow",
+) -> Applied:
+    """The planar two-link arm: ``l1 u(first) + l2 u(first + second) = (x, y)``, two elbows.
+
+    ``u`` is the unit vector at an angle.  With the factors S, A, B, C of Heron's formula
+
+        (cos, sin)(second) = (BC - SA, 2 sigma sqrt(SABC)) / (BC + SA),
+
+    and first is the direction of (x, y) less the angle at the base of the triangle.  ``scale`` is
+    the size of what x and y are differences of, by default that of the whole arm.
+    """
+    p, scale = chain.program, chain.size if scale is None else scale
+    sigma = chain.sign(name, choice)
+    for length in (l1, l2):
+        if length.is_negative:
+            raise ShapeError(
+                f"{chain.d.name}: the two-link arm for {first} and {second} has the length "
+                f"{length}; give it as positive, and add pi to the angle of that link"
+            )
+    apart = [l1 - l2, x, y]
+    x, y = (e if e.is_Symbol else chain.named(f"{n}_{name}", e) for n, e in (("x", x), ("y", y)))
+    l1, l2 = (
+        chain.coefficient(f"l{i}_{name}", e, nonnegative=True) for i, e in enumerate((l1, l2), 1)
+    )
+    r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
+    half = scale / 2  # what is clamped stays well within the round trip that is promised
+    S, A, B, C = heron_factors(p, l1, l2, r, half, suffix=f"_{name}")
+    no_link: Any = sp.false
+    if not differs_from_zero(chain, l1 * l2, (l1 + l2) ** 2):
+        no_link = p.vanishes(
+            f"no_link_{name}", l1 * l2, (l1 + l2) ** 2, "a link has no length", free=(second,)
+        )
+    folded: Any = sp.false
+    if not any(differs_from_zero(chain, e, scale) for e in apart):
+        folded = p.vanishes(
+            f"folded_{name}", r, scale, f"the arm ends on the axis of {first}", free=(first,)
+        )
+    root = p.let(
+        f"area_{name}", 2 * sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C), nonnegative=True
+    )
+    at_elbow = p.let(f"sum_{name}", B * C + S * A, nonnegative=True)
+    at_base = p.let(f"width_{name}", S * B + A * C, nonnegative=True)
+    bend, means = named(
+        chain,
+        second,
+        Pair(
+            choose(no_link, 0, sigma * root / at_elbow),
+            choose(no_link, 1, (B * C - S * A) / at_elbow),
+        ),
+    )
+    off = Pair(
+        choose(no_link, 0, sigma * root / at_base), choose(no_link, 1, (S * B - A * C) / at_base)
+    )
+    bearing = Pair(y / r, x / r) - off.known_as(p, f"_base_{name}")
+    lift, more = named(
+        chain, first, Pair(choose(folded, 0, bearing.s), choose(folded, 1, bearing.c))
+    )
+    lemma = Lemma(
+        "two-link arm",
+        r"l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y) \;\Rightarrow\; "
+        r"(\cos\varphi, \sin\varphi) = \frac{(BC - SA,\ 2\sigma\sqrt{SABC})}{BC + SA},\ "
+        r"\theta = \operatorname{atan2}(y, x) - \alpha,\quad "
+        r"(\cos\alpha, \sin\alpha) = \frac{(SB - AC,\ 2\sigma\sqrt{SABC})}{SB + AC}",
+        (
+            l1 * sp.cos(first) + l2 * sp.cos(first + second) - x,
+            l1 * sp.sin(first) + l2 * sp.sin(first + second) - y,
+        ),
+        {first: lift.angle, second: bend.angle},
+        2,
+    )
+    meaning = f"equal links folded onto the axis of {first}, which is free; 0 is returned."
+    cases = degenerate(folded, [_folded(x, y, l1, l2)], first, meaning)
+    meaning = f"a link without length: {second} is free; 0."
+    cases += degenerate(no_link, _stretched(x, y, l1, l2), second, meaning)
+    return Applied(lemma, (lift, bend), means | more, {}, cases)
+
+
+def _folded(
+    x: sp.Symbol, y: sp.Symbol, l1: sp.Expr, l2: sp.Expr
+) -> dict[sp.Symbol, sp.Expr] | None:
+    """Equal links that end where they begin; None where numbers make them unequal."""
+    end = {x: sp.S.Zero, y: sp.S.Zero}
+    if l1 == l2:
+        return end
+    if l2.is_Symbol:
+        return end | {l2: l1}
+    return end | {l1: l2} if l1.is_Symbol else None
+
+
+def _stretched(
+    x: sp.Symbol, y: sp.Symbol, l1: sp.Expr, l2: sp.Expr
+) -> list[dict[sp.Symbol, sp.Expr]]:
+    """Either link without length, and the other in any direction."""
+    u = real("beta")
+    return [
+        {x: (l1 + l2 - gone) * sp.cos(u), y: (l1 + l2 - gone) * sp.sin(u), gone: sp.S.Zero}
+        for gone in dict.fromkeys((l1, l2))
+        if gone.is_Symbol and l1 != l2
+    ]
+
+
+def polar(
+    chain: Chain,
+    angle: sp.Symbol,
+    length: sp.Symbol,
+    x: sp.Expr,
+    y: sp.Expr,
+    choice: Choice | None,
+    *,
+    name: str = "side",
+) -> Applied:
+    """``length u(angle) = (x, y)``: the length has either sign, or with no ``choice`` is positive.
+
+    ``length`` is a prismatic joint or an auxiliary length.  The angle is free where it vanishes.
+    """
+    p = chain.program
+    sigma = chain.sign(name, choice) if choice else sp.S.One
+    x, y = (chain.coefficient(f"{n}_{name}", e) for n, e in (("x", x), ("y", y)))
+    r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
+    flag: Any = sp.false
+    if not any(differs_from_zero(chain, e, chain.size) for e in (x, y)):
+        flag = p.vanishes(f"on_axis_{name}", r, chain.size, f"the axis of {angle} is met", (angle,))
+    pair, means = named(
+        chain, angle, Pair(choose(flag, 0, sigma * y / r), choose(flag, 1, sigma * x / r))
+    )
+    value = p.let(f"{length.name}_{name}", sigma * r)
+    lemma = Lemma(
+        "polar coordinates",
+        r"\rho\,u(\theta) = (x, y) \;\Rightarrow\; \rho = \sigma\sqrt{x^2 + y^2},\ "
+        r"\theta = \operatorname{atan2}(\sigma y, \sigma x)",
+        (length * sp.cos(angle) - x, length * sp.sin(angle) - y),
+        {angle: pair.angle, length: value},
+        2 if choice else 1,
+        excluded=0 if choice else 1,
+    )
+    meaning = f"the axis of {angle} is met; {angle} is free, 0 is returned."
+    cases = degenerate(flag, [vanishing(x, y)], angle, meaning)
+    return Applied(lemma, (pair, value), means | {value: length}, {}, cases)
+
+
+def slide(chain: Chain, joint: sp.Symbol, value: sp.Expr) -> Applied:
+    """``joint = value``: a prismatic joint along the direction of a coordinate."""
+    lemma = Lemma("slide", r"d = z", (joint - value,), {joint: value}, 1)
+    return Applied(lemma, value)
+
+
+def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
+    """``joint = total``, an angle: what the earlier joints leave of an angle of the target.
+
+    It is read from the sine and the cosine of the sum, which needs no reduction.
+    """
+    total = chain.by_angles(total)
+    pair = chain.pair_of(total)
+    if pair is None:
+        raise ShapeError(
+            f"{chain.d.name}: the lemma 'remaining angle' cannot read {joint} from {total}: it "
+            f"needs a sum of solved angles and angles of the target, each of them once"
+        )
+    lemma = Lemma(
+        "remaining angle",
+        r"\theta = \psi - \varphi",
+        (sp.cos(joint) - sp.cos(total), sp.sin(joint) - sp.sin(total)),
+        {joint: pair.angle},
+        1,
+    )
+    return Applied(lemma, total, {}, dict(chain.meaning))
+
+
+def zyz(
+    chain: Chain,
+    R: sp.Matrix,
+    first: sp.Symbol,
+    middle: sp.Symbol,
+    last: sp.Symbol,
+    choice: Choice,
+    *,
+    reaching: Reaching | None = None,
+    name: str = "wrist",
+) -> Applied:
+    """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
+
+    The last angle is read from the rotation that the first leaves, which keeps the product exact
+    near ``middle = 0``.  There only ``first + last`` or ``first - last`` is determined; first is 0,
+    or what keeps the rest of the arm within reach.
+    """
+    p = chain.program
+    sigma = chain.sign(name, choice)
+    h = p.let(f"h_{name}", sp.sqrt(R[0, 2] ** 2 + R[1, 2] ** 2), nonnegative=True)
+    free = next((a for a in (first, last) if a in chain.joints), None)
+    if free is None:
+        free = next(j for j in chain.joints if chain.defined[last].has(j))
+    aligned = p.vanishes(
+        f"aligned_{name}", h, 16, "the first and the last axis are parallel", free=(free,)
+    )
+    raw = Pair(sigma * R[1, 2] / h, sigma * R[0, 2] / h)
+    start, unit, near = Pair(sp.S.Zero, sp.S.One), {}, []
+    if reaching is not None:
+        raw = Pair(
+            p.let(f"s_{first}", choose(aligned, 0, raw.s)),
+            p.let(f"c_{first}", choose(aligned, 1, raw.c)),
+        )
+        start = reaching.middle() + Pair(-reaching.ahead.s, reaching.ahead.c)
+        close, moves, inside, moved = reaching.moved(raw + reaching.ahead, h)
+        off = moved + Pair(-reaching.ahead.s, reaching.ahead.c)
+        start = Pair(p.let("s_start", start.s), p.let("c_start", start.c))
+        off = Pair(p.let("s_off", off.s), p.let("c_off", off.c))
+        near.append((close, moves))
+        brought = sp.And(moves, sp.Not(inside))
+        s_near = p.let("s_kept", choose(brought, off.s, raw.s))
+        c_near = p.let("c_kept", choose(brought, off.c, raw.c))
+        raw = Pair(choose(close, s_near, raw.s), choose(close, c_near, raw.c))
+        t = real("t")
+        unit = {start.s: sp.sin(t), start.c: sp.cos(t), off.s: sp.sin(t), off.c: sp.cos(t)}
+    pair, means = named(
+        chain, first, Pair(choose(aligned, start.s, raw.s), choose(aligned, start.c, raw.c))
+    )
+    s, c = pair.s, pair.c
+    lemma = Lemma(
+        "ZYZ angles",
+        r"(c_1, s_1) = \sigma (R_{13}, R_{23})/h,\ h = \sqrt{R_{13}^2 + R_{23}^2};\quad "
+        r"\theta_2 = \operatorname{atan2}(c_1 R_{13} + s_1 R_{23}, R_{33});\quad "
+        r"\theta_3 = \operatorname{atan2}(c_1 R_{21} - s_1 R_{11}, c_1 R_{22} - s_1 R_{12})",
+        tuple(
+            sp.Matrix(
+                [[sp.cos(first), sp.sin(first), 0], [-sp.sin(first), sp.cos(first), 0], [0, 0, 1]]
+            )
+            * R
+            - sp.Matrix(
+                [
+                    [sp.cos(middle) * sp.cos(last), -sp.cos(middle) * sp.sin(last), sp.sin(middle)],
+                    [sp.sin(last), sp.cos(last), 0],
+                    [-sp.sin(middle) * sp.cos(last), sp.sin(middle) * sp.sin(last), sp.cos(middle)],
+                ]
+            )
+        ),
+        {
+            first: pair.angle,
+            middle: sp.atan2(c * R[0, 2] + s * R[1, 2], R[2, 2]),
+            last: sp.atan2(c * R[1, 0] - s * R[0, 0], c * R[1, 1] - s * R[0, 1]),
+        },
+        2,
+    )
+    given = dict(zip(R, rotation_parametrisation(), strict=True))
+    cases = [
+        Degenerate(
+            flags,
+            dict(zip(R, turned, strict=True)) | unit,
+            free if flags == (aligned,) else None,
+            f"the first and the last axis of the wrist are parallel; {free} is free.",
+        )
+        for flags in ((aligned,), *near)
+        for turned in _aligned(real("psi"))
+    ]
+    return Applied(lemma, pair, means, given, tuple(cases))
+
+
+def _aligned(psi: sp.Symbol) -> tuple[sp.Matrix, sp.Matrix]:
+    s, c = sp.sin(psi), sp.cos(psi)
+    return (
+        sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]]),
+        sp.Matrix([[-c, s, 0], [s, c, 0], [0, 0, -1]]),
+    )
+
+
+@dataclass(frozen=True)
+class Reaching:
+    """Directions u for which ``(x, y) - offset u`` is within reach of two links.
+
+    Where the target does not determine u, or only as far as rounding goes, the reach decides:
+    else a pose at a singular wrist could come back without a solution although it has one.
+    """
+
+    chain: Chain
+    x: sp.Expr
+    y: sp.Expr
+    offset: sp.Expr
+    l1: sp.Expr
+    l2: sp.Expr
+    ahead: Pair
+    """How far u is turned ahead of the angle that is solved for."""
+    lever: sp.Expr
+    """That of the turn before, over which a rounding of the target turns the wrist."""
+
+    def _at(self, reach: sp.Expr, side: sp.Expr, name: str) -> Pair:
+        def vanishes(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Symbol:
+            return self.chain.program.vanishes(name, value, scale, "the turn has no effect")
+
+        at = (self.x, self.y)
+        pair, unit = leaving(self.chain, at, self._r, self.offset, reach, side, name, vanishes)
+        self.chain.units.append((pair.s, pair.c, unit))
+        return pair
+
+    @cached_property
+    def _r(self) -> sp.Expr:
+        return self.chain.program.let("r_hub", sp.sqrt(self.x**2 + self.y**2), nonnegative=True)
+
+    def middle(self) -> Pair:
+        """Of the distances that the turning offset allows, the middle of those in reach."""
+        p, r = self.chain.program, self._r
+        nearest = p.let("nearest", sp.Max(sp.Abs(self.l1 - self.l2), sp.Abs(r - self.offset)))
+        farthest = p.let("farthest", sp.Min(self.l1 + self.l2, r + self.offset))
+        return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
+
+    def moved(self, u: Pair, play: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, Pair]:
+        """Flags: u may be in doubt, the nearest direction in reach is u within rounding, it is u.
+
+        That direction is returned too.  ``play`` is what multiplies an error of u in the target.
+        """
+        p, size = self.chain.program, self.chain.size
+        close = p.vanishes("close", play * self.lever - size / 2**11, size, "it may be in doubt")
+        ex, ey = self.x - self.offset * u.c, self.y - self.offset * u.s
+        there = p.let("here", sp.sqrt(ex**2 + ey**2))
+        reach = p.let(
+            "in_reach", sp.Min(sp.Max(there, sp.Abs(self.l1 - self.l2)), self.l1 + self.l2)
+        )
+        cross = p.let("cross", self.x * u.s - self.y * u.c)
+        flat = p.vanishes("flat", sp.Abs(cross), size, "the offset is in line")
+        side = choose(flat, 1, cross / sp.Abs(cross))
+        v = self._at(reach, p.let("side", side), "near")
+        inside = p.vanishes("inside", sp.Abs(reach - there), size, "it is in reach")
+        change = sp.sqrt((v.c - u.c) ** 2 + (v.s - u.s) ** 2)
+        doubt = play * change - sp.Rational(1, 2**42)  # of which single precision knows nothing
+        near = p.vanishes("within_rounding", doubt, 4, "the turn is free within rounding")
+        return close, near, inside, v

@@ -1,0 +1,264 @@
+"""Turns whose two solutions nearly meet, within the reach of the joints that follow.
+
+There a rounding of the target turns the joint by a multiple of it, and what is left for the later
+joints may seem beyond their limit although the target is the image of a posture.  Of the turns that
+the target does not tell apart, one is taken that leaves them within reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.lemmas.chain import Chain
+from closedform.lemmas.pairs import Pair
+from closedform.model.functions import choose, real, sign_of
+
+ROUNDING = sp.Rational(1, 2**44)
+"""How far a turn may move the target, in units of the size of the arm: 256 units in its last place,
+which is more than a forward map and the inverse up to there lose, and far below the tolerance."""
+
+LAST = sp.Rational(1, 2**50)
+"""What counts as zero in relation to its scale, as for a flag."""
+
+
+@dataclass(frozen=True)
+class Turned(Pair):
+    """The pair of a joint, and the ``lever`` by which it moves the target across its plane.
+
+    A rounding of the target turns the joint by that rounding over the lever.
+    """
+
+    lever: sp.Expr
+
+
+@dataclass(frozen=True)
+class Within:
+    """A point whose distance from the origin must be between ``low`` and ``high``.
+
+    A turn moves the point by ``rate`` times its angle.
+    """
+
+    point: tuple[sp.Expr, sp.Expr]
+    rate: tuple[sp.Expr, sp.Expr]
+    low: sp.Expr
+    high: sp.Expr
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A turn that may be changed: its pair in names that end in ``name``.
+
+    It moves the target by the ``lever`` times its angle and ``beside`` times half the square.
+    """
+
+    chain: Chain
+    pair: Pair
+    lever: sp.Expr
+    beside: sp.Expr
+    name: str
+
+    def let(self, name: str, value: sp.Expr) -> sp.Symbol:
+        return self.chain.program.let(f"{name}_{self.name}", value)
+
+    def renamed(self, pair: Pair, name: str) -> Turn:
+        p = self.chain.program
+        return Turn(
+            self.chain,
+            Pair(p.let(f"s_{name}", pair.s), p.let(f"c_{name}", pair.c)),
+            self.lever,
+            self.beside,
+            name,
+        )
+
+    def linear(
+        self, name: str, value: Callable[[Pair], sp.Matrix]
+    ) -> tuple[tuple[sp.Expr, sp.Expr], tuple[sp.Expr, sp.Expr]]:
+        """The first two coordinates of what is linear in the pair, and their rates."""
+        s, c = sp.Dummy("s"), sp.Dummy("c")
+        x, y = value(Pair(s, c))[:2]
+        here = {s: self.pair.s, c: self.pair.c}
+
+        def rate(e: sp.Expr) -> sp.Expr:
+            return e.diff(s) * self.pair.c - e.diff(c) * self.pair.s
+
+        return (
+            (self.let(f"{name}x", x.xreplace(here)), self.let(f"{name}y", y.xreplace(here))),
+            (self.let(f"d{name}x", rate(x)), self.let(f"d{name}y", rate(y))),
+        )
+
+    def by(self, sine: sp.Expr, cosine: sp.Expr, unless: sp.Basic = sp.false) -> Pair:
+        """Turned further, where the target does not tell the difference."""
+        versine = sine**2 / (1 + sp.Abs(cosine))
+        cost = self.let("cost", sp.Abs(self.lever * sine) + sp.Abs(self.beside) * versine)
+        size = self.let("whole", self.chain.size * ROUNDING)
+        allowed = sp.And(cost <= size, sp.Not(unless), cosine > 0)
+        s, c = (
+            self.let(n, sp.Piecewise((value, allowed), (sp.Integer(k), True)))
+            for n, value, k in (("sine", sine, 0), ("cosine", cosine, 1))
+        )
+        return self.pair + Pair(s, c)
+
+    def least(self, goal: Within) -> Pair:
+        """Turned as little as brings a point within reach."""
+        (x, y), (dx, dy) = goal.point, goal.rate
+        square = self.let("square", x**2 + y**2)
+        low, high = self.let("low", goal.low**2), self.let("high", goal.high**2)
+        miss = self.let("miss", square - sp.Max(low, sp.Min(high, square)))
+        slope, bend = self.let("slope", x * dx + y * dy), self.let("bend", dx**2 + dy**2)
+        inner = self.let("inner", slope**2 - bend * miss)
+        outer = self.let("outer", slope + sign_of(slope) * sp.sqrt(sp.Max(inner, 0)))
+        half = self.let(
+            "half",
+            sp.Piecewise((-slope / (2 * bend), inner < 0), (-miss / (2 * outer), True)),
+        )
+        total = self.let("total", 1 + half**2)
+        return self.by(
+            self.let("by_s", 2 * half / total),
+            self.let("by_c", (1 - half**2) / total),
+        )
+
+
+@dataclass(frozen=True)
+class Links:
+    """Two links that have to reach the point q of their plane, linear in the pair of a turn."""
+
+    q: Callable[[Pair], sp.Matrix]
+    l1: sp.Expr
+    l2: sp.Expr
+
+    def reached(self, turn: Turn) -> Pair:
+        """The pair of the turn, changed by no more than rounding, with q within reach."""
+        x, y = turn.linear("q", self.q)
+        return turn.least(Within(x, y, sp.Abs(self.l1 - self.l2), self.l1 + self.l2))
+
+
+@dataclass(frozen=True)
+class LinksAndWrist(Links):
+    """They reach q less an offset; a wrist turns it, whose ``axis`` is linear in the pair too.
+
+    The offset is turned ``ahead`` of the direction of that axis, or with ``sigma`` of its opposite.
+    """
+
+    axis: Callable[[Pair], sp.Matrix]
+    offset: sp.Expr
+    ahead: Pair
+    sigma: sp.Symbol = real("sigma_wrist")  # noqa: RUF009
+
+    def reached(self, turn: Turn) -> Pair:
+        first = turn.least(self.goal(turn, sp.Max(turn.lever, turn.chain.size / 2**22)))
+        turn = turn.renamed(first, f"{turn.name}_2")
+        second = self.aligned(turn)
+        for step in ("3", "4"):
+            turn = turn.renamed(second, f"{turn.name}_{step}")
+            second = turn.least(self.goal(turn, turn.chain.size))
+        return second
+
+    def goal(self, turn: Turn, lever: sp.Expr) -> Within:
+        """Where rounding over a ``lever`` turns the wrist by any angle, so it does the offset."""
+        (qx, qy), (dqx, dqy) = turn.linear("q", self.q)
+        (ax, ay), (dax, day) = turn.linear("axis", self.axis)
+        h = turn.let("h", sp.sqrt(ax**2 + ay**2))
+        u = Pair(self.sigma * ay / h, self.sigma * ax / h) + self.ahead
+        us, uc = turn.let("us", u.s), turn.let("uc", u.c)
+        rate = turn.let("rate", self.offset * (ax * day - ay * dax) / h**2)
+        least = turn.let("fold", sp.Abs(self.l1 - self.l2))
+        most = turn.let("full", self.l1 + self.l2)
+        size = turn.let("size", turn.chain.size)
+        slack = turn.let("slack", h * lever)
+        loose = slack <= size / 2**46
+        apart = turn.let("apart", sp.Max(least - self.offset, self.offset - most))
+        x, y, dx, dy, low, high = (
+            turn.let(n, sp.Piecewise((a, loose), (b, True)))
+            for n, a, b in (
+                ("x", qx, qx - self.offset * uc),
+                ("y", qy, qy - self.offset * us),
+                ("dx", dqx, dqx + rate * us),
+                ("dy", dqy, dqy - rate * uc),
+                ("nearest", sp.Max(0, apart), least),
+                ("farthest", most + self.offset, most),
+            )
+        )
+        return Within((x, y), (dx, dy), low, high)
+
+    def aligned(self, turn: Turn) -> Pair:
+        """Turned so that the axis of the wrist has the nearest direction that is within reach.
+
+        A turn changes one coordinate of the axis alone; where the other is zero as well as rounding
+        goes, the wrist is aligned.
+        """
+        chain = turn.chain
+        (qx, qy), _ = turn.linear("q", self.q)
+        (ax, ay), (dax, _) = turn.linear("axis", self.axis)
+        h = turn.let("h", sp.sqrt(ax**2 + ay**2))
+        u = Pair(self.sigma * ay / h, self.sigma * ax / h) + self.ahead
+        us, uc = turn.let("us", u.s), turn.let("uc", u.c)
+        there = turn.let(
+            "there", sp.sqrt((qx - self.offset * uc) ** 2 + (qy - self.offset * us) ** 2)
+        )
+        nearest, farthest = sp.Abs(self.l1 - self.l2), self.l1 + self.l2
+        reach = turn.let("goal", sp.Min(sp.Max(there, nearest), farthest))
+        side = turn.let("side", sign_of(qx * us - qy * uc))
+        r = turn.let("r", sp.sqrt(qx**2 + qy**2))
+        back = Pair(-self.ahead.s, self.ahead.c)
+        (vs, vc), (ws, wc) = (
+            (turn.let(f"{n}s", v.s), turn.let(f"{n}c", v.c))
+            for n, sign in (("v", 1), ("w", -1))
+            for v in [
+                leaving(
+                    chain, (qx, qy), r, self.offset, reach, sign * side, f"{n}_{turn.name}", plain
+                )[0]
+                + back
+            ]
+        )
+        other = turn.let("other", self.sigma * ay * vs) < 0  # the turn does not change ay
+        vs, vc = (
+            turn.let(n, sp.Piecewise((w, other), (v, True)))
+            for n, v, w in (("to_s", vs, ws), ("to_c", vc, wc))
+        )
+        nothing = sp.Abs(ay) <= 16 * LAST
+        most = turn.let("most", sp.sqrt(ax**2 + dax**2))
+        wanted = turn.let("wanted", choose(nothing, 0, ay * vc / vs))
+        wanted = turn.let("kept", sp.Max(-most, sp.Min(most, wanted)))
+        rest = turn.let("rest", sign_of(dax) * sp.sqrt((most - wanted) * (most + wanted)))
+        inside = sp.Abs(reach - there) <= chain.size * LAST
+        return turn.by(
+            turn.let("by_s", (dax * wanted - ax * rest) / most**2),
+            turn.let("by_c", (ax * wanted + dax * rest) / most**2),
+            unless=inside,
+        )
+
+
+def plain(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Basic:
+    """A condition that a value vanishes, for what is computed only where a turn is tangent."""
+    return value <= scale * LAST
+
+
+def leaving(
+    chain: Chain,
+    point: tuple[sp.Expr, sp.Expr],
+    r: sp.Expr,
+    offset: sp.Expr,
+    reach: sp.Expr,
+    side: sp.Expr,
+    name: str,
+    vanishes: Callable[[str, sp.Expr, sp.Expr], sp.Basic],
+) -> tuple[Pair, tuple[sp.Expr, ...]]:
+    """The direction u for which a point, r away, less ``offset`` times u is ``reach`` away.
+
+    It follows from the cosine rule in half angles, to one ``side`` of the point; what it is made of
+    is returned too.
+    """
+    p, e, (x, y) = chain.program, offset, point
+    cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)
+    ss = p.let(f"d_{name}", sp.Max(0, (reach - r + e) * (reach + r - e)), nonnegative=True)
+    total = p.let(f"n_{name}", cc + ss, nonnegative=True)
+    any_turn = vanishes(f"any_{name}", total, chain.size**2)
+    cosine = p.let(f"uc_{name}", choose(any_turn, 1, (cc - ss) / total))
+    sine = p.let(f"us_{name}", choose(any_turn, 0, 2 * side * sp.sqrt(cc) * sp.sqrt(ss) / total))
+    at_hub = vanishes(f"hub_{name}", r, chain.size)
+    s = p.let(f"s_{name}", choose(at_hub, 0, (y * cosine + x * sine) / r))
+    c = p.let(f"c_{name}", choose(at_hub, 1, (x * cosine - y * sine) / r))
+    return Pair(s, c), (cc, ss, side)

@@ -1,0 +1,92 @@
+"""Two equations in the sines and cosines of two angles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from closedform.model.functions import Program, choose, sign_of, used_up
+from closedform.model.lemma import Lemma
+
+
+def two_sines(
+    program: Program,
+    unknowns: tuple[sp.Symbol, sp.Symbol],
+    u: tuple[sp.Expr, sp.Expr],
+    v: tuple[sp.Expr, sp.Expr],
+    p: tuple[sp.Expr, sp.Expr],
+    scale: sp.Expr,
+    *,
+    free: Sequence[sp.Symbol] = (),
+) -> Lemma:
+    """``u sin x + v sin y = p`` for vectors of the plane, and cosines that are not negative.
+
+    The part of the equation across u gives sin y; what is left along u gives sin x, so that an
+    error of y does no harm where u and v are nearly parallel.  There sin y is not known to many
+    digits, and one is taken that leaves u no more than its length.  Where they are parallel a
+    combination of the sines is free; the convention is that both are equally large, which exists
+    whenever any answer does.  The directions of u and v are known to a few units in the last
+    place, so that a multiple of the usual tolerance counts as parallel.  Cosines are kept from
+    zero, so that their sign can be read from the answer.  ``scale`` is the natural scale of p,
+    which decides how far the equation may be missed.
+    """
+    x, y = unknowns
+    area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
+    sigma = program.let("sigma_uv", sign_of(area))
+    start = len(program.body)
+    size = sp.sqrt(u[0] ** 2 + u[1] ** 2)
+    size = size if size.is_Symbol else program.let("size_u", size, nonnegative=True)
+    aside = program.let("v_across_u", sigma * (u[0] * v[1] - u[1] * v[0]) / size)
+    lean = program.let("v_along_u", (u[0] * v[0] + u[1] * v[1]) / size)
+    ahead = program.let("p_along_u", (u[0] * p[0] + u[1] * p[1]) / size)
+    across = program.let("p_across_u", sigma * (u[0] * p[1] - u[1] * p[0]) / size)
+    parallel = program.vanishes(
+        "parallel", aside, 64 * sp.Abs(lean), "both vectors are parallel", free
+    )
+    for name, room in (("room_below", aside - across), ("room_above", aside + across)):
+        program.bound(name, room, scale, "a sine is at most 1")
+    with_v = sp.Piecewise((ahead, lean >= 0), (-ahead, True))
+    whole = program.let("whole_y", choose(parallel, size + sp.Abs(lean), aside))
+    part = program.let("part_y", choose(parallel, with_v, across))
+    _, sine = _from_sine(program, f"{y}_0", part, whole, scale)
+    rest = program.let("rest", ahead - sine * lean)
+    left = program.let("left_along", size - sp.Abs(rest))
+    spent = program.vanishes("spent_along", used_up(left), scale, "no room: a sine is at most 1")
+    loose = sp.Abs(lean) / (aside + sp.Rational(1, 10**9) * size)
+    play = program.let("play_along", scale * (1 + choose(spent, loose, 0)))
+    program.bound("kept_along", left, play, "a sine is at most 1")
+    lacking = (sp.Abs(left) - left) / 2 * lean / (lean**2 + aside**2)
+    eased = sp.Piecewise((lacking, rest >= 0), (-lacking, True))
+    part = program.let("eased", choose(spent, part + whole * eased, part))
+    cy, sy = _from_sine(program, str(y), part, whole, scale)
+    along = program.let("along_u", ahead - sy * lean)
+    cx, sx = _from_sine(program, str(x), along, size, scale)
+    return Lemma(
+        "two sines",
+        r"u\sin x + v\sin y = p,\ \cos x \ge 0,\ \cos y \ge 0 \;\Rightarrow\; "
+        r"\sin y = \frac{u \times p}{u \times v},\ "
+        r"\sin x = \frac{u \cdot (p - v \sin y)}{u \cdot u}",
+        tuple(u[k] * sp.sin(x) + v[k] * sp.sin(y) - p[k] for k in (0, 1)),
+        {x: sp.atan2(sx, cx), y: sp.atan2(sy, cy)},
+        1,
+        excluded=3,
+        means={cx: sp.cos(x), sx: sp.sin(x), cy: sp.cos(y), sy: sp.sin(y)},
+        body=tuple(program.body[start:]),
+    )
+
+
+def _from_sine(
+    program: Program, x: str, part: sp.Expr, whole: sp.Expr, scale: sp.Expr
+) -> tuple[sp.Symbol, sp.Symbol]:
+    """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""
+    below, above = (
+        program.bound(f"{name}_{x}", value, scale, meaning, positive=True)
+        for name, value, meaning in (
+            ("below", whole - part, "a sine is at most 1"),
+            ("above", whole + part, "a sine is at least -1"),
+        )
+    )
+    total = program.let(f"total_{x}", below + above)
+    cosine = program.let(f"c_{x}", 2 * sp.sqrt(below) * sp.sqrt(above) / total)
+    return cosine, program.let(f"s_{x}", (above - below) / total)

@@ -1,0 +1,1 @@
+"""Frames, serial arms and loops."""

@@ -1,0 +1,562 @@
+"""Serial chains: from a table of joints to the pose, the Jacobians and their determinant.
+
+A chain is given by rows of Denavit-Hartenberg (standard or modified) or by the screws of its axes
+at home.  What every serial arm has, one call derives, proves and exports.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.normal_form import determinant
+from closedform.mechanics.frames import (
+    denavit_hartenberg,
+    exponential,
+    homogeneous,
+    merge_angles,
+    reduce_circle,
+    rotation,
+    simplest,
+    twist_matrix,
+)
+from closedform.mechanics.links import Group, Link, Motion, Row, groups_of
+from closedform.mechanics.mobility import dependent_joints, singular_everywhere
+from closedform.model.derivation import Derivation
+from closedform.model.functions import reject_text
+
+
+class RowError(ValueError):
+    """A row of a table of joints that cannot be read."""
+
+
+@dataclass(frozen=True)
+class Serial:
+    """A serial chain of joints: ``pose`` of the tool, and the twist of each joint as it stands.
+
+    ``space`` and ``body`` are the 6xn Jacobians, twists ``(v; omega)`` in the base frame and in
+    that of the tool; ``geometric`` has the velocity of the tool's origin and the angular velocity,
+    both in base axes.
+    """
+
+    joints: tuple[sp.Symbol, ...]
+    pose: sp.Matrix
+    space: sp.Matrix
+    body: sp.Matrix
+    geometric: sp.Matrix
+    moves: tuple[sp.Matrix, ...]
+    middle: sp.Matrix
+    """The twists in the frame, somewhere along the chain, where they are shortest."""
+    groups: tuple[Group, ...]
+    """The joints by parallel axes, between the frames ``lead`` and ``last``."""
+    lead: sp.Matrix
+    last: sp.Matrix
+
+    @property
+    def position(self) -> sp.Matrix:
+        return self.pose[:3, 3]
+
+    def determinant(self) -> sp.Expr:
+        """Of either Jacobian of an arm of six joints, factored.
+
+        A change of frame does not change it, so it is taken where the twists are shortest.
+        """
+        return _determinant(self.middle)
+
+    def require_regular(self, name: str) -> None:
+        """Raise ``SingularEverywhereError`` if no posture is regular."""
+        task, n = self.coordinates(), len(self.joints)
+        if task is None and n != 6:
+            return
+        J = self.middle if task is None else task.J
+        if dependent_joints(J, self.joints)[0] < n and _determinant(J) == 0:
+            raise singular_everywhere(name, J, self.joints)
+
+    def coordinates(self) -> Coordinates | None:
+        """As many task coordinates as joints: of x, y, z and the yaw those that the joints move.
+
+        None where the whole pose is the task, or where no such choice is plain.
+        """
+        n = len(self.joints)
+        moved = [i for i in range(6) if any(e != 0 for e in self.geometric.row(i))]
+        linear = [i for i in moved if i < 3]
+        rows = next((r for r in (moved, linear) if len(r) == n and set(r) <= {0, 1, 2, 5}), None)
+        if rows is None:
+            return None
+        values = [self.position[i] if i < 3 else self._yaw() for i in rows]
+        names = tuple(("x", "y", "z", "roll", "pitch", "yaw")[i] for i in rows)
+        return Coordinates(names, sp.Matrix(values), self.geometric.extract(rows, list(range(n))))
+
+    def _yaw(self) -> sp.Expr:
+        """The angle of the tool about z, for an arm whose joints turn it about z alone."""
+        turns = self.geometric.row(5)
+        home = self.pose[:3, :3].subs(dict.fromkeys(self.joints, 0))
+        return sum(
+            (w * joint for w, joint in zip(turns, self.joints, strict=True)),
+            sp.atan2(home[1, 0], home[0, 0]),
+        )
+
+    def export(self, d: Derivation) -> Any:
+        """Record pose, Jacobians and determinant as proved steps, and export them as functions.
+
+        Returns the forward map that an inverse must solve: the task coordinates in the joints
+        where the arm has as many (see :meth:`coordinates`), else the pose.
+        """
+        q, task = self.joints, self.coordinates()
+        self.require_regular(d.name)
+        d.step(
+            "Pose",
+            "The product of the motions from link to link, the angles of parallel axes added.",
+            {**{f"A_{i}": A for i, A in enumerate(self.moves, 1)}, "T": self.pose},
+            equal=[(sp.prod(self.moves), self.pose)],
+        )
+        d.function("pose", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
+        d.step(
+            "Jacobians",
+            "The columns are the twists (v; omega) of the joints as they stand: that of a revolute "
+            "joint is its axis w and the velocity -w x p that it gives to the origin, that of a "
+            "prismatic joint its direction.  Differentiating the pose gives the same.",
+            {"J": self.geometric, "J_s": self.space, "J_b": self.body},
+            equal=[(self.geometric[:3, :], self.position.jacobian(q))]
+            + [(self.geometric[3:, :], self.space[3:, :])]
+            + [
+                pair
+                for i, joint in enumerate(q)
+                for pair in (
+                    (self.pose.diff(joint), twist_matrix(self.space[:, i]) * self.pose),
+                    (self.pose.diff(joint), self.pose * twist_matrix(self.body[:, i])),
+                )
+            ],
+        )
+        if task is None:
+            self._export_pose_task(d)
+        else:
+            self._export_coordinates(d, task)
+        for name, J, frame in (
+            ("jacobian_space", self.space, "the base frame"),
+            ("jacobian_body", self.body, "its own frame"),
+        ):
+            summary = f"Twist (v; omega) of the tool in {frame} per joint rate."
+            d.function(name, summary, {"q": q}, {"J": J})
+        return self.pose if task is None else task.values
+
+    def _export_pose_task(self, d: Derivation) -> None:
+        q = self.joints
+        if not d.task:
+            d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
+        d.function("fk", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
+        d.function(
+            "jacobian",
+            "Velocity of the tool over its angular velocity, in base axes, per joint rate.",
+            {"q": q},
+            {"J": self.geometric},
+            notes=("The geometric Jacobian: rows (v; omega), v of the origin of the tool.",),
+        )
+        if len(q) == 6:
+            self._export_determinant(d, self.determinant(), ())
+
+    def _export_coordinates(self, d: Derivation, task: Coordinates) -> None:
+        q, values = self.joints, list(task.values)
+        if not d.task:
+            d.task = list(task.names)
+        if "yaw" in task.names:
+            turn = values[-1]
+            d.step(
+                "Task coordinates",
+                "The joints turn the tool about z alone: its yaw is the direction of its x axis.",
+                {r"\psi": turn},
+                equal=[(self.pose[:2, 0], sp.Matrix([sp.cos(turn), sp.sin(turn)]))],
+            )
+            values[-1] = sp.atan2(sp.sin(turn), sp.cos(turn))
+        shown = ", ".join(task.names)
+        notes = ("The yaw is reduced to (-pi, pi].",) if "yaw" in task.names else ()
+        d.function("fk", f"Task coordinates ({shown}).", {"q": q}, {"x": values}, notes=notes)
+        d.function("jacobian", f"Derivative of ({shown}) by the joints.", {"q": q}, {"J": task.J})
+        det = _determinant(task.J)
+        check = [
+            (task.values.jacobian(q), task.J),
+            (task.J.det(method="berkowitz"), det),
+        ]
+        self._export_determinant(d, det, check)
+
+    def _export_determinant(
+        self, d: Derivation, det: sp.Expr, equal: Sequence[tuple[Any, Any]]
+    ) -> None:
+        q = self.joints
+        factors = joint_factors(det, q)
+        d.step(
+            "Determinant and singular set",
+            "The arm is singular exactly where a factor that holds a joint vanishes (for links "
+            "that have a length): the joints then cannot move the tool in some direction.",
+            {r"\det J": det},
+            equal=[*equal, (det, sp.cancel(det / sp.prod(factors)) * sp.prod(factors))],
+        )
+        d.function("determinant", "Determinant of the Jacobian.", {"q": q}, {"det": det})
+        summary = "The factors of the determinant that hold a joint."
+        d.function("singularities", summary, {"q": q}, {"factors": factors})
+        if len(d.singularities) != len(factors):
+            shown = (f.primitive()[1] for f in factors)
+            d.singularities = tuple(f"{f} = 0".replace("**", "^") for f in shown)
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """Task coordinates: their names, their values in the joints, and their derivative."""
+
+    names: tuple[str, ...]
+    values: sp.Matrix
+    J: sp.Matrix
+
+
+def joint_factors(det: sp.Expr, joints: Sequence[sp.Symbol]) -> list[sp.Expr]:
+    """The factors of a determinant that hold a joint, each once."""
+    return [f.as_base_exp()[0] for f in sp.Mul.make_args(det) if f.has(*joints)] or [det]
+
+
+def from_dh(
+    d: Derivation, rows: Sequence[Sequence[Any]], *, modified: bool = False, tool: Any = None
+) -> Serial:
+    """The chain of a Denavit-Hartenberg table with rows ``(a, alpha, d, theta)``.
+
+    The variable of a row is the joint that stands in it, with either sign: in ``theta`` for a
+    revolute joint, in ``d`` for a prismatic one.  A row without a joint is a fixed transform, such
+    as a base or a tool.  ``modified`` rows are Craig's (proximal).  ``tool`` is the pose of the
+    tool in the last frame.
+    """
+    moves, lead = [], sp.eye(4)
+    links: list[Link] = []
+    for i, row in enumerate(rows, 1):
+        where = f"{d.name}: row {i} of the Denavit-Hartenberg table"
+        a, alpha, offset, theta = entries = _dh_row(d, row, where)
+        moves.append(denavit_hartenberg(a, alpha, offset, theta, modified=modified))
+        motion = _motion(d, entries, where)
+        step = homogeneous(rotation("x", alpha), (a, 0, 0))
+        if modified:
+            lead = _followed(lead, links, step)
+        if motion:
+            links.append(Link(motion, theta, offset, sp.eye(4)))
+        else:
+            fixed = denavit_hartenberg(sp.S.Zero, sp.S.Zero, offset, theta)
+            lead = _followed(lead, links, fixed)
+        if not modified:
+            lead = _followed(lead, links, step)
+    if not links:
+        raise RowError(f"{d.name}: no row of the Denavit-Hartenberg table holds a joint")
+    last = sp.eye(4) if tool is None else _rigid(d, tool, "the tool")
+    rest = () if tool is None else (last,)
+    turned = sp.eye(3)
+    if lead[:2, 2].is_zero_matrix:  # the base is turned about the first axis, as the joint turns
+        turned, lead = lead[:3, :3], homogeneous(sp.eye(3), tuple(lead[:3, 3]))
+    motions = [link.motion for link in links]
+    return _assembled(motions, groups_of(links, turned), lead, last, (*moves, *rest))
+
+
+def _dh_row(d: Derivation, row: Sequence[Any], where: str) -> list[sp.Expr]:
+    """The exact entries of a row, in which only parameters and joints stand."""
+    if len(row) != 4:
+        raise RowError(
+            f"{where} has {len(row)} entries ({', '.join(map(str, row))}); it needs 4: a, alpha, "
+            f"d, theta"
+        )
+    entries = [_exact(e, where) for e in row]
+    known = {p.symbol for p in d.parameters} | {j.symbol for j in d.joints}
+    if unknown := sorted(map(str, {s for e in entries for s in e.free_symbols} - known)):
+        raise RowError(
+            f"{where}: the symbol {unknown[0]} is neither a parameter nor a joint; declare it "
+            f"with d.parameter or d.joint"
+        )
+    return entries
+
+
+def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | None:
+    """What the joint of a row moves; None where it holds no joint."""
+    joints = {j.symbol: j.kind for j in d.joints}
+    held = sorted({s for e in entries for s in e.free_symbols if s in joints}, key=str)
+    if not held:
+        return None
+    if len(held) > 1:
+        raise RowError(f"{where} must hold at most one joint, not {', '.join(map(str, held))}")
+    (joint,) = held
+    column, name = (3, "theta") if joints[joint] == "revolute" else (2, "d")
+    place = entries[column]
+    if not place.has(joint):
+        raise RowError(
+            f"{where}: the {joints[joint]} joint {joint} must stand in the column {name}"
+        )
+    sense = place.diff(joint)
+    if sense not in (1, -1) or any(
+        e.has(joint) for e in (*entries[:column], *entries[column + 1 :])
+    ):
+        raise RowError(
+            f"{where}: the joint {joint} must stand in the column {name} alone, with either sign, "
+            f"as it is or with a constant added to it, not as "
+            f"{place if sense not in (1, -1) else tuple(entries)}"
+        )
+    return Motion(joint, joints[joint] == "prismatic", int(sense))
+
+
+def _followed(lead: sp.Matrix, links: list[Link], step: sp.Matrix) -> sp.Matrix:
+    """The constant motion before the first joint; ``step`` goes there, or to the last joint."""
+    before = links[-1].after if links else lead
+    plain = sp.eye(4) in (before, step)
+    after = before * step if plain else simplest((before * step).applyfunc(sp.expand))
+    if not links:
+        return after
+    links[-1] = links[-1]._replace(after=after)
+    return lead
+
+
+def from_screws(
+    d: Derivation, axes: Sequence[tuple[sp.Symbol, Sequence[Any], Sequence[Any]]], home: Any
+) -> Serial:
+    """The chain of axes at home: ``(joint, direction, point)``, and the ``home`` pose of the tool.
+
+    A direction is a unit vector; the point of a prismatic joint does not matter.  What is no axis
+    or no pose raises :class:`RowError`.
+    """
+    if not axes:
+        raise RowError(f"{d.name}: there are no axes")
+    kinds = {j.symbol: j.kind for j in d.joints}
+    motions: list[Motion] = []
+    directions, points, moves = [], [], []
+    for i, (joint, direction, point) in enumerate(axes, 1):
+        where = f"{d.name}: axis {i}"
+        if joint not in kinds:
+            raise RowError(f"{where}: {joint} is not a joint; declare it with d.joint")
+        w = _constant(d, direction, where)
+        at = _constant(d, point, where)
+        if len(w) != 3 or len(at) != 3:
+            raise RowError(f"{where} needs a direction and a point of 3 coordinates each")
+        _check_unit(w, where)
+        revolute = kinds[joint] == "revolute"
+        twist = sp.Matrix([*at.cross(w), *w]) if revolute else sp.Matrix([*w, 0, 0, 0])
+        motions.append(Motion(joint, not revolute))
+        directions.append(w)
+        points.append(at)
+        moves.append(exponential(twist, joint))
+    home = _rigid(d, home, "the pose at home")
+    frame = _frame_along(directions[0])
+    lead = homogeneous(frame, tuple(points[0]))
+    groups: list[Group] = []
+    current: list[Row] = []
+    for i, (joint, slides, _) in enumerate(motions):
+        sign = 1 if frame[:, 2] == directions[i] else -1
+        last = i == len(motions) - 1
+        step = frame.T * ((home[:3, 3] if last else points[i + 1]) - points[i])
+        turn = sp.S.Zero if slides else sign * joint
+        shift = tuple(step + sp.Matrix([0, 0, sign * joint if slides else 0]))
+        current.append(Row(sign, turn, shift, slides))
+        if last or directions[i + 1] not in (frame[:, 2], -frame[:, 2]):
+            after = home[:3, :3] if last else _frame_along(directions[i + 1])
+            groups.append(Group(tuple(current), frame.T * after))
+            frame, current = after, []
+    return _assembled(motions, groups, lead, sp.eye(4), (*moves, home))
+
+
+def _constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
+    """Exact entries in which only parameters stand."""
+    reject_text(entries, where)
+    exact = sp.Matrix(entries)
+    exact = sp.Matrix(*exact.shape, [_exact(e, where) for e in exact])
+    joints = {j.symbol for j in d.joints}
+    for symbol in sorted(exact.free_symbols - {p.symbol for p in d.parameters}, key=str):
+        if symbol in joints:
+            raise RowError(f"{where}: the joint {symbol} stands in it; at home all joints are zero")
+        raise RowError(
+            f"{where}: the symbol {symbol} is not a parameter; declare it with d.parameter"
+        )
+    return exact
+
+
+def _check_unit(w: sp.Matrix, where: str) -> None:
+    length = sp.simplify(sp.sqrt(w.dot(w)))
+    if length == 1:
+        return
+    text = ", ".join(map(str, w))
+    if length == 0:
+        raise RowError(f"{where}: the direction ({text}) is zero; an axis needs a unit vector")
+    if w.free_symbols:
+        remedy = "write numbers, or the cosine and the sine of an angle"
+    elif all(e.is_Integer for e in w):
+        remedy = f"write ({', '.join(map(str, w / length))})"
+    else:
+        remedy = "numbers are exact: write sqrt(2)/2, not 0.7071"
+    size = str(length) if w.free_symbols else f"{float(length):.6g}"
+    raise RowError(f"{where}: the direction ({text}) has the length {size}, not 1; {remedy}")
+
+
+def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
+    """A constant pose, 4x4, whose rotation is one."""
+    where = f"{d.name}: {what}"
+    T = _constant(d, pose, where)
+    if T.shape != (4, 4) or T.row(3) != sp.Matrix([[0, 0, 0, 1]]):
+        raise RowError(f"{where} must be a 4x4 matrix with the last row 0, 0, 0, 1")
+    R = T[:3, :3]
+    if sp.simplify(R.T * R) != sp.eye(3):
+        raise RowError(
+            f"{where}: {R.tolist()} is not a rotation: {_not_orthonormal(R)}; the rows must be "
+            f"unit vectors at right angles to each other, written exactly (sqrt(3)/2, not 0.866)"
+        )
+    if sp.simplify(R.det()) != 1:
+        raise RowError(
+            f"{where}: its rotation {R.tolist()} is mirrored; the third column must be the cross "
+            f"product of the first two, x, y and z of the tool"
+        )
+    return T
+
+
+def _not_orthonormal(R: sp.Matrix) -> str:
+    """The row that is not a unit vector, or the rows that are not at right angles."""
+    for i in range(3):
+        for j in range(i + 1):
+            value = sp.simplify(R.row(i).dot(R.row(j)))
+            if value != (1 if i == j else 0):
+                size = sp.sqrt(value) if i == j else value
+                shown = size if size.free_symbols else f"{float(size):.6g}"
+                if i == j:
+                    return f"row {i + 1} has the length {shown}"
+                return f"the scalar product of the rows {j + 1} and {i + 1} is {shown}"
+    return "its columns are not"
+
+
+def _frame_along(w: sp.Matrix) -> sp.Matrix:
+    """A rotation whose z is the unit vector ``w``."""
+    across = next(e for k in (0, 1) if (e := sp.eye(3)[:, k].cross(w)) != sp.zeros(3, 1))
+    x = across / sp.sqrt(across.dot(across))
+    if w == sp.Matrix([0, 0, 1]):
+        return sp.eye(3)
+    return sp.Matrix.hstack(x, w.cross(x), w)
+
+
+def _assembled(
+    motions: Sequence[Motion],
+    groups: Sequence[Group],
+    lead: sp.Matrix,
+    last: sp.Matrix,
+    moves: tuple[sp.Matrix, ...],
+) -> Serial:
+    pose = lead
+    for group in groups:
+        pose = (pose * group.transform()).applyfunc(sp.expand)
+    places = [(k, j) for k, group in enumerate(groups) for j in range(len(group.rows))]
+    middle = min(
+        (
+            sp.Matrix.hstack(*(_seen_from(k, j, groups, cut) for k, j in places))
+            for cut in range(1, len(groups) + 1)
+        ),
+        key=sp.count_ops,
+    )
+    return Serial(
+        tuple(motion.joint for motion in motions),
+        reduce_circle((pose * last).applyfunc(sp.expand)),
+        sp.Matrix.hstack(*(_to_base(*groups[k].twist(j), groups[:k], lead) for k, j in places)),
+        sp.Matrix.hstack(*(_to_frame(k, j, groups, len(groups), last) for k, j in places)),
+        sp.Matrix.hstack(*(_at_tool(k, j, groups, lead, last) for k, j in places)),
+        moves,
+        middle,
+        tuple(groups),
+        lead,
+        last,
+    )
+
+
+def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[Group], lead: sp.Matrix) -> sp.Matrix:
+    """A twist in the frame where the ``groups`` end, in the base frame."""
+    for T in [*(group.transform() for group in reversed(groups)), lead]:
+        w, v = T[:3, :3] * w, T[:3, :3] * v
+        v = (v + T[:3, 3].cross(w)).applyfunc(sp.expand)
+    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
+
+
+def _to_frame(k: int, j: int, groups: Sequence[Group], cut: int, last: sp.Matrix) -> sp.Matrix:
+    """The axis ``j`` of group ``k`` where group ``cut`` starts, seen from the frame ``last``."""
+    w, v = groups[k].twist_at_end(j)
+    for group in groups[k + 1 : cut]:
+        back = group.rotation.T
+        w, v = back * w, back * (v + w.cross(group.span(0))).applyfunc(sp.expand)
+        w, v = w.applyfunc(sp.expand), v.applyfunc(sp.expand)
+    w, v = last[:3, :3].T * w, last[:3, :3].T * (v + w.cross(last[:3, 3]))
+    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
+
+
+def _at_tool(
+    k: int, j: int, groups: Sequence[Group], lead: sp.Matrix, last: sp.Matrix
+) -> sp.Matrix:
+    """The velocity that an axis gives to the tool, and the axis, in base axes."""
+    tool = last[:3, 3]
+    for group in reversed(groups[k + 1 :]):
+        tool = (group.rotation * tool + group.span(0)).applyfunc(sp.expand)
+    group = groups[k]
+    axis = sp.Matrix([0, 0, group.rows[j].sign])
+    w, v = axis, axis.cross(group.rotation * tool + group.span(0) - group.span(0, j))
+    if group.rows[j].slides:
+        w, v = sp.zeros(3, 1), axis
+    for R in [*(g.rotation for g in reversed(groups[:k])), lead[:3, :3]]:
+        w, v = (R * w).applyfunc(sp.expand), (R * v).applyfunc(sp.expand)
+    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
+
+
+def _seen_from(k: int, j: int, groups: Sequence[Group], cut: int) -> sp.Matrix:
+    """The axis ``j`` of group ``k`` where group ``cut`` starts, before or after it."""
+    if k < cut:
+        return _to_frame(k, j, groups, cut, sp.eye(4))
+    return _to_base(*groups[k].twist(j), groups[cut:k], sp.eye(4))
+
+
+def _exact(value: Any, where: str) -> sp.Expr:
+    if isinstance(value, float):
+        raise TypeError(
+            f"{where}: {value} is a float; write an integer or sympy.Rational('{value}')"
+        )
+    reject_text(value, where)
+    exact = sp.sympify(value, strict=True)
+    if exact.atoms(sp.Float):
+        raise TypeError(
+            f"{where}: the float {sorted(exact.atoms(sp.Float), key=str)[0]} stands in {exact}; "
+            f"write an integer or sympy.Rational instead"
+        )
+    return exact
+
+
+def _determinant(J: sp.Matrix) -> sp.Expr:
+    """Over the polynomials in sines and cosines, reduced on their circles, factored."""
+    reduced = determinant(J)
+    found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
+    return _in_decimals(found)
+
+
+def _in_decimals(product: sp.Expr) -> sp.Expr:
+    """Sums whose coefficients were made whole numbers, by factoring, over a power of ten again.
+
+    A factor then has the size of the lengths that are numbers in it, not a million times that.
+    """
+    number, others = product.as_coeff_Mul()
+    whole, rest = [], []
+    for factor in sp.Mul.make_args(others):
+        base, power = factor.as_base_exp()
+        terms = base.as_coefficients_dict() if base.is_Add else {}
+        digits = len(str(max((abs(int(c)) for c in terms.values()), default=0)))
+        if digits > 1:
+            number *= 10 ** (digits * power)
+            whole.append(sp.Add(*(c * t / 10**digits for t, c in terms.items())) ** power)
+        else:
+            rest.append(factor)
+    if len(whole) == 1 and whole[0].is_Add:
+        whole = [sp.Add(*(number * t for t in whole[0].args))]
+        number = sp.S.One
+    return number * sp.Mul(*whole, *rest)
+
+
+__all__ = [
+    "Coordinates",
+    "Group",
+    "Row",
+    "RowError",
+    "Serial",
+    "from_dh",
+    "from_screws",
+    "joint_factors",
+]

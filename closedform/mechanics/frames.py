@@ -1,0 +1,200 @@
+"""Frames: Denavit-Hartenberg matrices, exponentials of twists, Jacobians.
+
+Twists are ordered ``(v; omega)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import reduce
+from itertools import combinations
+
+import sympy as sp
+
+from closedform.algebra.normal_form import normal
+
+
+def rotation(axis: str, angle: sp.Expr) -> sp.Matrix:
+    """The 3x3 rotation about a coordinate axis ``"x"``, ``"y"`` or ``"z"``."""
+    c, s = sp.cos(angle), sp.sin(angle)
+    if axis == "x":
+        return sp.Matrix([[1, 0, 0], [0, c, -s], [0, s, c]])
+    if axis == "y":
+        return sp.Matrix([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    if axis == "z":
+        return sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    raise ValueError(f"the axis must be x, y or z, not {axis!r}")
+
+
+def homogeneous(R: sp.Matrix, p: Sequence[sp.Expr] = (0, 0, 0)) -> sp.Matrix:
+    """The 4x4 transform of a rotation and a translation."""
+    return sp.Matrix(sp.BlockMatrix([[R, sp.Matrix(p)], [sp.zeros(1, 3), sp.eye(1)]]))
+
+
+def denavit_hartenberg(
+    a: sp.Expr, alpha: sp.Expr, d: sp.Expr, theta: sp.Expr, *, modified: bool = False
+) -> sp.Matrix:
+    """One row of a Denavit-Hartenberg table, as the product of its four motions.
+
+    Standard (distal): ``Rz(theta) Tz(d) Tx(a) Rx(alpha)``.
+    Modified (proximal, Craig): ``Rx(alpha) Tx(a) Rz(theta) Tz(d)``.
+    """
+    about_z = homogeneous(rotation("z", theta)) * homogeneous(sp.eye(3), (0, 0, d))
+    about_x = homogeneous(sp.eye(3), (a, 0, 0)) * homogeneous(rotation("x", alpha))
+    return about_x * about_z if modified else about_z * about_x
+
+
+def chain(transforms: Iterable[sp.Matrix]) -> sp.Matrix:
+    """The product of transforms, expanded, with the angles of parallel axes added."""
+    return merge_angles(reduce(lambda A, B: (A * B).expand(), transforms))
+
+
+def hat(w: sp.Matrix) -> sp.Matrix:
+    """The skew matrix with ``hat(w) u = w x u``."""
+    x, y, z = w
+    return sp.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def vee(W: sp.Matrix) -> sp.Matrix:
+    """The vector of a skew matrix, the inverse of :func:`hat`."""
+    return sp.Matrix([W[2, 1], W[0, 2], W[1, 0]])
+
+
+def revolute_twist(w: sp.Matrix, q: sp.Matrix) -> sp.Matrix:
+    """The twist ``(-w x q; w)`` of a rotation about the axis ``w`` through the point ``q``."""
+    return sp.Matrix([*(-w.cross(q)), *w])
+
+
+def prismatic_twist(v: sp.Matrix) -> sp.Matrix:
+    """The twist ``(v; 0)`` of a translation along ``v``."""
+    return sp.Matrix([*v, 0, 0, 0])
+
+
+def exponential(twist: sp.Matrix, angle: sp.Expr) -> sp.Matrix:
+    """The rigid motion of a twist with a unit (or zero) rotation axis, by Rodrigues' formula."""
+    v, w = sp.Matrix(twist[:3]), sp.Matrix(twist[3:])
+    if w.is_zero_matrix:
+        return homogeneous(sp.eye(3), tuple(v * angle))
+    W = hat(w)
+    R = sp.eye(3) + W * sp.sin(angle) + W * W * (1 - sp.cos(angle))
+    p = (sp.eye(3) - R) * w.cross(v) + w * w.T * v * angle
+    return homogeneous(R, tuple(p))
+
+
+def adjoint(T: sp.Matrix) -> sp.Matrix:
+    """The 6x6 map of twists under a change of frame, for the order ``(v; omega)``."""
+    R, p = T[:3, :3], T[:3, 3]
+    return sp.Matrix(sp.BlockMatrix([[R, hat(p) * R], [sp.zeros(3, 3), R]]))
+
+
+def jacobian(task: sp.Matrix, joints: Sequence[sp.Symbol]) -> sp.Matrix:
+    """The matrix of partial derivatives, with the angles of parallel axes added."""
+    return merge_angles(sp.Matrix(task).jacobian(list(joints)))
+
+
+def angular_velocity_matrix(R: sp.Matrix, joints: Sequence[sp.Symbol], frame: str) -> sp.Matrix:
+    """The 3xn Jacobian of the angular velocity, in the ``"space"`` or the ``"body"`` frame.
+
+    Column by column the vector of ``dR/dq R^T`` (space) or ``R^T dR/dq`` (body).
+    """
+    columns = []
+    for q in joints:
+        dR = R.diff(q)
+        columns.append(vee(dR * R.T if frame == "space" else R.T * dR))
+    return merge_angles(reduce_circle(sp.Matrix.hstack(*columns)))
+
+
+def reduce_circle(value: sp.Matrix) -> sp.Matrix:
+    """Rewrite even powers of sines and cosines by ``s^2 + c^2 = 1`` where that shortens."""
+
+    def shorter(entry: sp.Expr) -> sp.Expr:
+        return min((entry, normal(entry)), key=sp.count_ops)
+
+    return value.applyfunc(shorter)
+
+
+def simplest(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
+    """Reduced by ``s^2 + c^2 = 1``, with the angles of parallel axes added, then factored.
+
+    Of these forms and the given one, entry by entry, the shortest.
+    """
+    if isinstance(value, sp.MatrixBase):
+        return value.applyfunc(simplest)
+    reduced = merge_angles(normal(value))
+    return min((value, reduced, sp.factor(reduced)), key=sp.count_ops)
+
+
+def inverse(T: sp.Matrix) -> sp.Matrix:
+    """The inverse of a rigid motion."""
+    R, p = T[:3, :3], T[:3, 3]
+    return homogeneous(R.T, tuple(-R.T * p))
+
+
+def twist_of(V: sp.Matrix) -> sp.Matrix:
+    """The twist ``(v; omega)`` of a 4x4 matrix of se(3)."""
+    return sp.Matrix([*V[:3, 3], *vee(V[:3, :3])])
+
+
+def twist_matrix(twist: sp.Matrix) -> sp.Matrix:
+    """The 4x4 matrix of a twist ``(v; omega)``, the inverse of :func:`twist_of`."""
+    v, w = sp.Matrix(twist[:3]), sp.Matrix(twist[3:])
+    return sp.Matrix.vstack(sp.Matrix.hstack(hat(w), v), sp.zeros(1, 4))
+
+
+def determinant(J: sp.Matrix) -> sp.Expr:
+    """The determinant of a Jacobian, factored, with the angles of parallel axes added."""
+    reduced = normal(J.det(method="berkowitz"))
+    return min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
+
+
+def merge_angles(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
+    """Collect ``c_a c_b - s_a s_b`` into ``cos(a + b)`` and the like, wherever that shortens.
+
+    Every pair of angles in the expression is tried; a rewriting is kept only if it leaves fewer
+    terms, so that the result is the form a person would write.
+    """
+    if isinstance(value, sp.MatrixBase):
+        return value.applyfunc(merge_angles)
+    best = sp.expand(value)
+    improved = True
+    while improved:
+        improved = False
+        length = _terms(best)
+        angles = sorted({f.args[0] for f in best.atoms(sp.sin, sp.cos)}, key=sp.default_sort_key)
+        together = _angles_together(best)
+        for a, b in combinations(angles, 2):
+            if not any(a in met and b in met for met in together):
+                continue
+            merged = _merge_pair(best, a, b)
+            if _terms(merged) < length:
+                best, improved = merged, True
+                break
+    return best
+
+
+def _angles_together(expr: sp.Expr) -> list[set[sp.Expr]]:
+    """The angles of each term: only such as meet in a product can be merged."""
+    return [{f.args[0] for f in t.atoms(sp.sin, sp.cos)} for t in sp.Add.make_args(expr)]
+
+
+def _merge_pair(expr: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
+    """Replace the products of ``a`` and ``b`` by functions of their sum or their difference."""
+    ca, sa, cb, sb = sp.cos(a), sp.sin(a), sp.cos(b), sp.sin(b)
+    candidates = [expr]
+    for sign in (1, -1):
+        C, S = sp.cos(a + sign * b), sp.sin(a + sign * b)
+        for rewritten in (_replaced(expr, ca * cb, C + sign * sa * sb), expr):
+            for second in ((sa * cb, S - sign * ca * sb), (ca * sb, sign * (S - sa * cb))):
+                candidates.append(_replaced(rewritten, *second))
+            candidates.append(rewritten)
+    return min(dict.fromkeys(candidates), key=_terms)
+
+
+def _replaced(expr: sp.Expr, product: sp.Expr, sum_: sp.Expr) -> sp.Expr:
+    """An expanded expression with a product replaced, and expanded again where it occurred."""
+    replaced = expr.subs(product, sum_)
+    return expr if replaced == expr else sp.expand(replaced)
+
+
+def _terms(expr: sp.Expr) -> int:
+    return int(sp.count_ops(expr, visual=False)) + 3 * len(sp.Add.make_args(expr))

@@ -1,0 +1,34 @@
+"""What a check of a claim is, and the verdicts that it may give."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+PROVED = "proved"
+PROVED_UNDER = "proved under assumption"
+APPROXIMATION = "approximation"
+REFUTED = "refuted"
+NOT_DECIDABLE = "not decidable here"
+VERDICTS = (PROVED, PROVED_UNDER, APPROXIMATION, REFUTED, NOT_DECIDABLE)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What was found.
+
+    ``evidence`` is a sentence: the assumption, the counterexample, the order of the error, or the
+    reason.  ``corrected`` is the LaTeX of the form that was proved instead; there is none that was
+    not proved.
+    """
+
+    kind: str
+    evidence: str = ""
+    corrected: str = ""
+
+
+class Check(ABC):
+    """A computation that judges one claim."""
+
+    @abstractmethod
+    def judge(self) -> Verdict: ...

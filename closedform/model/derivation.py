@@ -1,0 +1,552 @@
+"""The vocabulary in which a derivation script is written.
+
+A script builds one :class:`Derivation`: it names the paper, the parameters and the joints, proceeds
+in steps, solves for the unknowns with named lemmas, exports functions and transcribes the claims of
+the paper.  Every later room (proof, lowering, emission, LaTeX, reference) reads this object and
+nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
+from typing import Any, Literal
+
+import sympy as sp
+
+from closedform.model.claims import Check
+from closedform.model.display import Shown
+from closedform.model.functions import (
+    Branches,
+    Function,
+    Number,
+    Program,
+    Statement,
+    array,
+    real,
+    reject_floats,
+)
+from closedform.model.lemma import Lemma
+from closedform.model.names import (
+    check_argument,
+    check_function,
+    check_identifier,
+    check_key,
+    check_labels,
+    check_own,
+    check_robot,
+    check_symbol,
+    check_text,
+)
+
+
+@dataclass(frozen=True)
+class Paper:
+    """A published source."""
+
+    key: str
+    title: str
+    authors: tuple[str, ...]
+    reference: str = ""
+
+    def __post_init__(self) -> None:
+        check_key(self.key, "key of the paper")
+        check_text("title of the paper", self.title)
+        if isinstance(self.authors, str):
+            raise TypeError(f"authors of the paper: write a tuple, as in ({self.authors!r},)")
+        check_text("authors of the paper", *self.authors)
+        check_text("reference of the paper", self.reference)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A dimension of the mechanism, constant while it moves."""
+
+    symbol: sp.Symbol
+    unit: str
+    value: sp.Rational
+    meaning: str
+    source: str
+    nonnegative: bool
+
+    @property
+    def name(self) -> str:
+        return str(self.symbol.name)
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint variable.
+
+    A passive joint is moved by the others; a coupled joint is a function of the others.
+    """
+
+    symbol: sp.Symbol
+    kind: Literal["revolute", "prismatic"]
+    passive: bool = False
+    coupling: sp.Expr | None = None
+    beside: sp.Symbol | None = None
+    """A joint that this one stays close to, as in a twin arm; samples are drawn accordingly."""
+
+    @property
+    def name(self) -> str:
+        return str(self.symbol.name)
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: why, what was derived, and what must be zero for the step to hold.
+
+    The left-hand sides in ``shown`` are LaTeX, the other texts are plain.
+    """
+
+    title: str
+    reason: str
+    shown: tuple[tuple[str, Any], ...]
+    published: tuple[str, ...] = ()
+    vanishes: tuple[Any, ...] = ()
+    nonnegative: tuple[sp.Expr, ...] = ()
+    rows: tuple[tuple[Any, ...], ...] = ()
+    """A table, its head first.  A cell is a sentence, an expression or an increasing chain of
+    expressions, ``(0, x, 1)`` for 0 <= x <= 1."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """An unknown solved by a lemma from an equation that follows from the system."""
+
+    function: str
+    unknown: sp.Symbol
+    lemma: Lemma
+    equation: sp.Expr
+    posture: Mapping[sp.Symbol, sp.Expr] | None = None
+    """The inputs in terms of joints, passive ones too, where the inverse does not say it itself."""
+
+
+@dataclass(frozen=True)
+class Continuum:
+    """A flagged case: on ``locus`` a joint is free, and ``relation`` says what the others keep.
+
+    It occurs in the named ``branches``; in all of them if none is named.  The locus may be written
+    in the unknowns of earlier stages, where there are stages.  The relation is LaTeX.
+    """
+
+    flag: sp.Symbol
+    locus: Mapping[sp.Symbol, sp.Expr]
+    free: sp.Symbol
+    relation: str
+    branches: tuple[str, ...] = ()
+    also: tuple[sp.Symbol, ...] = ()
+    """Other flags that are true on the locus."""
+
+    def __post_init__(self) -> None:
+        check_text(f"relation on the continuum {self.flag}", self.relation)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One of several steps in which the solutions of a system are counted.
+
+    ``equations`` are places in the system; they hold no unknowns but those of this stage and of
+    earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
+    equations of those earlier stages hold identically whose unknowns occur.  ``mixed``, an
+    orthogonal matrix in the earlier unknowns, multiplies the equations where that makes them
+    simpler.
+
+    An inverse that is solved in the same stages is proved sound in them, if its stages say which
+    names of the program are ``carried`` into them, and what these are in the earlier unknowns: the
+    earlier stages are proved to hand them on so.
+    """
+
+    unknowns: tuple[sp.Symbol, ...]
+    equations: tuple[int, ...]
+    given: Mapping[sp.Symbol, sp.Expr]
+    mixed: sp.Matrix | None = None
+    carried: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """An inverse that is too large for one Groebner basis, certified lemma by lemma.
+
+    ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas`` and names of the
+    program.  The equations of the lemmas, multiplied by the invertible matrix ``combination``, are
+    those of the inverse: so both have the same solutions, and each lemma is proved to give all of
+    its own.  Where a side condition keeps one in ``kept_of`` of them, ``because`` says why.
+    """
+
+    lemmas: tuple[Lemma, ...]
+    joints: Mapping[sp.Symbol, sp.Expr]
+    combination: sp.Matrix
+    kept_of: int = 1
+    because: str = ""
+
+
+@dataclass(frozen=True)
+class Degenerate:
+    """A flagged case of a lemma: on ``locus``, for its coefficients, the joint ``free`` is free."""
+
+    flags: tuple[sp.Symbol, ...]
+    locus: Mapping[sp.Symbol, sp.Expr]
+    free: sp.Symbol | None
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """A lemma in a chain: the statements it added, and what its names ``means`` at a posture.
+
+    ``given`` writes coefficients that depend on each other in free symbols.
+    """
+
+    lemma: Lemma
+    body: tuple[Statement, ...]
+    means: Mapping[sp.Symbol, sp.Expr]
+    given: Mapping[sp.Symbol, sp.Expr]
+    degenerate: tuple[Degenerate, ...] = ()
+
+
+@dataclass(frozen=True)
+class Inverse:
+    """What an inverse must satisfy: ``forward`` in the ``unknowns`` equals the ``targets``.
+
+    Targets that depend on each other (the entries of a rotation) have a ``parametrisation``: the
+    same number of expressions in free symbols.  Of the targets in ``angles`` only the sine and the
+    cosine count.
+
+    A closed loop gives equations in unknowns and inputs together: they are ``forward``, the
+    ``targets`` are zeros, and ``images`` names the function whose values, in each assembly mode,
+    are inputs with a known solution.  ``stages`` count the solutions step by step.
+
+    Where the equations that are solved are not the forward map itself, targets are expressions in
+    the inputs (such as ``tan(psi)``), and ``forward`` may hold inputs too; then ``reduction``
+    proves the inverse lemma by lemma, a step shows that the map named by ``images`` satisfies the
+    equations, and the cross-check puts the answers into that map.
+    An inverse with a ``chain`` is proved link by link.
+    """
+
+    function: str
+    unknowns: tuple[sp.Symbol, ...]
+    targets: tuple[Any, ...]
+    forward: tuple[sp.Expr, ...]
+    continua: tuple[Continuum, ...] = ()
+    parametrisation: tuple[sp.Expr, ...] = ()
+    angles: tuple[sp.Symbol, ...] = ()
+    images: str = ""
+    stages: tuple[Stage, ...] = ()
+    nonnegative: tuple[sp.Symbol, ...] = ()
+    """Unknowns that are lengths: of two solutions that differ in their sign one counts."""
+    chain: tuple[Link, ...] = ()
+    meaning: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """What names of the program stand for at a posture, in the unknowns."""
+    defined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """Auxiliary angles: sums of the unknowns."""
+    lengths: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """Auxiliary lengths, at a posture."""
+    units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
+    """Sines and cosines of free choices, and the names that may have any value in them."""
+    reduction: Reduction | None = None
+
+    def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
+        """The same inverse with the forward map, ``image``, for its equations."""
+        return replace(self, targets=inputs, forward=image, images="")
+
+    @property
+    def equations(self) -> tuple[sp.Expr, ...]:
+        """What vanishes at a solution."""
+        return tuple(
+            equation
+            for f, x in zip(self.forward, self.targets, strict=True)
+            for equation in (
+                (sp.cos(f) - sp.cos(x), sp.sin(f) - sp.sin(x)) if x in self.angles else (f - x,)
+            )
+        )
+
+
+@dataclass(frozen=True)
+class Table:
+    """Numbers to print: ``columns`` of expressions in one ``variable``, a row for each value.
+
+    The parameters have their example values.  The header of a column names its unit.
+    """
+
+    name: str
+    header: str
+    variable: sp.Symbol
+    values: tuple[sp.Rational, ...]
+    columns: Mapping[str, sp.Expr]
+
+    def __post_init__(self) -> None:
+        check_identifier(self.name, "name of a table")
+        check_text(f"header of the table {self.name}", self.header, *self.columns)
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A statement of the paper, transcribed as printed, and the computation that judges it.
+
+    In ``printed`` formulas stand between dollar signs, as LaTeX; all else is plain text.
+    """
+
+    label: str
+    printed: str
+    check: Check
+    where: str = ""
+
+    def __post_init__(self) -> None:
+        check_text("label of a claim", self.label)
+        check_text(f"claim {self.label}", self.printed, self.where)
+
+
+RESULTS = {"Solutions": "q", "Positions": "p"}
+"""The results with a status, each with the name of its values."""
+
+
+@dataclass
+class Derivation(Shown):
+    """A mechanism, derived."""
+
+    name: str
+    title: str
+    paper: Paper
+    mechanism: str
+    parameters: list[Parameter] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
+    task: list[str] = field(default_factory=list)
+    branches: tuple[str, ...] = ()
+    assembly_modes: tuple[str, ...] = ()
+    singularities: tuple[str, ...] = ()
+    steps: list[Step] = field(default_factory=list)
+    solved: list[Solved] = field(default_factory=list)
+    inverses: list[Inverse] = field(default_factory=list)
+    functions: list[Function] = field(default_factory=list)
+    tables: list[Table] = field(default_factory=list)
+    claims: list[Claim] = field(default_factory=list)
+    without_inverse: str = ""
+    """Why there is no inverse, as a clause; empty where there is one, or nobody says why."""
+
+    def parameter(
+        self,
+        name: str,
+        *,
+        value: Number,
+        unit: str,
+        meaning: str,
+        source: str = "the paper's example",
+        nonnegative: bool = True,
+    ) -> sp.Symbol:
+        """Declare a parameter; a length is ``nonnegative`` unless said otherwise.
+
+        Inside the algebra a nonnegative parameter counts as positive: what holds on the open set
+        holds on its closure, and a zero length is treated by the flags of the inverse.
+        """
+        self._check_new(name)
+        check_text(f"{self.name}: {name}", meaning, unit, source)
+        symbol = real(name, positive=True) if nonnegative else real(name)
+        exact = sp.nan if isinstance(value, str) else sp.sympify(value, strict=True)
+        if not exact.is_Rational:
+            hint = f": write sympy.Rational('{value}')" if isinstance(value, float | str) else ""
+            raise TypeError(f"{self.name}: the value of {name} must be an exact rational{hint}")
+        self.parameters.append(Parameter(symbol, unit, exact, meaning, source, nonnegative))
+        return symbol
+
+    def joint(
+        self,
+        name: str,
+        kind: Literal["revolute", "prismatic"] = "revolute",
+        *,
+        passive: bool = False,
+        coupling: sp.Expr | None = None,
+        beside: sp.Symbol | None = None,
+    ) -> sp.Symbol:
+        """Declare a joint variable.
+
+        ``coupling`` gives the joint as a function of earlier ones, as in
+        ``joint("theta4", coupling=-(theta2 + theta3))``; :meth:`couple` substitutes it.
+        """
+        self._check_new(name)
+        if kind not in ("revolute", "prismatic"):
+            raise ValueError(f"{self.name}: {name} must be revolute or prismatic, not {kind!r}")
+        symbol = real(name)
+        self.joints.append(Joint(symbol, kind, passive, coupling, beside))
+        return symbol
+
+    def couple(self, expr: Any) -> Any:
+        """``expr`` with every coupled joint replaced by its coupling."""
+        couplings = {j.symbol: j.coupling for j in self.joints if j.coupling is not None}
+        return expr.xreplace(couplings)
+
+    @property
+    def actuated(self) -> tuple[sp.Symbol, ...]:
+        return tuple(j.symbol for j in self.joints if not j.passive and j.coupling is None)
+
+    def step(
+        self,
+        title: str,
+        reason: str,
+        shown: Mapping[str, Any],
+        *,
+        published: Sequence[str] = (),
+        equal: Sequence[tuple[Any, Any]] = (),
+        nonnegative: Sequence[sp.Expr] = (),
+        rows: Sequence[Sequence[Any]] = (),
+    ) -> None:
+        """Record a step.  ``shown`` maps a LaTeX left-hand side to the derived expression.
+
+        Each pair in ``equal`` is proved equal; the build fails where the proof does.  ``rows`` is
+        a table, see :class:`Step`.
+        """
+        for value in (*shown.values(), *(e for pair in equal for e in pair)):
+            self._reject_floats(value, f"{self.name}, step {title!r}")
+        where = f"{self.name}, step {title!r}"
+        check_text(f"{self.name}, title of a step", title)
+        check_text(where, reason, lines=True)
+        check_text(where, *shown, *published, *(c for r in rows for c in r if isinstance(c, str)))
+        self.steps.append(
+            Step(
+                title,
+                reason,
+                tuple(shown.items()),
+                tuple(published),
+                tuple(a - b for a, b in equal),
+                tuple(nonnegative),
+                tuple(map(tuple, rows)),
+            )
+        )
+
+    def function(
+        self,
+        name: str,
+        summary: str,
+        inputs: Mapping[str, Any],
+        outputs: Mapping[str, Any],
+        *,
+        program: Program | None = None,
+        branches: Branches | None = None,
+        result: str | None = None,
+        source: str = "",
+        notes: Sequence[str] = (),
+        boolean: bool = False,
+    ) -> Function:
+        """Export a function.  Inputs and outputs are named scalars, vectors, matrices or arrays."""
+        self._check_function(name, [*inputs, *outputs], result)
+        check_text(f"{self.name}.{name}", summary, source)
+        check_text(f"{self.name}.{name}", *notes, lines=True)
+        function = Function(
+            name,
+            summary,
+            tuple(array(k, v) for k, v in inputs.items()),
+            tuple(array(k, v) for k, v in outputs.items()),
+            tuple(program.body) if program else (),
+            branches,
+            result,
+            source,
+            tuple(notes),
+            boolean,
+        )
+        self._check_symbols(function)
+        self.functions.append(function)
+        return function
+
+    def claim(self, label: str, printed: str, check: Check, where: str = "") -> None:
+        """Transcribe a statement of the paper, with the check that will judge it."""
+        self.claims.append(Claim(label, printed, check, where))
+
+    def no_inverse(self, because: str) -> None:
+        """Say why there is no inverse, in a clause such as ``"axes 5 and 6 do not intersect"``."""
+        check_text(f"{self.name}: no_inverse", because)
+        self.without_inverse = because
+
+    def __getitem__(self, name: str) -> Function:
+        for function in self.functions:
+            if function.name == name:
+                return function
+        raise KeyError(f"{self.name} has no function {name}")
+
+    def _reject_floats(self, value: Any, where: str) -> None:
+        for part in value if isinstance(value, list | tuple) else [value]:
+            if isinstance(part, float):
+                raise TypeError(
+                    f"{where}: {part} is a float; write an integer or sympy.Rational('{part}')"
+                )
+            if isinstance(part, sp.Basic | sp.MatrixBase):
+                for entry in part if isinstance(part, sp.MatrixBase) else [part]:
+                    reject_floats(entry, where)
+
+    def __setattr__(self, attribute: str, value: Any) -> None:
+        """Check names and texts when they are given, the later ones too."""
+        where = f"{attribute} of {value if attribute == 'name' else self.name}"
+        if attribute == "name":
+            check_robot(value)
+        elif attribute == "title":
+            check_text(where, value)
+        elif attribute == "mechanism":
+            check_text(where, value, lines=True)
+        elif attribute == "singularities":
+            check_text(where, *value)
+        elif attribute in ("task", "branches", "assembly_modes"):
+            check_labels(value, where)
+        super().__setattr__(attribute, value)
+
+    def _check_function(self, name: str, arrays: Sequence[str], result: str | None) -> None:
+        known = [f.name for f in self.functions]
+        where = f"{self.name}.{name}"
+        if name in known:
+            raise ValueError(f"{self.name}: the function {name} is defined twice")
+        check_function(name, known, self.name)
+        if result is not None and result not in RESULTS:
+            raise ValueError(f"{where}: a result is one of {', '.join(RESULTS)}, not {result!r}")
+        if result is not None and arrays[-1] != RESULTS[result]:
+            raise ValueError(f"{where}: the output of {result} is called {RESULTS[result]}")
+        statuses = ["status"] if result else []
+        for k, array_name in enumerate(arrays):
+            others = [*arrays[:k], *arrays[k + 1 :], *statuses]
+            check_argument(array_name, others, where)
+            check_own(array_name, self.name, [*known, name], where)
+
+    def _check_new(self, name: str) -> None:
+        check_symbol(name, self.name)
+        check_own(name, self.name, [], self.name)
+        kinds = {p.name: "parameter" for p in self.parameters}
+        kinds |= {j.name: "joint" for j in self.joints}
+        if name in kinds:
+            raise ValueError(
+                f"{self.name}: the name {name} is declared twice: there is a {kinds[name]} {name} "
+                f"already; every joint and parameter needs a name of its own"
+            )
+
+    def _check_symbols(self, function: Function) -> None:
+        own = {str(s) for s in function.symbols}
+        own |= {str(s) for _, signs in function.cases() for s in signs}
+        own |= {str(getattr(s, "symbol", "")) for s in function.body}
+        if both := sorted(own & {p.name for p in self.parameters}):
+            raise ValueError(
+                f"{self.name}.{function.name}: {both[0]} is a parameter already; call the symbol "
+                f"of the function {both[0]}_0, say"
+            )
+        known: set[sp.Basic] = {p.symbol for p in self.parameters} | set(function.symbols)
+        if function.branches:
+            known |= {s for signs in function.branches.signs for s in signs}
+        for statement in function.body:
+            used = [getattr(statement, "value", None), *getattr(statement, "values", ())]
+            free = {s for e in used if e is not None for s in e.free_symbols}
+            self._require_known(function, free - known)
+            symbol = getattr(statement, "symbol", None)
+            if symbol is not None:
+                known.add(symbol)
+        free = {s for a in function.outputs for e in a.entries for s in e.free_symbols}
+        self._require_known(function, free - known)
+
+    def _require_known(self, function: Function, unknown: set[sp.Basic]) -> None:
+        if unknown:
+            name = sorted(map(str, unknown))[0]
+            declared = [p.name for p in self.parameters] + [j.name for j in self.joints]
+            close = get_close_matches(name, [*declared, *map(str, function.symbols)], 1)
+            hint = f"; did you mean {close[0]}?" if close and close[0] != name else ""
+            if name in declared and name not in map(str, function.symbols):
+                hint = f"; it is a joint: name it among the inputs of {function.name}"
+            raise ValueError(
+                f"{self.name}.{function.name}: the symbol {name} is neither a parameter nor an "
+                f"input nor defined by an earlier statement{hint}"
+            )

@@ -1,0 +1,447 @@
+"""What a derivation exports: functions as short programs of exact expressions.
+
+A :class:`Function` is a list of statements and the outputs computed from them.  It is the symbolic
+truth that the proofs, the Arb reference and the lowering all read; nothing in it is approximate.
+The six statements are
+
+``Let``
+    names an expression;
+``Bound``
+    names a quantity that must not be negative; where it is, the target is UNREACHABLE;
+``Match``
+    a quantity that must vanish; where it does not, the target is UNREACHABLE;
+``Vanishes``
+    a flag, true where a nonnegative quantity vanishes; may free a joint (SINGULAR); generated code
+    is fastest where none holds;
+``Determined``
+    a quantity that the joints lose the posture without (a parallel singularity); where it is too
+    small for the round trip in floating-point numbers, the answer is SINGULAR;
+``Require``
+    a condition on the input itself; where it fails, the input is INVALID.
+
+Tolerances are no part of a derivation: a statement carries the natural scale of its quantity, and
+:mod:`closedform.model.tolerances` says which fraction of it counts as zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import islice, product
+from typing import Any, TypeAlias
+
+import sympy as sp
+
+from closedform.model.names import check_identifier, check_labels, check_text
+
+Number: TypeAlias = Any  # an exact SymPy expression or an int; SymPy's annotations are partial
+
+
+def real(name: str, **assumptions: bool) -> sp.Symbol:
+    """A real symbol; ``assumptions`` may narrow it, as in ``real("r", nonnegative=True)``."""
+    return sp.Symbol(name, **({"real": True} | assumptions))
+
+
+def reject_text(value: Any, where: str) -> None:
+    """Raise TypeError where a text stands for an expression: SymPy would run it as Python."""
+    if isinstance(value, str):
+        raise TypeError(f"{where}: {value!r} is a text; write the expression without quotes")
+    if isinstance(value, list | tuple):
+        for part in value:
+            reject_text(part, where)
+
+
+def reject_floats(expr: sp.Basic, where: str) -> None:
+    """Raise ``TypeError`` if a floating-point number stands in ``expr``."""
+    floats = sorted(expr.atoms(sp.Float), key=str)
+    if floats:
+        raise TypeError(
+            f"{where}: the float {floats[0]} stands in an exact expression; "
+            f"write an integer or sympy.Rational instead"
+        )
+
+
+@dataclass(frozen=True)
+class Let:
+    """``symbol = value``."""
+
+    symbol: sp.Symbol
+    value: sp.Expr
+
+
+@dataclass(frozen=True)
+class Bound:
+    """``symbol = value``, where a negative ``value`` means that the target is out of reach.
+
+    Generated code clamps it at zero; with ``positive`` just above, where a zero would lose the side
+    on which an arm is bent: such a value goes with the square of the angle.
+    """
+
+    symbol: sp.Symbol
+    value: sp.Expr
+    scale: sp.Expr
+    meaning: str
+    positive: bool = False
+
+
+@dataclass(frozen=True)
+class Match:
+    """``value`` must be zero, or the target is out of reach."""
+
+    value: sp.Expr
+    scale: sp.Expr
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Vanishes:
+    """``symbol`` is true where the nonnegative ``value`` is zero; then ``free`` joints are free."""
+
+    symbol: sp.Symbol
+    value: sp.Expr
+    scale: sp.Expr
+    meaning: str
+    free: tuple[sp.Symbol, ...] = ()
+
+
+@dataclass(frozen=True)
+class Determined:
+    """Rounded joints determine the posture, unless ``value`` is small against ``scale``.
+
+    Both are nonnegative, and the forward map amplifies roundings by up to ``scale / value``; or
+    they are squares of such quantities.  Where that is more than the round trip bears, the status
+    is SINGULAR; the answer stays what it is.
+    """
+
+    value: sp.Expr
+    scale: sp.Expr
+    meaning: str
+    squares: bool = False
+
+
+@dataclass(frozen=True)
+class Require:
+    """Every one of ``values`` must be zero, or the input is INVALID."""
+
+    values: tuple[sp.Expr, ...]
+    scale: sp.Expr
+    meaning: str
+
+
+Statement = Let | Bound | Match | Vanishes | Determined | Require
+
+
+@dataclass(frozen=True)
+class Array:
+    """An argument or a result: its name, its core shape and its entries in row-major order."""
+
+    name: str
+    shape: tuple[int, ...]
+    entries: tuple[sp.Expr, ...]
+
+    @property
+    def size(self) -> int:
+        return len(self.entries)
+
+
+def array(name: str, value: Any) -> Array:
+    """An :class:`Array` from a scalar, a (nested) sequence, a matrix or an N-dimensional array.
+
+    Column matrices are vectors: a shape of ``(n, 1)`` becomes ``(n,)``.
+    """
+    reject_text(value, name)
+    if isinstance(value, sp.MatrixBase):
+        shape: tuple[int, ...] = value.shape if value.shape[1] != 1 else (value.shape[0],)
+        entries = list(value)
+    elif isinstance(value, (sp.Basic, int)):
+        shape, entries = (), [value]
+    else:
+        nested = sp.ImmutableDenseNDimArray(value)
+        shape, entries = tuple(nested.shape), list(sp.flatten(nested.tolist()))
+    exact = tuple(sp.sympify(e, strict=True) for e in entries)
+    for entry in exact:
+        reject_floats(entry, name)
+    return Array(name, shape, exact)
+
+
+@dataclass(frozen=True)
+class Branches:
+    """The named branches of an inverse (or the assembly modes of a loop), in their fixed order."""
+
+    labels: tuple[str, ...]
+    signs: tuple[Mapping[sp.Symbol, int], ...]
+
+    def __post_init__(self) -> None:
+        check_labels(self.labels, "branches")
+
+    def __len__(self) -> int:
+        return len(self.labels)
+
+
+SINGLE = Branches(("only",), ({},))
+"""One branch without a choice, for an inverse that has exactly one solution."""
+
+
+def branches(*choices: tuple[sp.Symbol, Mapping[int, str]]) -> Branches:
+    """All combinations of sign choices; the last choice varies fastest.
+
+    >>> elbow = real("sigma_elbow")
+    >>> branches((elbow, {+1: "elbow_down", -1: "elbow_up"})).labels
+    ('elbow_down', 'elbow_up')
+    """
+    labels, signs = [], []
+    for combination in product(*(options.items() for _, options in choices)):
+        labels.append("_".join(label for _, label in combination))
+        signs.append(
+            {symbol: sign for (symbol, _), (sign, _) in zip(choices, combination, strict=True)}
+        )
+    return Branches(tuple(labels), tuple(signs))
+
+
+@dataclass(frozen=True)
+class Function:
+    """One exported function.
+
+    With ``branches`` every output gets a leading axis over them.  With ``result`` set to
+    ``"Solutions"`` or ``"Positions"`` a status per branch is returned beside the single output.
+    """
+
+    name: str
+    summary: str
+    inputs: tuple[Array, ...]
+    outputs: tuple[Array, ...]
+    body: tuple[Statement, ...] = ()
+    branches: Branches | None = None
+    result: str | None = None
+    source: str = ""
+    notes: tuple[str, ...] = ()
+    boolean: bool = False
+
+    def __post_init__(self) -> None:
+        known: set[sp.Basic] = set()
+        for argument in self.inputs:
+            for entry in argument.entries:
+                if not isinstance(entry, sp.Symbol) or entry in known:
+                    raise ValueError(
+                        f"{self.name}: the entry {entry} of the input {argument.name} must be a "
+                        f"symbol that stands in no other place"
+                    )
+                known.add(entry)
+        names = [s.symbol.name for s in self.body if isinstance(s, (Let, Bound, Vanishes))]
+        names += [str(k) for k in known]
+        names += sorted({str(s) for _, signs in self.cases() for s in signs})
+        for name in names:
+            check_identifier(name, self.name)
+        for statement in self.body:
+            check_text(self.name, getattr(statement, "meaning", ""))
+        repeated = sorted({n for n in names if names.count(n) > 1})
+        if repeated:
+            raise ValueError(f"{self.name}: the name {repeated[0]} is given twice")
+
+    @property
+    def has_status(self) -> bool:
+        return self.result is not None
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """The input symbols in order."""
+        return tuple(e for a in self.inputs for e in a.entries if isinstance(e, sp.Symbol))
+
+    def cases(self) -> Iterator[tuple[str, Mapping[sp.Symbol, int]]]:
+        """The branches, or one nameless case where there are none."""
+        if self.branches is None:
+            yield "", {}
+        else:
+            yield from zip(self.branches.labels, self.branches.signs, strict=True)
+
+    def values(self, signs: Mapping[sp.Symbol, int]) -> tuple[sp.Expr, ...]:
+        """The outputs of one branch as explicit expressions of inputs and parameters.
+
+        Flags are false: the generic case.  See :meth:`at` for the others.
+        """
+        return self.at(signs, {})
+
+    def at(
+        self,
+        signs: Mapping[sp.Symbol, int],
+        flags: Mapping[sp.Symbol, bool],
+        locus: Mapping[sp.Symbol, sp.Expr] | None = None,
+    ) -> tuple[sp.Expr, ...]:
+        """The outputs of a branch with the given ``flags`` true, on ``locus``, a substitution."""
+        outputs = [e for a in self.outputs for e in a.entries]
+        return self.explicit(outputs, signs, flags, locus)[0]
+
+    def bounds(self, signs: Mapping[sp.Symbol, int]) -> tuple[sp.Expr, ...]:
+        """The explicit expressions that are nonnegative wherever this branch exists."""
+        every = [s.symbol for s in self.body if isinstance(s, Bound)]
+        return self.explicit(every, signs)[1]
+
+    def explicit(
+        self,
+        exprs: Sequence[sp.Expr],
+        signs: Mapping[sp.Symbol, int],
+        flags: Mapping[sp.Symbol, bool] | None = None,
+        locus: Mapping[sp.Symbol, sp.Expr] | None = None,
+        carried: Mapping[sp.Symbol, sp.Expr] | None = None,
+    ) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
+        """Expressions in the names of the body, written out, and the bounds they rest on.
+
+        The flags that ``flags`` does not name are false, ``locus`` replaces inputs and parameters,
+        and a name that is ``carried`` has the given value in the place of its own.
+        """
+        given = {**(locus or {}), **(carried or {})}
+        known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()} | given
+        needed = {s for e in exprs for s in e.free_symbols} - known.keys()
+        for statement in reversed(self.body):
+            if isinstance(statement, (Let, Bound)) and statement.symbol in needed:
+                needed |= statement.value.free_symbols - known.keys()
+        bounds = []
+        for statement in self.body:
+            if isinstance(statement, Vanishes):
+                known[statement.symbol] = sp.sympify(
+                    (flags or {}).get(statement.symbol, False), strict=True
+                )
+            elif isinstance(statement, (Let, Bound)) and statement.symbol in needed:
+                value = known[statement.symbol] = substitute(statement.value, known)
+                sum_of_squares = value.is_Add and statement.symbol.is_nonnegative
+                if isinstance(statement, Bound) or (sum_of_squares and value.is_nonnegative):
+                    bounds.append(value)
+        return tuple(substitute(e, known) for e in exprs), tuple(bounds)
+
+
+SIMPLE = 50
+"""Nodes of an argument up to which SymPy may look for relations between it and the others."""
+
+
+def substitute(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
+    """Replace symbols all at once; only what occurs is passed to SymPy, which is much faster."""
+    occurring = {s: known[s] for s in expr.free_symbols if s in known}
+    if not occurring:
+        return expr
+    return _rebuilt(expr, occurring) if expr.has(sp.Max, sp.Min) else expr.xreplace(occurring)
+
+
+def _rebuilt(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
+    """The same for an expression with ``Max`` or ``Min``.
+
+    SymPy factors the arguments of these, and expands that of ``Abs``, whenever they are made anew;
+    of large ones that takes a minute and finds nothing.
+    """
+    if expr in known:
+        return known[expr]
+    if not expr.free_symbols & known.keys():
+        return expr
+    args = [_rebuilt(a, known) for a in expr.args]
+    if isinstance(expr, sp.Max | sp.Min | sp.Abs) and not all(map(_is_simple, args)):
+        return expr.func(*args, evaluate=False)
+    return expr.func(*args)
+
+
+def _is_simple(expr: sp.Basic) -> bool:
+    return sum(1 for _ in islice(sp.preorder_traversal(expr), SIMPLE + 1)) <= SIMPLE
+
+
+@dataclass
+class Program:
+    """Collects statements in the order a derivation makes them, then closes into a Function."""
+
+    body: list[Statement] = field(default_factory=list)
+
+    def let(self, name: str, value: Number, **assumptions: bool) -> sp.Symbol:
+        symbol = real(name, **assumptions)
+        value = sp.sympify(value, strict=True)
+        reject_floats(value, name)
+        self.body.append(Let(symbol, value))
+        return symbol
+
+    def bound(
+        self, name: str, value: sp.Expr, scale: sp.Expr, meaning: str, *, positive: bool = False
+    ) -> sp.Symbol:
+        symbol = real(name, nonnegative=True)
+        reject_floats(sp.sympify(value, strict=True), name)
+        self.body.append(Bound(symbol, value, scale, meaning, positive))
+        return symbol
+
+    def match(self, value: sp.Expr, scale: sp.Expr, meaning: str) -> None:
+        self.body.append(Match(value, scale, meaning))
+
+    def vanishes(
+        self,
+        name: str,
+        value: sp.Expr,
+        scale: Number,
+        meaning: str,
+        free: Sequence[sp.Symbol] = (),
+    ) -> sp.Symbol:
+        symbol = sp.Symbol(name)
+        self.body.append(
+            Vanishes(symbol, value, sp.sympify(scale, strict=True), meaning, tuple(free))
+        )
+        return symbol
+
+    def determined(
+        self, value: sp.Expr, scale: Number, meaning: str, *, squares: bool = False
+    ) -> None:
+        self.body.append(Determined(value, sp.sympify(scale), meaning, squares))
+
+    def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
+        self.body.append(Require(tuple(values), sp.sympify(scale, strict=True), meaning))
+
+    def explicit(self, value: Any) -> Any:
+        """An expression or a matrix in the names of the program, written out."""
+        known: dict[sp.Basic, sp.Basic] = {}
+        for statement in self.body:
+            if isinstance(statement, (Let, Bound)):
+                known[statement.symbol] = substitute(statement.value, known)
+        if isinstance(value, sp.MatrixBase):
+            return value.applyfunc(lambda e: substitute(e, known))
+        return substitute(value, known)
+
+    def matrix(self, name: str, matrix: sp.Matrix) -> sp.Matrix:
+        """Name the entries that are sums or products, so that later products stay short."""
+        named = sp.zeros(*matrix.shape)
+        for i in range(matrix.shape[0]):
+            for j in range(matrix.shape[1]):
+                entry = matrix[i, j]
+                atomic = entry.is_Atom or (-entry).is_Atom or isinstance(entry, (sp.sin, sp.cos))
+                named[i, j] = entry if atomic else self.let(f"{name}_{i + 1}{j + 1}", entry)
+        return named
+
+
+def choose(flag: sp.Basic, when_true: Number, otherwise: Number) -> sp.Expr:
+    """``when_true`` where a flag, or a condition of flags, holds; else ``otherwise``."""
+    return sp.Piecewise((when_true, flag), (otherwise, True))
+
+
+def sign_of(value: Number) -> sp.Expr:
+    """1 where ``value`` is not negative, else -1."""
+    return sp.Piecewise((1, value >= 0), (-1, True))
+
+
+def used_up(room: Number) -> sp.Expr:
+    """What vanishes where ``room`` does, or falls short by so little that an easing may mend it."""
+    return sp.Max(room, -room / 2**40)
+
+
+__all__ = [
+    "SINGLE",
+    "Array",
+    "Bound",
+    "Branches",
+    "Determined",
+    "Function",
+    "Let",
+    "Match",
+    "Program",
+    "Require",
+    "Statement",
+    "Vanishes",
+    "array",
+    "branches",
+    "choose",
+    "real",
+    "reject_floats",
+    "sign_of",
+    "substitute",
+    "used_up",
+]

@@ -1,0 +1,1 @@
+"""From derivation scripts to files."""

@@ -1,0 +1,76 @@
+"""What a derivation depends on: the modules that it imports, through all levels.
+
+The files are read, not run, so that a proof that was kept is found without importing SymPy.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+from importlib.resources import files
+from pathlib import Path
+
+from closedform.lazy import homes
+
+PACKAGE = "closedform"
+MAPPED = ("derivations", "generated", "templates")
+"""Packages below ``closedform`` that are folders beside it in a checkout."""
+
+
+def package() -> Path:
+    """The folder of the toolkit."""
+    return Path(str(files(PACKAGE)))
+
+
+def sources_of(scripts: Iterable[Path]) -> list[Path]:
+    """The files of these scripts and of every module of ours that they import, through all levels.
+
+    A module of ours is one of closedform, or one beside the script that imports it.
+    """
+    found: dict[Path, None] = {}
+    pending = list(scripts)
+    while pending:
+        path = pending.pop()
+        if path in found:
+            continue
+        found[path] = None
+        try:
+            tree = ast.parse(path.read_bytes())
+        except SyntaxError:
+            continue
+        candidates = _files_of(_imported(tree), path.parent)
+        pending += [p for p in candidates if p.is_file()]
+    return sorted(found)
+
+
+def _imported(tree: ast.Module) -> Iterator[tuple[str, int]]:
+    """The modules that may be imported, each with the number of its leading dots."""
+    known = homes([str(package())])
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, 0) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            module = node.module or ""
+            yield module, node.level
+            for alias in node.names:
+                own = module == PACKAGE and not node.level
+                name = known.get(alias.name, "") if own else ""
+                yield name or f"{module}.{alias.name}".lstrip("."), node.level
+
+
+def _files_of(names: Iterable[tuple[str, int]], folder: Path) -> Iterator[Path]:
+    """Where these modules, and the packages that they are in, would be."""
+    for name, level in names:
+        parts = name.split(".")
+        if level:
+            root = [folder, *folder.parents][level - 1]
+        elif parts[0] == PACKAGE and parts[1:2] and parts[1] in MAPPED:
+            root, parts = Path(str(files(f"{PACKAGE}.{parts[1]}"))), parts[2:]
+        elif parts[0] == PACKAGE:
+            root, parts = package(), parts[1:]
+        else:
+            root = folder
+        for depth in range(len(parts) + 1):
+            yield root.joinpath(*parts[:depth], "__init__.py")
+        if parts:
+            yield root.joinpath(*parts).with_suffix(".py")

@@ -1,0 +1,489 @@
+"""From derivation scripts to files: find them, prove them, print them, write what changed.
+
+Nothing here imports SymPy before a derivation is loaded, so that listing works without it.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import hashlib
+import importlib
+import importlib.util
+import json
+import multiprocessing
+import os
+import re
+import signal
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from dataclasses import dataclass
+from functools import partial
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from closedform.pipeline.disk import replace
+from closedform.pipeline.imports import package, sources_of
+
+if TYPE_CHECKING:
+    from closedform.emit.render import Share
+    from closedform.model.derivation import Derivation
+    from closedform.proof.prove import Proof
+
+BACKENDS = ("numpy", "c", "latex", "data")
+EXTRA = ("sympy", "flint", "jinja2")
+COMPILED = frozenset({".so", ".pyd", ".pyc"})
+
+Files = dict[Path, str]
+Report = Callable[[str, str], None]
+
+
+class DerivationError(Exception):
+    """A derivation cannot be loaded or proved: its name, and what is wrong."""
+
+    def __str__(self) -> str:
+        name, message = self.args
+        return f"{name}: {message}"
+
+
+class UnknownNameError(Exception):
+    """There is no derivation of this name."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """A derivation script; ``module`` is empty for a file outside the package."""
+
+    name: str
+    path: Path
+    module: str = ""
+
+    @property
+    def title(self) -> str:
+        """The first line of the script's docstring."""
+        docstring = ast.get_docstring(ast.parse(self.path.read_bytes())) or ""
+        return docstring.partition("\n")[0]
+
+
+@dataclass(frozen=True)
+class Printed:
+    """One robot: what was proved, in how many seconds, whether just now, and its files."""
+
+    name: str
+    proof: Proof
+    seconds: float
+    stored: bool
+    files: Files
+    share: Share
+
+    def line(self, width: int = 0) -> str:
+        taken = f"{self.seconds:.1f} s{' (unchanged)' if self.stored else ''}"
+        return f"{self.name:<{width}}  {self.proof.summary()}; {taken}"
+
+
+@dataclass(frozen=True)
+class Result:
+    """Every robot that was printed, the files they share, and what failed.
+
+    A robot that was not chosen, but shares files with the chosen, is a neighbour.  If one fails,
+    nothing is shared.
+    """
+
+    robots: tuple[Printed, ...]
+    shared: Files
+    failures: tuple[DerivationError, ...]
+    neighbours: tuple[DerivationError, ...] = ()
+
+    @property
+    def files(self) -> Files:
+        robots = {path: text for robot in self.robots for path, text in robot.files.items()}
+        return {**robots, **self.shared}
+
+
+# Where things are
+
+
+def generated() -> Path:
+    """The folder of the generated package, in a checkout or as installed."""
+    return Path(str(files("closedform.generated")))
+
+
+def checkout() -> Path | None:
+    """The root of the repository, or None where the package was installed from a wheel."""
+    root = generated().parent
+    return root if (root / "pyproject.toml").is_file() else None
+
+
+def scripts() -> Path:
+    """The folder of the derivation scripts."""
+    return Path(str(files("closedform.derivations")))
+
+
+def sources() -> list[Source]:
+    """The derivation scripts of the package, by name."""
+    return [
+        Source(path.stem, path, f"closedform.derivations.{path.stem}")
+        for path in sorted(scripts().glob("*.py"))
+        if _defines_derivation(path)
+    ]
+
+
+def find(names: Sequence[str]) -> list[Source]:
+    """The scripts of these names or paths; all of the package if none is given."""
+    known = {source.name: source for source in sources()}
+    if not names:
+        return list(known.values())
+    return [_find(name, known) for name in dict.fromkeys(names)]
+
+
+def _find(name: str, known: Mapping[str, Source]) -> Source:
+    if name in known:
+        return known[name]
+    path = Path(name)
+    if path.suffix != ".py":
+        raise UnknownNameError(name)
+    path = path.resolve()
+    for source in known.values():
+        if source.path.resolve() == path:
+            return source
+    if not path.is_file():
+        raise UnknownNameError(name)
+    return Source(path.stem, path)
+
+
+def _defines_derivation(path: Path) -> bool:
+    """Whether a script assigns ``d``.  One that does not parse counts, to be reported later."""
+    try:
+        statements = ast.parse(path.read_bytes()).body
+    except SyntaxError:
+        return True
+    targets: list[ast.expr] = []
+    for statement in statements:
+        if isinstance(statement, ast.Assign):
+            targets += statement.targets
+        elif isinstance(statement, ast.AnnAssign):
+            targets.append(statement.target)
+    return any(isinstance(t, ast.Name) and t.id == "d" for t in targets)
+
+
+# Loading and proving
+
+
+def load(source: Source) -> Derivation:
+    """Run a derivation script."""
+    from closedform.model.derivation import Derivation
+
+    try:
+        module = _module(source)
+    except Exception as error:
+        raise DerivationError(source.name, _located(error, source.path)) from error
+    derivation = getattr(module, "d", None)
+    if not isinstance(derivation, Derivation):
+        raise DerivationError(source.name, f"{source.path.name} must assign a Derivation to d")
+    if derivation.name != source.name:
+        raise DerivationError(
+            source.name,
+            f"the derivation calls itself {derivation.name}: name the file {derivation.name}.py",
+        )
+    return derivation
+
+
+def _module(source: Source) -> Any:
+    if source.module:
+        return importlib.import_module(source.module)
+    mark = _digest(sources_of([source.path]))
+    if (known := _modules.get(source.path)) and known[0] == mark:
+        return known[1]
+    folder = str(source.path.parent)
+    if folder not in sys.path:
+        sys.path.append(folder)
+    spec = importlib.util.spec_from_file_location(f"_derivation_{source.name}", source.path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    _modules[source.path] = mark, module
+    return module
+
+
+_modules: dict[Path, tuple[str, Any]] = {}
+"""Scripts outside the package that were run, each with a digest of what it was run from."""
+
+
+def _located(error: Exception, path: Path) -> str:
+    """An error, with the last line of the script that led to it."""
+    lines = [
+        frame.lineno
+        for frame in traceback.extract_tb(error.__traceback__)
+        if frame.filename == str(path)
+    ]
+    place = f"{path.name}, line {lines[-1]}: " if lines else ""
+    return f"{place}{type(error).__name__}: {error}"
+
+
+def _proved(derivation: Derivation, report: Report) -> Proof:
+    from closedform.proof.prove import prove
+
+    try:
+        return prove(derivation, partial(report, derivation.name))
+    except (ValueError, TypeError, ArithmeticError, NotImplementedError) as error:
+        message = str(error).removeprefix(derivation.name).lstrip(",.: ")
+        raise DerivationError(derivation.name, f"not proved: {message}") from error
+
+
+# Proofs are kept
+
+
+class Store:
+    """Proofs on disk, each with a digest of everything it depends on."""
+
+    def __init__(self, folder: Path | None):
+        self.folder = folder
+
+    def get(self, source: Source, mark: str | None = None) -> tuple[Proof, float] | None:
+        """The proof of a script and the seconds it took, if nothing changed since."""
+        from closedform.proof.prove import Proof
+
+        try:
+            data = json.loads(self._path(source).read_text("utf-8"))
+            if data["digest"] == (mark or digest(source)):
+                return Proof.from_dict(data["proof"]), float(data["seconds"])
+        except (OSError, ValueError, KeyError, TypeError):
+            pass
+        return None
+
+    def put(self, source: Source, mark: str, proof: Proof, seconds: float) -> None:
+        """Keep a proof.  Where the disk is read-only, it is proved again the next time.
+
+        ``mark`` is the digest from before the proof: a script may be edited while it is proved.
+        """
+        data = {"digest": mark, "seconds": seconds, "proof": proof.as_dict()}
+        with contextlib.suppress(OSError):
+            replace(self._path(source), (json.dumps(data, indent=1) + "\n").encode())
+
+    def _path(self, source: Source) -> Path:
+        if self.folder is None:
+            raise FileNotFoundError
+        return self.folder / f"{source.name}.json"
+
+
+def default_store() -> Store:
+    """In a checkout ``build/proofs``; an installed package keeps nothing."""
+    root = checkout()
+    return Store(root / "build" / "proofs" if root else None)
+
+
+def digest(source: Source) -> str:
+    """A digest of the script, of all that it and the proof import, and of the algebra."""
+    algebra = [f"{package} {version(package)}\n" for package in ("sympy", "python-flint")]
+    return _digest(sources_of([source.path, package() / "proof" / "prove.py"]), algebra)
+
+
+def _digest(paths: Iterable[Path], lines: Iterable[str] = ()) -> str:
+    total = hashlib.sha256()
+    for path in paths:
+        content = path.read_bytes()
+        total.update(f"{path.name} {len(content)}\n".encode())
+        total.update(content)
+    for line in lines:
+        total.update(line.encode())
+    return total.hexdigest()
+
+
+# Printing
+
+
+def print_robot(
+    source: Source, backends: Sequence[str], store: Store, fresh: bool, report: Report
+) -> Printed:
+    """Prove one robot, unless a kept proof still holds, and print its files."""
+    from closedform.emit.render import pages
+
+    report(source.name, "derivation")
+    start = time.perf_counter()
+    mark = digest(source)
+    derivation = load(source)
+    kept = None if fresh else store.get(source, mark)
+    if kept:
+        proof, seconds = kept
+    else:
+        proof = _proved(derivation, report)
+        seconds = time.perf_counter() - start
+        store.put(source, mark, proof, seconds)
+    report(source.name, "printing")
+    try:
+        printed = pages(derivation, proof, backends)
+    except (ValueError, TypeError, KeyError, NotImplementedError) as error:
+        raise DerivationError(source.name, f"not printed: {error}") from error
+    return Printed(source.name, proof, seconds, kept is not None, printed.files, printed.share)
+
+
+def run(
+    chosen: Sequence[Source],
+    backends: Sequence[str] = BACKENDS,
+    *,
+    together: Sequence[Source] | None = None,
+    store: Store | None = None,
+    fresh: bool = False,
+    jobs: int = 1,
+    report: Report = lambda _name, _what: None,
+) -> Result:
+    """Print the chosen robots, and what all of ``together`` share (by default the chosen)."""
+    from closedform.emit.render import shared_files
+
+    store = store or default_store()
+    together = chosen if together is None else together
+    everyone = list(dict.fromkeys([*chosen, *together]))
+    job = partial(print_robot, backends=backends, store=store, fresh=fresh)
+    robots, failures = _each(job, everyone, min(jobs, len(everyone)), report)
+    shared: Files = {}
+    if not failures:
+        report("", "shared files")
+        shares = {robot.name: robot.share for robot in robots}
+        shared = shared_files([shares[s.name] for s in together], backends)
+    names = {source.name for source in chosen}
+    return Result(
+        tuple(r for r in robots if r.name in names),
+        shared,
+        tuple(f for f in failures if f.args[0] in names),
+        tuple(f for f in failures if f.args[0] not in names),
+    )
+
+
+def _each(
+    job: Callable[..., Printed], chosen: Sequence[Source], jobs: int, report: Report
+) -> tuple[list[Printed], list[DerivationError]]:
+    outcomes: dict[str, Printed | DerivationError] = {}
+    if jobs > 1:
+        outcomes = _in_processes(job, chosen, jobs, report)
+    else:
+        for source in chosen:
+            try:
+                outcomes[source.name] = job(source, report=report)
+            except DerivationError as error:
+                outcomes[source.name] = error
+            report(source.name, "")
+    ordered = [outcomes[source.name] for source in chosen]
+    return (
+        [o for o in ordered if isinstance(o, Printed)],
+        [o for o in ordered if isinstance(o, DerivationError)],
+    )
+
+
+def _in_processes(
+    job: Callable[..., Printed], chosen: Sequence[Source], jobs: int, report: Report
+) -> dict[str, Printed | DerivationError]:
+    outcomes: dict[str, Printed | DerivationError] = {}
+    context = multiprocessing.get_context("spawn")
+    queue = context.SimpleQueue()
+    with ProcessPoolExecutor(jobs, context, _prepare, (queue,)) as pool, _ending_at_once():
+        with _uninterrupted():
+            futures: dict[Future[Printed], str] = {
+                pool.submit(_reporting, job, source): source.name for source in chosen
+            }
+        pending = set(futures)
+        while pending:
+            done, pending = wait(pending, 0.1, FIRST_COMPLETED)
+            while not queue.empty():
+                report(*queue.get())
+            for future in done:
+                try:
+                    outcomes[futures[future]] = future.result()
+                except DerivationError as error:
+                    outcomes[futures[future]] = error
+                report(futures[future], "")
+    return outcomes
+
+
+@contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Processes that are started here do not see Ctrl-C: it is up to us to end them."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextlib.contextmanager
+def _ending_at_once() -> Iterator[None]:
+    """Do not wait for the proofs that are under way where one was interrupted."""
+    try:
+        yield
+    except BaseException:
+        for process in multiprocessing.active_children():
+            process.terminate()
+        raise
+
+
+_queue: Any = None
+
+
+def _prepare(queue: Any) -> None:
+    """In a process of the pool: it ends with the one that started it, however that ends."""
+    global _queue
+    _queue = queue
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: Any) -> None:
+    parent.join()
+    os._exit(1)
+
+
+def _reporting(job: Callable[..., Printed], source: Source) -> Printed:
+    return job(source, report=lambda name, what: _queue.put((name, what)))
+
+
+def default_jobs() -> int:
+    """As many processes as ``make -j`` allows; one a core where make does not run us."""
+    flags = os.environ.get("MAKEFLAGS") if "MAKELEVEL" in os.environ else "-j"
+    if match := re.search(r"(?:^|\s)-j ?(\d*)(?=\s|$)", flags or ""):
+        return int(match[1]) if match[1] else os.cpu_count() or 1
+    return 1
+
+
+# Writing and comparing
+
+
+def standalone(printed: Files) -> Files:
+    """Without the files that only work inside the package: the binding of the C to Python."""
+    return {
+        path: text
+        for path, text in printed.items()
+        if path.parts[0] != "c" or (path.suffix != ".py" and path.name != "extension.c")
+    }
+
+
+def write(root: Path, printed: Files) -> list[Path]:
+    """Write what differs, and only that: make and the C build go by timestamps."""
+    written = []
+    for path, text in sorted(printed.items()):
+        target, content = root / path, text.encode()
+        if not target.is_file() or target.read_bytes() != content:
+            replace(target, content)
+            written.append(path)
+    return written
+
+
+def extra_files(root: Path, printed: Iterable[Path], backends: Sequence[str]) -> list[Path]:
+    """Files below ``generated/`` that no derivation prints any more."""
+    expected = set(printed)
+    present = [
+        path.relative_to(root)
+        for backend in backends
+        for path in sorted((root / backend).rglob("*"))
+        if path.is_file() and path.suffix not in COMPILED and path.name != "__init__.py"
+    ]
+    return [path for path in present if path not in expected]

@@ -1,0 +1,1 @@
+"""Proofs and verdicts, by exact algebra."""

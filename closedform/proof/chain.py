@@ -1,0 +1,305 @@
+"""The proof of an inverse that is a chain of lemmas.
+
+Sound and complete follow from four facts, each computed:
+
+1. every lemma, with its coefficients as free symbols, satisfies its equations in every branch,
+   also in its degenerate cases, and its equations have no other solutions;
+2. the equations of every lemma hold at every posture, if the target is its image: so each posture
+   is among the branches;
+3. no lemma is applied to an equation whose coefficients vanish at every posture;
+4. the equations of all lemmas are linear in the target (and in auxiliary lengths) and determine it
+   from the joints.  By 2 the image of the joints is a solution, so it is the only one: each answer
+   is taken to the target.
+
+4 is the rank of a matrix at a random exact posture: full rank at one posture is full rank at
+almost all, and the answers depend continuously on the target where they exist.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from itertools import product
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.balls import Evaluator
+from closedform.algebra.solutions import InfinitelyManyError, count_solutions
+from closedform.model.derivation import Derivation, Inverse, Link
+from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.proof.require import ProofError, require
+
+Expr = Any
+
+
+def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Expr, ...], int]:
+    """The number of solutions, what was assumed, and how many degenerate cases were proved."""
+    function = derivation[inverse.function]
+    where = f"{derivation.name}.{function.name}"
+    assumptions: dict[Expr, None] = {}
+    count, cases = 1, 0
+    for link in inverse.chain:
+        assumptions |= dict.fromkeys(_lemma_sound(link, where))
+        _lemma_complete(link, where)
+        count *= link.lemma.branches
+        cases += len(link.degenerate)
+    graph = Graph(derivation, inverse, function)
+    for link in inverse.chain:
+        _follows(link, graph, where)
+        _not_degenerate(link, graph, where)
+    _free_choices_are_units(inverse, where)
+    _determines_target(inverse, graph, where)
+    return count, tuple(assumptions), cases
+
+
+def _signs(link: Link) -> list[dict[Expr, int]]:
+    """The branches of a lemma; the signs that come with its coefficients stay symbols."""
+    made = {s.symbol for s in link.body if isinstance(s, (Let, Bound))}
+    used = {s for st in link.body if isinstance(st, (Let, Bound)) for s in st.value.free_symbols}
+    used |= {s for e in link.lemma.solution.values() for s in e.free_symbols}
+    signs = sorted((s for s in used - made if s.name.startswith("sigma_")), key=str)
+    return [dict(zip(signs, values, strict=True)) for values in product((1, -1), repeat=len(signs))]
+
+
+def _values(
+    link: Link, exprs: Sequence[Expr], known: Mapping[Expr, Expr]
+) -> tuple[list[Expr], list[Expr]]:
+    """Expressions in the coefficients of a link alone, and the bounds they rest on."""
+    held: dict[Expr, Expr] = dict(known)
+    flags = {s.symbol: sp.false for s in link.body if isinstance(s, Vanishes)}
+    flags |= {s: v for s, v in known.items() if s in flags}
+    statements = {
+        s.symbol: substitute(s.value, flags) for s in link.body if isinstance(s, (Let, Bound))
+    }
+    exprs = [substitute(e, flags) for e in exprs]
+    needed, pending = set(), {s for e in exprs for s in e.free_symbols}
+    while pending:
+        symbol = pending.pop()
+        if symbol in statements and symbol not in needed and symbol not in held:
+            needed.add(symbol)
+            pending |= statements[symbol].free_symbols
+    bounds = []
+    for statement in link.body:
+        if isinstance(statement, (Let, Bound)) and statement.symbol in needed:
+            held[statement.symbol] = substitute(statements[statement.symbol], held)
+            if isinstance(statement, Bound):
+                bounds.append(held[statement.symbol])
+    return [substitute(e, held) for e in exprs], bounds
+
+
+def _lemma_sound(link: Link, where: str) -> list[Expr]:
+    """In every branch, and in every degenerate case."""
+    lemma, found = link.lemma, list[Expr]()
+    settings: list[tuple[dict[Expr, Expr], Mapping[Expr, Expr], str]] = [
+        (
+            {},
+            link.given,
+            f"{where}: what the lemma {lemma.name!r} gives for {_names(lemma.solution)} does not "
+            f"satisfy its equations",
+        )
+    ]
+    for case in link.degenerate:
+        flags = dict.fromkeys(case.flags, sp.true)
+        settings.append((flags, case.locus, f"{settings[0][2]} in a case: {case.meaning[:-1]}"))
+    for signs in _signs(link):
+        for flags, locus, place in settings:
+            known = {**signs, **flags, **(locus if flags else {})}
+            values, bounds = _values(link, [*lemma.solution.values(), *link.means], known)
+            n = len(lemma.solution)
+            solution = dict(zip(lemma.solution, values[:n], strict=True))
+            residues = [substitute(e, solution) for e in lemma.equations]
+            residues += [
+                value - substitute(meaning, solution)
+                for value, meaning in zip(values[n:], link.means.values(), strict=True)
+            ]
+            vanishing = sp.Matrix([substitute(e, locus) for e in residues])
+            guards = tuple(substitute(b, locus) for b in bounds)
+            found += require(vanishing, guards, place).assumptions
+    return found
+
+
+def _free_choices_are_units(inverse: Inverse, where: str) -> None:
+    """What a degenerate case took for the sine and cosine of some angle is one, in either case."""
+    body = tuple(statement for link in inverse.chain for statement in link.body)
+    whole = Link(inverse.chain[0].lemma, body, {}, {})
+    for s, c, free in inverse.units:
+        held = {e: e for e in free if e.is_Symbol}
+        (sine, cosine), _ = _values(whole, [s, c], held)
+        for side in (1, -1):
+            square = (sine**2 + cosine**2 - 1).xreplace(
+                {e: sp.Integer(side) for e in free if e.is_Symbol and not e.is_nonnegative}
+            )
+            require(square, (), f"{where}: ({c}, {s}) is not a unit vector")
+
+
+def _names(solution: Mapping[Expr, Expr]) -> str:
+    return ", ".join(map(str, solution))
+
+
+_counted: dict[Any, int] = {}
+
+
+def _lemma_complete(link: Link, where: str) -> None:
+    lemma = link.lemma
+    key = (lemma.equations, tuple(lemma.solution), tuple(link.given.items()))
+    try:
+        if key not in _counted:
+            given = {s: e for s, e in link.given.items() if any(q.has(s) for q in lemma.equations)}
+            _counted[key] = count_solutions(
+                lemma.equations, tuple(lemma.solution), target_substitution=given
+            ).count
+    except InfinitelyManyError as error:
+        raise ProofError(f"{where}: the lemma {lemma.name!r}: {error}") from error
+    if _counted[key] != lemma.branches + lemma.excluded:
+        raise ProofError(
+            f"{where}: the equations of the lemma {lemma.name!r} for {_names(lemma.solution)} have "
+            f"{_counted[key]} solutions, but {lemma.branches} branches are given; it is applied to "
+            f"equations of another shape"
+        )
+
+
+class Graph:
+    """What every name of the program is at a posture whose image is the target."""
+
+    def __init__(self, derivation: Derivation, inverse: Inverse, function: Function):
+        self.inverse = inverse
+        self.unknowns = inverse.unknowns
+        self.parameters = [p.symbol for p in derivation.parameters]
+        self.sums: dict[Expr, Expr] = {}
+        taken: set[Expr] = set()
+        for symbol, value in inverse.defined.items():
+            # the newest joint of a sum makes way for the sum, which leaves single angles
+            joint = next(
+                (j for j in reversed(self.unknowns) if value.has(j) and j not in taken), None
+            )
+            if joint is not None:
+                taken.add(joint)
+                (self.sums[joint],) = sp.solve(value - symbol, joint)
+        self.names: dict[Expr, Expr] = dict(inverse.meaning)
+        self.made = {s.symbol: s.value for s in function.body if isinstance(s, (Let, Bound))}
+        self.targets = {
+            x: self.in_sums(f) for x, f in zip(inverse.targets, inverse.forward, strict=True)
+        }
+        self.lengths = {s: self.in_sums(e) for s, e in inverse.lengths.items()}
+
+    def in_sums(self, e: Expr) -> Expr:
+        for _ in self.sums:
+            e = substitute(e, self.sums)
+        return e
+
+    def named(self, e: Expr) -> Expr:
+        """In the unknowns and the target alone."""
+        return self.in_sums(self._written_out(e))
+
+    def _written_out(self, e: Expr) -> Expr:
+        for s in e.free_symbols:
+            if s in self.made and s not in self.names:
+                self.names[s] = self._written_out(self.made[s])
+        return substitute(e, self.names)
+
+    def __call__(self, e: Expr) -> Expr:
+        """At the image of a posture."""
+        return substitute(substitute(self.named(e), self.lengths), self.targets)
+
+
+def _follows(link: Link, graph: Graph, where: str) -> None:
+    lemma = link.lemma
+    place = (
+        f"{where}: the equation solved for {_names(lemma.solution)} by the lemma {lemma.name!r} "
+        f"does not follow from the forward map"
+    )
+    require(sp.Matrix([graph(e) for e in lemma.equations]), (), place)
+
+
+def _random_posture(draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, Expr]:
+    return {
+        s: sp.Rational(draw.randint(1, 40), draw.randint(7, 20)) for s in sorted(symbols, key=str)
+    }
+
+
+def _not_degenerate(link: Link, graph: Graph, where: str) -> None:
+    """The flags of a lemma are false at some posture."""
+    draw = random.Random(1)
+    for statement in link.body:
+        if not (isinstance(statement, Vanishes) and statement.free):
+            continue
+        value = _without_signs(graph(statement.value))
+        point = _random_posture(draw, list(value.free_symbols))
+        (ball,) = Evaluator(list(point), [value])(list(point.values()))
+        if ball.contains(0):
+            raise ProofError(
+                f"{where}: the lemma {link.lemma.name!r} for {_names(link.lemma.solution)} is "
+                f"applied to an equation that is degenerate at every posture: "
+                f"{statement.meaning}; take an equation whose coefficients do not all vanish"
+            )
+
+
+def _without_signs(e: Expr) -> Expr:
+    return e.xreplace({s: sp.S.One for s in e.free_symbols if s.name.startswith("sigma_")})
+
+
+def _determines_target(inverse: Inverse, graph: Graph, where: str) -> None:
+    """The equations, linear in the target and the auxiliary lengths, have full column rank."""
+    draw = random.Random(2)
+    columns: list[Expr] = []
+    circle: dict[Expr, Expr] = {}
+    for x in inverse.targets:
+        if x in inverse.angles:
+            c, s = sp.Dummy(f"c_{x}"), sp.Dummy(f"s_{x}")
+            circle |= {sp.cos(x): c, sp.sin(x): s}
+            columns += [c, s]
+        else:
+            columns.append(x)
+    columns += list(inverse.lengths)
+    required = _constant_targets(inverse)
+    equations = [
+        sp.expand_trig(graph.named(e)).xreplace(circle)
+        for link in inverse.chain
+        for e in link.lemma.equations
+    ]
+    equations += [x - value for x, value in required.items()]
+    rows = []
+    for e in equations:
+        slopes = [e.diff(x) for x in columns]
+        if any(slope.has(*columns) for slope in slopes):
+            raise ProofError(
+                f"{where}: the equation {e} of a lemma is not linear in the target; give its roots "
+                f"and products names with ik.let"
+            )
+        rows.append(slopes)
+    entries = [slope for row in rows for slope in row]
+    point = _random_posture(draw, sorted({s for e in entries for s in e.free_symbols}, key=str))
+    balls = Evaluator(list(point), entries)(list(point.values()))
+    n = len(columns)
+    rank = _certain_rank([balls[i : i + n] for i in range(0, len(balls), n)])
+    if rank < n:
+        raise ProofError(
+            f"{where}: the lemmas leave {n - rank} of the {n} coordinates of the target "
+            f"undetermined: an equation of the forward map is not used"
+        )
+
+
+def _certain_rank(rows: list[list[Any]]) -> int:
+    """The rank of a matrix of balls, counting only pivots that certainly differ from zero."""
+    rank = 0
+    for column in range(len(rows[0])):
+        certain = [row for row in rows[rank:] if not row[column].contains(0)]
+        if not certain:
+            continue
+        pivot = max(certain, key=lambda row: abs(float(row[column].mid())))
+        rows = [*rows[:rank], pivot, *(row for row in rows[rank:] if row is not pivot)]
+        rows[rank + 1 :] = [
+            [a - b * (row[column] / pivot[column]) for a, b in zip(row, pivot, strict=True)]
+            for row in rows[rank + 1 :]
+        ]
+        rank += 1
+    return rank
+
+
+def _constant_targets(inverse: Inverse) -> dict[Expr, Expr]:
+    """Entries of the target that no joint moves, as the last row of a pose."""
+    return {x: f for x, f in zip(inverse.targets, inverse.forward, strict=True) if f.is_number}
+
+
+__all__ = ["prove_chain"]

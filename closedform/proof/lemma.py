@@ -1,0 +1,45 @@
+"""Proves a lemma, for the coefficients it was applied to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+from closedform.algebra.solutions import count_solutions
+from closedform.model.functions import Array, Bound, Function, Let, Program, substitute
+from closedform.model.lemma import Lemma
+from closedform.proof.require import ProofError, require
+
+
+def prove_lemma(
+    lemma: Lemma, program: Program, given: Mapping[sp.Symbol, sp.Expr] | None = None
+) -> None:
+    """Prove a lemma for the coefficients it was applied to: symbols, so for all.
+
+    Its solutions satisfy its equations for either sign, its names are what they are said to
+    mean, and the equations have no others.  ``given`` writes dependent coefficients in free
+    parameters.
+    """
+    given = dict(given or {})
+    outputs = (*lemma.solution.values(), *lemma.means)
+    premises = [Bound(name, meaning, sp.S.One, "") for name, meaning in lemma.premises.items()]
+    body = [*premises, *program.body]
+    steps = [s.value for s in body if isinstance(s, (Let, Bound))]
+    free = {s for e in (*outputs, *steps) for s in e.free_symbols}
+    sign = next((s for s in free if s.name.startswith("sigma")), None)
+    function = Function("lemma", "", (), (Array("x", (len(outputs),), outputs),), tuple(body))
+    for value in (1, -1) if sign else (1,):
+        signs = {sign: value} if sign else {}
+        values = function.values(signs)
+        solution = dict(zip(lemma.solution, values, strict=False))
+        meant = [substitute(e, solution) for e in lemma.means.values()]
+        named = [a - b for a, b in zip(meant, values[len(solution) :], strict=True)]
+        vanishing = sp.Matrix([*(substitute(e, solution) for e in lemma.equations), *named])
+        bounds = tuple(substitute(b, given) for b in function.bounds(signs))
+        fault = f"what the lemma {lemma.name!r} gives does not satisfy its equations"
+        require(substitute(vanishing, given), bounds, fault)
+    count = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given).count
+    if count != lemma.branches + lemma.excluded:
+        given_count = f"{lemma.branches + lemma.excluded} are accounted for"
+        raise ProofError(f"the lemma {lemma.name!r} has {count} solutions, but {given_count}")

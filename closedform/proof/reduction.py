@@ -1,0 +1,96 @@
+"""Proof of an inverse whose system reduces to the equations of lemmas.
+
+See :class:`closedform.model.derivation.Reduction`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import sympy as sp
+
+from closedform.algebra.normal_form import normal
+from closedform.model.derivation import Derivation, Inverse, Reduction
+from closedform.model.functions import Bound, Function, Let, Program, Vanishes, substitute
+from closedform.proof.lemma import prove_lemma
+from closedform.proof.require import ProofError, require
+
+
+def prove_reduction(
+    derivation: Derivation, function: Function, inverse: Inverse
+) -> tuple[int, str, tuple[str, ...]]:
+    """The lemmas have all their solutions; their equations are equivalent to the system.
+
+    Returns the number of branches, the method in words and the names of the lemmas.
+    """
+    reduction = inverse.reduction
+    assert reduction is not None
+    where = f"{derivation.name}.{function.name}"
+    known, equations = _meanings(function, reduction), []
+    for lemma in reduction.lemmas:
+        prove_lemma(lemma, Program(list(lemma.body)))
+        for name, meaning in lemma.premises.items():
+            stated = substitute(meaning, known)
+            for missed in _cases(known[name] - stated):
+                fault = f"{where}: {name} does not stand for what the lemma {lemma.name!r} says"
+                require(missed, (), fault)
+        equations += [substitute(e, known) for e in lemma.equations]
+    graph = {joint: substitute(e, known) for joint, e in reduction.joints.items()}
+    system = sp.Matrix([substitute(e, graph) for e in inverse.equations])
+    combined = reduction.combination * sp.Matrix(equations)
+    for difference in _cases(sp.ImmutableMatrix(system - combined)):
+        require(difference, (), f"{where}: the lemmas' equations do not combine to the system")
+    if not normal(reduction.combination.det()).is_nonzero:
+        raise ProofError(f"{where}: the matrix that combines the lemmas' equations is singular")
+    solution = {u: _generic(e) for lemma in reduction.lemmas for u, e in lemma.solution.items()}
+    answers = [_generic(e) for a in function.outputs for e in a.entries]
+    for joint, answer in zip(inverse.unknowns, answers, strict=True):
+        difference = substitute(reduction.joints[joint], solution) - answer
+        if sp.expand(difference) != 0:
+            raise ProofError(
+                f"{where}: {joint} is not what the lemmas give; the difference is {difference}"
+            )
+    count = math.prod(lemma.branches for lemma in reduction.lemmas)
+    branches = len(function.branches) if function.branches else 1
+    if count != branches * reduction.kept_of:
+        raise ProofError(f"{where}: the lemmas give {count} solutions, not {branches}")
+    names = tuple(dict.fromkeys(lemma.name for lemma in reduction.lemmas))
+    method = "lemma by lemma" + (f"; {reduction.because}" if reduction.because else "")
+    return branches, method, names
+
+
+def _meanings(function: Function, reduction: Reduction) -> dict[sp.Basic, sp.Basic]:
+    """What the names of a program stand for, in inputs, parameters and unknowns of the lemmas.
+
+    As everywhere in a proof of the generic case, flags are false.
+    """
+    known: dict[sp.Basic, sp.Basic] = {}
+    inside: set[int] = set()
+    for lemma in reduction.lemmas:
+        known |= lemma.means
+        inside |= {id(s) for s in lemma.body}
+    for statement in function.body:
+        if isinstance(statement, Vanishes):
+            known[statement.symbol] = sp.false
+        elif isinstance(statement, (Let, Bound)) and id(statement) not in inside:
+            known[statement.symbol] = substitute(statement.value, known)
+    return known
+
+
+def _cases(expr: sp.Expr) -> Iterator[sp.Expr]:
+    """The values of an expression for every outcome of its choices between sides."""
+    choices = [c for p in expr.atoms(sp.Piecewise) for _, c in p.args if c.is_Relational]
+    if not choices:
+        yield expr
+        return
+    for holds in (sp.true, sp.false):
+        yield from _cases(expr.xreplace({choices[0]: holds}))
+
+
+def _generic(expr: sp.Expr) -> sp.Expr:
+    """The first case of every choice between sides, the last of every choice by a flag."""
+    cases = {
+        p: p.args[0 if p.args[0][1].is_Relational else -1][0] for p in expr.atoms(sp.Piecewise)
+    }
+    return _generic(expr.xreplace(cases)) if cases else expr

@@ -1,0 +1,1 @@
+"""From a table of joints to a derivation script."""

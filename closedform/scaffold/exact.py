@@ -1,0 +1,178 @@
+"""Exact values near what a table gives in decimals: unit vectors, rotations, and named angles.
+
+Derivations compute with exact numbers.  (0, 0.7071, 0.7071) is not a unit vector, and cos(pi/18)
+has no form in square roots that the proofs could use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import combinations, product
+from math import hypot
+
+import sympy as sp
+
+from closedform.model.functions import real
+from closedform.model.tolerances import UNIT_LENGTH
+
+ROUNDED = 0.75
+"""Of the last decimal that is given: half for its rounding, the rest for that of the others."""
+FINEST = 1e-15
+SIMPLE: tuple[sp.Expr, ...] = (
+    *map(sp.Integer, (0, 1)),
+    *(sp.Rational(p, q) for p, q in ((1, 2), (1, 3), (2, 3), (3, 5), (4, 5))),
+    *(sp.sqrt(n) / k for n, k in ((2, 2), (3, 2), (3, 3), (6, 3), (6, 6), (5, 5))),
+    2 * sp.sqrt(5) / 5,
+    *((sp.sqrt(6) + sign * sp.sqrt(2)) / 4 for sign in (1, -1)),
+)
+"""Sizes that a coordinate of a unit vector often has."""
+AXES = tuple(sp.eye(3)[:, i] for i in range(3))
+
+
+def unit_vector(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix | None:
+    """The exact unit vector that was rounded to the numbers given.
+
+    It is one of the ``known`` vectors or normal to one of them where the decimals admit it, else
+    it has simple coordinates, else rational ones.  None where the length is not 1 within
+    :data:`~closedform.model.tolerances.UNIT_LENGTH`.
+    """
+    if given.free_symbols:
+        return None
+    numbers = [float(e) for e in given]
+    length = hypot(*numbers)
+    if abs(length - 1) > UNIT_LENGTH:
+        return None
+    u, place = [x / length for x in numbers], _last_place(given)
+    related = [*known, *(a.cross(b) for a, b in combinations(known, 2))]
+    near = (sign * v for v in related for sign in (1, -1) if _is_unit(v))
+    chosen = next((v for v in near if _close(v, u, place)), None) or _simple(u, place)
+    if chosen is not None:
+        return chosen
+    for v in known:
+        if abs(sum(float(a) * b for a, b in zip(v, u, strict=True))) <= 2 * place:
+            return _normal_to(v, u, place)
+    return _rational(u, place)
+
+
+def rotation(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix | None:
+    """The exact rotation that was rounded to the 3x3 matrix given; None where none is near."""
+    third = unit_vector(given[:, 2], known)
+    if third is None or unit_vector(given[:, 0]) is None:
+        return None
+    first = unit_vector(given[:, 0], [third, *known])
+    if first is None or sp.expand(first.dot(third)) != 0:
+        first = _normal_to(third, [float(e) for e in given[:, 0]], _last_place(given))
+    found = sp.Matrix.hstack(first, third.cross(first).applyfunc(sp.expand), third)
+    away = max(abs(float(a) - float(b)) for a, b in zip(found, given, strict=True))
+    return found if away <= UNIT_LENGTH else None
+
+
+def _last_place(given: sp.Matrix) -> float:
+    """The unit of the last decimal; of numbers that are not decimals, the tolerance."""
+    digits = [
+        next((k for k in range(16) if (e * 10**k).is_Integer), None)
+        for e in given
+        if e.is_Rational and not e.is_Integer
+    ]
+    return max(10.0 ** -max((k for k in digits if k is not None), default=3), FINEST)
+
+
+def _close(v: Sequence[sp.Expr], u: Sequence[float], place: float) -> bool:
+    return all(abs(float(a) - b) <= ROUNDED * place for a, b in zip(v, u, strict=True))
+
+
+def _is_unit(v: sp.Matrix) -> bool:
+    return bool(sp.expand(v.dot(v)) == 1)
+
+
+def _simple(u: Sequence[float], place: float) -> sp.Matrix | None:
+    sizes = [[s for s in SIMPLE if abs(float(s) - abs(x)) <= ROUNDED * place] for x in u]
+    for chosen in product(*sizes):
+        v = sp.Matrix([s if x >= 0 else -s for s, x in zip(chosen, u, strict=True)])
+        if _is_unit(v):
+            return v
+    return None
+
+
+def _fractions(*values: float) -> Iterator[tuple[sp.Rational, ...]]:
+    """Ever closer fractions for some numbers."""
+    for k in range(2, 20):
+        near = (Fraction(x).limit_denominator(2**k) for x in values)
+        yield tuple(sp.Rational(f.numerator, f.denominator) for f in near)
+
+
+def _rational(u: Sequence[float], place: float) -> sp.Matrix:
+    """A rational point of the sphere, by the projection from the pole on the other side."""
+    pole = max(range(3), key=lambda i: abs(u[i]))
+    sign = 1 if u[pole] > 0 else -1
+    a, b = (i for i in range(3) if i != pole)
+    v = sp.zeros(3, 1)
+    for s, t in _fractions(*(u[i] / (1 + abs(u[pole])) for i in (a, b))):
+        below = 1 + s**2 + t**2
+        v[a], v[b], v[pole] = 2 * s / below, 2 * t / below, sign * (2 - below) / below
+        if _close(v, u, place):
+            break
+    return v
+
+
+def _normal_to(axis: sp.Matrix, u: Sequence[float], place: float) -> sp.Matrix:
+    """A unit vector that is exactly normal to an axis, and rational in a frame about it."""
+    x, y, z = axis if axis[2] >= 0 else -axis
+    across = sp.Matrix([1 - x**2 / (1 + z), -x * y / (1 + z), -x])
+    along = sp.Matrix([-x * y / (1 + z), 1 - y**2 / (1 + z), -y])
+    c, s = (sum(float(e) * b for e, b in zip(v, u, strict=True)) for v in (across, along))
+    sign = 1 if c > 0 else -1
+    found = across
+    for (t,) in _fractions(s / (abs(c) + hypot(c, s))):
+        found = (sign * (1 - t**2) * across + 2 * t * along) / (1 + t**2)
+        if _close(found, u, place):
+            break
+    return found.applyfunc(lambda e: sp.radsimp(sp.expand(e)))
+
+
+@dataclass
+class Angles:
+    """Names the angles whose cosine has no form in square roots."""
+
+    taken: Callable[[str], bool]
+    named: dict[sp.Expr, sp.Symbol] = field(default_factory=dict)
+    places: dict[sp.Expr, str] = field(default_factory=dict)
+
+    def read(self, entry: sp.Expr, where: str, *, angle: bool = False) -> sp.Expr:
+        """The entry with names for such angles: for itself, or where sin and cos are taken."""
+        functions = entry.atoms(sp.sin, sp.cos)
+        held = {f: f.func(self._named(f.args[0], where)) for f in functions}
+        entry = entry.xreplace(held)
+        return self._named(entry, where) if angle else entry
+
+    def _named(self, angle: sp.Expr, where: str) -> sp.Expr:
+        unknown = sp.Add(*(t for t in sp.Add.make_args(angle) if not _has_roots(t)))
+        if unknown == 0:
+            return angle
+        value, sign = (-unknown, -1) if unknown < 0 else (unknown, 1)
+        if value not in self.named:
+            numbers = (f"angle{n}" for n in range(1, 1000))
+            held = {s.name for s in self.named.values()}
+            name = next(n for n in numbers if n not in held and not self.taken(n))
+            self.named[value], self.places[value] = real(name), where
+        return angle - unknown + sign * self.named[value]
+
+
+def _has_roots(term: sp.Expr) -> bool:
+    """Whether an angle of this size has a cosine in square roots; a joint or a parameter counts."""
+    if term.free_symbols or term == 0:
+        return True
+    factor, rest = term.as_coeff_Mul()
+    if rest == sp.pi:
+        return not (sp.cos(term).has(sp.cos, sp.sin) or sp.sin(term).has(sp.cos, sp.sin))
+    return factor.is_Integer and isinstance(rest, sp.atan | sp.atan2)
+
+
+def decimal(value: sp.Expr) -> str:
+    """A number as exact text, or to 20 digits where it is not rational."""
+    return str(value) if value.is_Rational else str(value.evalf(20))
+
+
+__all__ = ["Angles", "decimal", "rotation", "unit_vector"]

@@ -1,0 +1,218 @@
+"""Writes the skeleton of a derivation from a table of joints.
+
+The skeleton has pose, Jacobians and determinant, and is proved and printed as it stands.  Where the
+structure of the arm is known, it holds the proposed inverse; else a place for it.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from closedform.algebra.formulas import number
+from closedform.mechanics.arm import RowError, Serial, from_dh, from_screws
+from closedform.mechanics.mobility import SingularEverywhereError
+from closedform.model.derivation import Derivation, Paper
+from closedform.model.names import check_robot, check_text
+from closedform.scaffold.propose import NoChainError, propose
+from closedform.scaffold.source import source
+from closedform.scaffold.tables import (
+    AUTHOR,
+    CHAIN,
+    IMPORTED,
+    Table,
+    TableError,
+    check_names,
+    read_dh,
+    read_screws,
+)
+
+LINE = 100
+"""Columns of a script."""
+IMPORTS = frozenset({"numpy", "sympy", "flint", "jinja2"})
+"""Modules that a script beside them, of the same name, would hide."""
+
+
+@dataclass(frozen=True)
+class Script:
+    """The source of a derivation, and a clause on the inverse that it proposes or lacks.
+
+    The ``notes`` say what of the table was read otherwise than it is written.
+    """
+
+    text: str
+    inverse: str
+    notes: tuple[str, ...] = ()
+
+
+def check_name(name: str) -> None:
+    """Raise ``ValueError`` unless a script may have this name."""
+    check_robot(name)
+    if name in IMPORTS or name in sys.stdlib_module_names:
+        raise ValueError(f"{name} is a module of Python; choose another name, such as {name}_arm")
+
+
+def new(name: str, kind: str, path: Path, *, modified: bool = False) -> Script:
+    """A derivation called ``name``, from a table of the given kind.
+
+    ``kind`` is ``"dh"`` (then ``modified`` rows are Craig's) or ``"screws"``.  Raises
+    ``ValueError`` where the name or the table cannot be used, with the place and the remedy.
+    """
+    check_name(name)
+    table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
+    check_names(table, path.name)
+    for symbol, given in table.parameters.items():
+        check_text(f"{path.name}: {symbol}", given.get("meaning", ""), given.get("unit", ""))
+    try:
+        return skeleton(name, table, path.name)
+    except (RowError, SingularEverywhereError) as error:
+        raise TableError(f"{path.name}: {str(error).removeprefix(f'{name}: ')}") from error
+
+
+def _literal(text: str) -> str:
+    """A text as a literal of Python, in double quotes where it holds none."""
+    return repr(text) if '"' in text else f'"{repr(chr(39) + text)[2:]}'
+
+
+def _comment(text: str) -> str:
+    """A text as one line of comment."""
+    line = " ".join(text.split())
+    return "# " + "".join(c if c.isprintable() else "?" for c in line)
+
+
+def skeleton(name: str, table: Table, origin: str) -> Script:
+    """The script, with the inverse that is proposed or a place for it."""
+    origin = re.sub(r"[^\w .()-]", "_", origin)
+    d = Derivation(name, name, Paper("own", "own", ()), "")
+    negative = [
+        n
+        for n, given in table.parameters.items()
+        if given.get("value", "1").startswith("-") or given.get("unit") == "rad"
+    ]
+    for symbol in table.parameters:
+        d.parameter(symbol, value=1, unit="", meaning="", nonnegative=symbol not in negative)
+    for joint, kind in table.joints.items():
+        d.joint(joint, kind)  # type: ignore[arg-type]
+    known = {s.name: s for s in (*(p.symbol for p in d.parameters), *d.actuated)}
+    arm = _arm(d, table, known)
+    arm.require_regular(name)
+    title = name.replace("_", " ").capitalize()
+    lines = [
+        f'"""{title}: a derivation from {origin}."""',
+        "",
+        "IMPORTS",
+        "",
+        "d = Derivation(",
+        f'    "{name}",',
+        f'    "{title}",',
+        f'    Paper("{name}", "{title}", ("the maker of the arm",)),',
+        '    "Say here how the mechanism is built, where its zero is and which way it turns.",',
+        ")",
+    ]
+    lines += [_comment(f"{note}.") for note in table.notes]
+    for symbol, given in table.parameters.items():
+        value = number(given.get("value") or "1")
+        exact = f"{value.numerator}" if value.denominator == 1 else f'Rational("{value}")'
+        sign = ", nonnegative=False" if symbol in negative else ""
+        unit, meaning = (
+            _literal(given.get(key) or default)
+            for key, default in (("unit", "m"), ("meaning", "say what it measures"))
+        )
+        lines.append(
+            f'{symbol} = d.parameter("{symbol}", value={exact}, unit={unit}, '
+            f'meaning={meaning}, source="{origin}"{sign})'
+        )
+    for joint, kind in table.joints.items():
+        argument = ', "prismatic"' if kind == "prismatic" else ""
+        lines.append(f'{joint} = d.joint("{joint}"{argument})')
+    lines += ["", *_table_lines(table), "forward = arm.export(d)", ""]
+    inverse, outcome = _inverse_lines(arm)
+    text = "\n".join([*lines, *inverse]) + "\n"
+    return Script(text.replace("IMPORTS", _imports(text)), outcome, tuple(table.notes))
+
+
+def _arm(d: Derivation, table: Table, known: Mapping[str, Any]) -> Serial:
+    """The chain of the table, with the symbols of the derivation."""
+
+    def own(e: Any) -> Any:
+        return e.xreplace({s: known[s.name] for s in e.free_symbols})
+
+    if table.rows:
+        return from_dh(d, [tuple(map(own, row)) for row in table.rows], modified=table.modified)
+    axes = [(own(j), [own(e) for e in w], [own(e) for e in p]) for j, w, p in table.axes]
+    return from_screws(d, axes, table.home.applyfunc(own))
+
+
+def _table_lines(table: Table) -> list[str]:
+    if table.rows:
+        rows = [f"        ({', '.join(map(source, row))})," for row in table.rows]
+        end = "    modified=True,\n)" if table.modified else ")"
+        return ["arm = from_dh(", "    d,", "    [", *rows, "    ],", end]
+    axes = [
+        f"        ({joint}, ({', '.join(map(source, w))}), ({', '.join(map(source, p))})),"
+        for joint, w, p in table.axes
+    ]
+    return [
+        "arm = from_screws(",
+        "    d,",
+        "    [",
+        *axes,
+        "    ],",
+        f"    {source(table.home)},",
+        ")",
+    ]
+
+
+def _inverse_lines(arm: Serial) -> tuple[list[str], str]:
+    """The lines for the inverse, and what there is of it."""
+    task = arm.coordinates()
+    angles = ', angles=["yaw"]' if task and "yaw" in task.names else ""
+    chain = f"ik = Chain(d, forward{angles})"
+    try:
+        found = propose(arm)
+    except NoChainError as error:
+        outcome = f"no inverse, because {error.found}"
+        reason = f"No inverse is proposed, because {error.found}.  {error.needed}"
+        return [
+            *map(_comment, textwrap.wrap(reason, LINE - 2)),
+            "# Write it here, lemma by lemma, in the place of the last line of this file;",
+            "# docs/adding-a-mechanism.md says how:",
+            f"# {chain}",
+            "# ik.solve(turn, theta1, a, b, c, {+1: 'left', -1: 'right'})",
+            '# ik.finish("All solutions.")',
+            f"d.no_inverse({_literal(error.found)})",
+        ], outcome
+    count = f"{found.branches} branch{'es' if found.branches > 1 else ''}"
+    return [
+        _comment(f"Inverse, as proposed for: {found.structure}."),
+        "# Edit it as you like, and name the branches; the proof decides.",
+        chain,
+        *found.lines,
+        'ik.finish("All solutions of the inverse kinematics.")',
+    ], f"an inverse with {count} is proposed ({found.structure})"
+
+
+def _imports(text: str) -> str:
+    """What the script uses, in the order that linters want."""
+    code = "\n".join(line for line in text.splitlines() if not line.startswith("#"))
+
+    def used(names: Sequence[str]) -> list[str]:
+        return [n for n in names if re.search(rf"(?<![\w.\"]){n}(?!\w)", code)]
+
+    symbolic = used(sorted(IMPORTED))
+    ours = used(sorted((*AUTHOR, *CHAIN), key=lambda name: (name.islower(), name)))
+    lines = [f"from sympy import {', '.join(symbolic)}", ""] if symbolic else []
+    return "\n".join([*lines, *_folded(f"from closedform import {', '.join(ours)}")])
+
+
+def _folded(statement: str) -> list[str]:
+    """An import, over several lines where it is too long for one."""
+    if len(statement) <= LINE:
+        return [statement]
+    start, _, names = statement.partition("import ")
+    return [f"{start}import (", *(f"    {name}," for name in names.split(", ")), ")"]

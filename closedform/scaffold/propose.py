@@ -1,0 +1,607 @@
+"""Proposes the chain of lemmas for arms of known structure, as the lines that one would write.
+
+What is recognised is geometry alone: which axes are parallel, meet or are normal to each other.
+The lines apply the lemmas of :mod:`closedform.lemmas.links` to a
+:class:`~closedform.lemmas.chain.Chain`; the engineer accepts or edits them, and the proof decides.
+Known are
+
+- planar arms of two or three revolute joints, also with a slide along their axes (SCARA);
+- gantries (three slides) and cylindrical arms (a turn, a slide along it, a slide across);
+- a turret with two parallel joints, or with a joint and a slide (polar arm), and their offsets;
+- these three-joint arms with a spherical wrist;
+- a turret, three parallel joints and two more that are normal to each other (UR).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from closedform.lemmas import links as linklemmas
+from closedform.lemmas import tangent
+from closedform.lemmas.pairs import Pair
+from closedform.mechanics.arm import Group, Serial
+from closedform.mechanics.axes import met
+from closedform.mechanics.frames import rotation
+from closedform.scaffold.source import source
+
+Z = sp.Matrix([0, 0, 1])
+NAMES = ("Abs", "Matrix", "Rational", "atan", "atan2", "cos", "pi", "sin", "sqrt")
+"""What the lines use of SymPy."""
+
+
+class NoChainError(ValueError):
+    """No chain of lemmas is known for an arm.
+
+    ``found`` is a clause, the property of this arm that stands in the way; ``needed`` is a sentence
+    on what the known chains need, and what can be done.
+    """
+
+    def __init__(self, found: str, needed: str):
+        super().__init__(f"no chain of lemmas is known for this arm, because {found}.  {needed}")
+        self.found, self.needed = found, needed
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """The structure that was recognised, and the lines that solve the arm with ``ik`` a Chain."""
+
+    structure: str
+    lines: tuple[str, ...]
+    lemmas: tuple[str, ...]
+    branches: int
+
+    @property
+    def source(self) -> str:
+        return "\n".join(self.lines) + "\n"
+
+    def apply(self, ik: Any) -> None:
+        """Run the lines, for the chain ``ik``; what is wrong with them the proof finds.
+
+        The lines hold nothing that stood in a table but names and expressions that were printed
+        from SymPy objects by :func:`source`, which refuses any other name.
+        """
+        names: dict[str, Any] = {
+            "__builtins__": {},
+            **{s.name: s for s in (*(p.symbol for p in ik.d.parameters), *ik.joints)},
+            **{n: getattr(linklemmas, n) for n in (*self.lemmas, "turned", "Reaching")},
+            **{n: getattr(tangent, n) for n in ("Links", "LinksAndWrist")},
+            **{n: getattr(sp, n) for n in NAMES},
+            "Pair": Pair,
+            "ik": ik,
+        }
+        exec(compile(self.source, "proposal", "exec"), names)
+
+
+def propose(arm: Serial) -> Proposal:
+    """The chain for an arm; raises :class:`NoChainError` where none is known."""
+    maker = _Maker(arm)
+    structure = maker.whole()
+    lemmas = tuple(dict.fromkeys(maker.used))
+    return Proposal(structure, tuple(maker.lines), lemmas, maker.branches)
+
+
+@dataclass
+class _Maker:
+    """Writes lines; a vector is known by its name, and a rotation by the names of its pairs."""
+
+    arm: Serial
+    lines: list[str] = field(default_factory=list)
+    used: list[str] = field(default_factory=list)
+    count: int = 0
+    branches: int = 1
+
+    def whole(self) -> str:
+        groups, task = [_plain(group) for group in self.arm.groups], self.arm.coordinates()
+        if task is None and len(self.arm.joints) == 6:
+            return self._pose(groups)
+        if task is None:
+            joints = len(self.arm.joints)
+            raise NoChainError(
+                f"its joints, {joints} in number, fit no task",
+                "An inverse needs as many coordinates as joints: a pose needs 6 joints, and fewer "
+                "joints must move nothing of the tool but x, y, z or its turn about z.",
+            )
+        if "yaw" in task.names:
+            return self._level(groups, task.names)
+        if task.names == ("x", "y"):
+            self._require(
+                len(groups) == 1,
+                "its axes are not parallel",
+                "The axes of an arm with the task x, y must be.",
+            )
+            return self._planar(groups[0], task.names)
+        if task.names != ("x", "y", "z"):
+            raise NoChainError(
+                f"it moves the tool in {' and '.join(task.names)}",
+                "The known tasks are x, y and x, y, z, both with or without the turn about z, and "
+                "the pose; a planar arm must have its axes along z.",
+            )
+        self.add("p = Matrix(ik.x)")
+        self._lead_away("p")
+        tool = groups[-1].end * self.arm.last[:3, 3]
+        last = groups[-1].rows[-1]
+        moved = tuple(sp.Matrix(last.shift) + tool)
+        groups[-1] = Group((*groups[-1].rows[:-1], last._replace(shift=moved)), groups[-1].end)
+        structure, _ = self._position(groups)
+        return structure
+
+    def add(self, line: str) -> None:
+        self.lines.append(line)
+
+    def solve(self, lemma: str, arguments: str, result: str = "", branches: int = 1) -> None:
+        self.used.append(lemma)
+        self.branches *= branches
+        self.add(f"{result + ' = ' if result else ''}ik.solve({lemma}, {arguments})")
+
+    def _require(self, condition: Any, found: str, needed: str) -> None:
+        """What was ``found`` where the condition does not hold, and what is ``needed``."""
+        if not condition:
+            raise NoChainError(found, needed)
+
+    def _lead_away(self, vector: str) -> None:
+        R, p = self.arm.lead[:3, :3], self.arm.lead[:3, 3]
+        if not (p.is_zero_matrix and (R - sp.eye(3)).is_zero_matrix):
+            self.add(
+                f"{vector} = ik.vector('{vector}0', {_times(R.T, f'({vector} - {source(p)})')})"
+            )
+
+    # Planar arms
+
+    def _links(self, group: Group, turns: Sequence[int]) -> list[sp.Matrix]:
+        """The plane vectors from each turning axis to the next, and from the last to the end."""
+        vectors = []
+        for k, i in enumerate(turns):
+            stop = turns[k + 1] if k + 1 < len(turns) else len(group.rows)
+            shifts = (sp.Matrix(row.shift[:2]) for row in group.rows[i:stop])
+            vectors.append(sum(shifts, sp.zeros(2, 1)))
+        return vectors
+
+    def _two_links(
+        self, joints: Sequence[Any], vectors: Sequence[Any], x: str, y: str, alone: bool = False
+    ) -> None:
+        """Joints, with their signs, and link vectors; the names of what is to be reached.
+
+        Where this is a target as it is, the links are ``alone`` the scale of its rounding.
+        """
+        (first, second), (u, v) = joints, vectors
+        lengths = [_length(w) for w in (u, v)]
+        self._require(
+            0 not in lengths,
+            f"the link {lengths.index(0) + 1 if 0 in lengths else 0} of its planar two-link part "
+            "has no length",
+            "Both need one.  If the last is missing, say where the tool is: by the last row of the "
+            "table, or for a modified table by tool= of from_dh.",
+        )
+        at = [sp.atan2(w[1], w[0]) for w in (u, v)]
+        a = self.angle(first + at[0])
+        b = self.angle(second + at[1] - at[0])
+        more = f", scale={source(sum(lengths))}" if (x, y) == ("x", "y") and alone else ""
+        names = []
+        for i, value in enumerate(lengths, 1):
+            if not value.is_Symbol:
+                self.add(f"link{i} = ik.program.let('link{i}', {source(value)}, nonnegative=True)")
+            names.append(source(value) if value.is_Symbol else f"link{i}")
+        arguments = f"{a}, {b}, {x}, {y}, {', '.join(names)}"
+        self.solve("two_links", f"{arguments}, {{+1: 'up', -1: 'down'}}{more}", f"{a}_, {b}_", 2)
+        self.pairs = (f"{a}_", f"{b}_")
+
+    def angle(self, value: Any) -> str:
+        """A joint, or a name for a joint with an offset or a sign."""
+        value = sp.expand(value)
+        if value.is_Symbol:
+            return str(value)
+        self.count += 1
+        name = f"alpha{self.count}"
+        self.add(f"{name} = ik.angle('{name}', {source(value)})")
+        return name
+
+    def _planar(self, group: Group, names: Sequence[str]) -> str:
+        turns = [i for i, row in enumerate(group.rows) if not row.slides]
+        self._require(
+            len(turns) == 2 == len(group.rows),
+            f"{len(turns)} of its joints turn and {len(group.rows) - len(turns)} slide",
+            "A planar arm with the task x, y needs two that turn.",
+        )
+        self._require_z("its first axis is not the z axis of the base")
+        vectors = self._links(group, turns)
+        self._tool(group, vectors)
+        self.add("x, y = ik.x[0], ik.x[1]")
+        x, y = self._less_by(self.arm.lead[:2, 3])
+        self._two_links([group.rows[i].turn for i in turns], vectors, x, y, alone=True)
+        return "planar arm of two links"
+
+    def _require_z(self, found: str) -> None:
+        needed = "Choose the base frame so that its z axis is parallel to the first axis."
+        self._require(sp.eye(3) == self.arm.lead[:3, :3], found, needed)
+
+    def _less_by(self, offset: sp.Matrix) -> tuple[str, str]:
+        """The names of x and y, less what lies between them and the two links."""
+        if offset == sp.zeros(2, 1):
+            return "x", "y"
+        for name, value in zip("xy", offset, strict=True):
+            self.add(f"w{name} = ik.let('w{name}', {source(sp.Symbol(name) - value)})")
+        return "wx", "wy"
+
+    def _tool(self, group: Group, vectors: list[sp.Matrix]) -> None:
+        """The tool is carried by the last link."""
+        vectors[-1] = vectors[-1] + (group.end * self.arm.last[:3, 3])[:2, 0]
+
+    def _level(self, groups: Sequence[Group], names: Sequence[str]) -> str:
+        """Arms that turn about one axis: two links and a yaw, with or without a slide."""
+        self._require(
+            len(groups) == 1,
+            "its axes are not parallel",
+            "The axes of an arm with the task x, y (and z) and yaw must be.",
+        )
+        self._require_z("its first axis is not parallel to the z axis of the base")
+        (group,) = groups
+        rows = group.rows
+        turns = [i for i, row in enumerate(rows) if not row.slides]
+        slides = [i for i, row in enumerate(rows) if row.slides]
+        self._require(
+            len(turns) == 3 and len(slides) < 2,
+            f"{len(turns)} of its joints turn and {len(slides)} slide",
+            "An arm with a yaw in its task needs three that turn, and may have one that slides.",
+        )
+        vectors = self._links(group, turns)
+        self._tool(group, vectors)
+        self.add(f"{', '.join(names)} = ik.x")
+        yaw = self.arm.coordinates().values[-1]  # type: ignore[union-attr]
+        joints = [rows[i].turn for i in turns]
+        total = sum(joints)
+        # the last link is at the angle of the yaw, up to a constant
+        ahead = sp.Symbol("yaw") + sp.simplify(total - yaw)
+        carried = rotation("z", ahead) * sp.Matrix([*vectors[2], 0])
+        x, y = self._less_by(self.arm.lead[:2, 3] + carried[:2, 0])
+        self._two_links(joints[:2], vectors[:2], x, y, alone=x == "x")
+        for i in slides:
+            symbol = _symbol(self.arm, rows, i)
+            (value,) = sp.solve(self.arm.position[2] - sp.Symbol("z", real=True), symbol)
+            self.solve("slide", f"{symbol}, {source(value)}")
+        last = _only(joints[2].free_symbols & set(self.arm.joints))
+        (value,) = sp.solve(yaw - sp.Symbol("yaw", real=True), last)
+        self.solve("remainder", f"{last}, {source(value)}")
+        return "planar arm of two links and a yaw" + (", with a slide (SCARA)" if slides else "")
+
+    # Arms of three joints that carry a point
+
+    def _position(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
+        """Solve for the joints that carry the point ``p``; the pairs by which each group turns."""
+        kinds = ["".join("P" if row.slides else "R" for row in g.rows) for g in groups]
+        if kinds == ["P", "P", "P"]:
+            return self._gantry(groups)
+        if kinds[:1] == ["R"] and kinds[1:] in (["RR"], ["R", "P"]):
+            return self._turret(groups, kinds)
+        if kinds in (["RP", "P"], ["PR", "P"]):
+            return self._cylinder(groups)
+        raise NoChainError(
+            f"the joints that carry its tool or wrist are {' | '.join(kinds)} (R turns, P slides, "
+            "| where the direction changes)",
+            "Known are R | RR, R | R | P, RP | P, PR | P and P | P | P.",
+        )
+
+    def _gantry(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
+        joints = self.arm.joints[:3]
+        at, R = sp.zeros(3, 1), sp.eye(3)
+        for group in groups:
+            at, R = at + R * sp.Matrix(group.rows[0].shift), R * group.end
+        solved = sp.solve(list(at - _at("p")), joints, dict=True)
+        self._require(
+            len(solved) == 1 and set(solved[0]) == set(joints),
+            "the directions of its three slides lie in a plane",
+            "They must not.",
+        )
+        for joint in joints:
+            self.solve("slide", f"{joint}, {source(solved[0][joint])}")
+        return "gantry", ["", "", ""]
+
+    def _cylinder(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
+        base, arm = groups
+        turn = next(row for row in base.rows if not row.slides)
+        slide = next(i for i, row in enumerate(base.rows) if row.slides)
+        direction = base.end * Z
+        offset = sum((sp.Matrix(row.shift) for row in base.rows), sp.zeros(3, 1))
+        offset += base.end * sp.Matrix(arm.rows[0].shift)
+        self._require(
+            direction[2] == 0,
+            "its last slide is not at right angles to its first axis",
+            "In a cylindrical arm it must be.",
+        )
+        along, across, up = direction.dot(offset), Z.cross(direction).dot(offset), offset[2]
+        self._require(
+            sp.simplify(across) == 0,
+            "the line of its last slide through the tool does not meet the first axis",
+            "In a cylindrical arm it must.",
+        )
+        lift, reach = (
+            _symbol(self.arm, base.rows, slide),
+            _only(along.free_symbols & set(self.arm.joints)),
+        )
+        a = self.angle(turn.turn + sp.atan2(direction[1], direction[0]))
+        length = self.length(along, reach)
+        sides = "{+1: 'front', -1: 'back'}"
+        self.solve("polar", f"{a}, {length}, p[0], p[1], {sides}", f"{a}_, _", 2)
+        self._length_back(length, along, reach)
+        (value,) = sp.solve(up - _at("p")[2], lift)
+        self.solve("slide", f"{lift}, {source(value)}")
+        return "cylindrical arm", [self._less(f"{a}_", direction), ""]
+
+    def length(self, value: Any, joint: Any) -> str:
+        value = sp.simplify(value)
+        if value == joint:
+            return str(joint)
+        self.add(f"rho = ik.length('rho', {source(value)})")
+        return "rho"
+
+    def _length_back(self, length: str, value: Any, joint: Any) -> None:
+        if length != str(joint):
+            (solved,) = sp.solve(value - sp.Symbol("rho", real=True), joint)
+            self.solve("slide", f"{joint}, {source(solved)}")
+
+    def _less(self, pair: str, v: Any) -> str:
+        """The pair without the direction of ``v``, which the auxiliary angle had as an offset."""
+        length = _length(sp.Matrix(v[:2]))
+        c, s = v[0] / length, v[1] / length
+        if s == 0 and c == 1:
+            return pair
+        if c.free_symbols | s.free_symbols:
+            self.add(f"ahead = ik.direction('ahead', {source(v[0])}, {source(v[1])})")
+            return f"({pair} - ahead)"
+        return f"({pair} + Pair({source(-s)}, {source(c)}))"
+
+    def _turret(self, groups: Sequence[Group], kinds: Sequence[str]) -> tuple[str, list[str]]:
+        base, second = groups[0], groups[1]
+        normal = base.end * Z
+        self._require_normal(normal[2], 1, 2)
+        beside = sum((row.shift[2] for row in second.rows), sp.S.Zero)
+        if kinds[1:] == ["R", "P"]:
+            along = second.end * sp.Matrix(groups[2].rows[0].shift)
+            self._require(
+                (second.end * Z)[2] == 0,
+                "its slide is not at right angles to axis 2",
+                "In a polar arm it must be.",
+            )
+            beside += along[2]
+        links = self._links(second, [0, 1]) if kinds[1:] == ["RR"] else []
+        pair1 = self._turn_base(base, beside, links)
+        if links:
+            turns = [row.turn for row in second.rows]
+            self._two_links(turns, links, "q[0]", "q[1]")
+            v = links[1]
+            both = f"({self.pairs[0]} + {self.pairs[1]})"
+            pair2 = self._less(both, v)
+            return "turret and two parallel joints", [pair1, pair2]
+        first = sp.Matrix(second.rows[0].shift[:2])
+        out = first + along[:2, 0]
+        direction = second.end * Z
+        length = sp.Matrix(direction[:2]).dot(out)
+        sideways = sp.simplify(direction[0] * out[1] - direction[1] * out[0])
+        self._require(
+            sideways == 0,
+            "the line of its slide through the tool or wrist does not meet axis 2",
+            "In a polar arm it must.",
+        )
+        slide = self.arm.joints[2]
+        offset = sp.atan2(direction[1], direction[0])
+        a = self.angle(second.rows[0].turn + offset)
+        name = self.length(length, slide)
+        self.solve(
+            "polar",
+            f"{a}, {name}, q[0], q[1], {{+1: 'front', -1: 'back'}}, name='slide'",
+            f"{a}_, _",
+            2,
+        )
+        self._length_back(name, length, slide)
+        return "turret, a joint and a slide (polar arm)", [
+            pair1,
+            self._less(f"{a}_", direction),
+            "",
+        ]
+
+    def _turn_base(
+        self, base: Group, beside: Any, links: Sequence[sp.Matrix] = (), wrist: str = ""
+    ) -> str:
+        """The first joint, by the distance ``beside`` of the point from the plane it turns.
+
+        The ``links`` have to reach the point, with a ``wrist`` less an offset that this turns.
+        """
+        row, h = base.rows[0], base.end * Z
+        p = _at("p")
+        a, b = source(h[0] * p[1] - h[1] * p[0]), source(h[0] * p[0] + h[1] * p[1])
+        c = sp.simplify(beside + h[0] * row.shift[0] + h[1] * row.shift[1])
+        joint = self.angle(row.turn)
+        inside = f"(turned(turn1).T * p - {source(sp.Matrix(row.shift))})"
+        point, toward = _times(base.end.T, inside), ""
+        if links and (c != 0 or wrist):
+            reached = ", ".join([point.replace("turn1", "pair"), *map(source, map(_length, links))])
+            kind = "LinksAndWrist" if wrist else "Links"
+            self.add(f"links = {kind}(lambda pair: {reached}{wrist})")
+            toward = ", toward=links"
+        self.solve(
+            "turn",
+            f"{joint}, {a}, {b}, {source(c)}, {{+1: 'left', -1: 'right'}}{toward}",
+            "turn1",
+            2,
+        )
+        self.add(f"q = ik.vector('q', {point})")
+        return "turn1"
+
+    # Arms of six joints
+
+    def _require_normal(self, along: Any, first: int, second: int) -> None:
+        self._require(
+            along == 0,
+            f"axes {first} and {second} are not at right angles",
+            "In the known chains they must be.",
+        )
+
+    def _pose(self, groups: list[Group]) -> str:
+        for k, group in ((6, groups[-1]), (5, groups[-2])):
+            self._require(
+                len(group.rows) == 1,
+                f"axes {k - 1} and {k} are parallel",
+                "The last three axes must change direction.",
+            )
+            self._require(
+                not group.rows[0].slides, f"joint {k} slides", "The last two joints must turn."
+            )
+        third = groups[-3]
+        if [row.slides for row in third.rows] == [True, False]:  # a slide along the axis 4
+            slide, turn = third.rows
+            groups[-3:-2] = [_plain(Group((slide,), sp.eye(3))), Group((turn,), third.end)]
+        for k in (-2, -1):
+            groups[k - 1 : len(groups) + k + 1] = met(groups[k - 1], groups[k])
+        wrist = groups[-2:]
+        self._require(
+            wrist[0].rows[0].shift[:2] == (0, 0),
+            "axes 5 and 6 do not intersect",
+            "In the known chains they do.",
+        )
+        offset = self._tool_behind(wrist[1])
+        self.add(f"p = ik.vector('w', ik.p - ik.R * {source(offset)})")
+        self._lead_away("p")
+        if (
+            len(groups[-3].rows) == 3
+            and len(groups) == 4
+            and not any(row.slides for row in groups[-3].rows)
+        ):
+            return self._three_parallel(groups)
+        self._require(
+            len(groups[-3].rows) == 1,
+            "axes 3 and 4 are parallel",
+            "They may be only where axes 2, 3 and 4 are parallel and turn, as in a UR arm.",
+        )
+        first = groups[-3]
+        self._require(
+            first.rows[0].shift[:2] == (0, 0) and wrist[0].rows[0].shift == (0, 0, 0),
+            "axes 4, 5 and 6 do not meet in a point",
+            "The known chains have a spherical wrist, or parallel axes 2, 3 and 4 (UR).",
+        )
+        carried = groups[:-3]
+        last = carried[-1].rows[-1]
+        extra = carried[-1].end * sp.Matrix(first.rows[0].shift)
+        moved = tuple(sp.Matrix(last.shift) + extra)
+        arm = [
+            *carried[:-1],
+            Group((*carried[-1].rows[:-1], last._replace(shift=moved)), carried[-1].end),
+        ]
+        structure, pairs = self._position(arm)
+        self.add(f"M = {_times(self.arm.lead[:3, :3].T, 'ik.R')}")
+        for group, pair in zip(arm, pairs, strict=True):
+            inside = f"turned({pair}).T * M" if pair else "M"
+            self.add(f"M = ik.matrix('M{len(self.lines)}', {_times(group.end.T, f'({inside})')})")
+        self._wrist(first.rows[0].turn, first, wrist, "M", "")
+        return f"{structure}, with a spherical wrist"
+
+    def _tool_behind(self, last: Group) -> sp.Matrix:
+        """From the origin of the last axis to the tool, seen from the tool."""
+        R = last.end * self.arm.last[:3, :3]
+        return R.T * (sp.Matrix(last.rows[0].shift) + last.end * self.arm.last[:3, 3])
+
+    def _wrist(
+        self, lift: Any, first: Group, wrist: Sequence[Group], M: str, more: str
+    ) -> tuple[str, Any]:
+        """ZYZ angles of ``lift``, of the fifth and the sixth joint, with their offsets."""
+        e, sense = first.end * Z, 1
+        self._require_normal(e[2], 4, 5)
+        if e[1].is_negative:  # a turn about -y is one about y, backwards
+            e, sense = -e, -1
+        epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
+        W = rotation("z", -epsilon) * first.end * wrist[0].end
+        self._require_normal(sp.simplify(W[1, 2]), 5, 6)
+        tau = sp.atan2(W[0, 2], W[2, 2])
+        rest = sp.simplify(rotation("y", -tau) * W)
+        omega = sp.atan2(rest[1, 0], rest[0, 0])
+        after = wrist[1].end * self.arm.last[:3, :3]
+        if after != sp.eye(3):
+            self.add(f"{M} = ik.matrix('{M}_tool', {M} * {source(after.T)})")
+        turns = [g.rows[0].turn for g in wrist]
+        names = (
+            self.angle(lift + epsilon),
+            self.angle(sense * turns[0] + tau),
+            self.angle(turns[1] + omega),
+        )
+        arguments = f"{M}, {', '.join(names)}, {{+1: 'noflip', -1: 'flip'}}{more}"
+        self.solve("zyz", arguments, f"{names[0]}_", 2)
+        return f"{names[0]}_", epsilon
+
+    def _three_parallel(self, groups: Sequence[Group]) -> str:
+        base, parallel, fifth, last = groups
+        end = parallel.end * sp.Matrix(fifth.rows[0].shift)
+        normal = base.end * Z
+        self._require_normal(normal[2], 1, 2)
+        beside = sum((row.shift[2] for row in parallel.rows), end[2])
+        u, v, w = self._links(parallel, [0, 1, 2])
+        w = w + end[:2, 0]
+        length = _length(w)
+        lead = _times(self.arm.lead[:3, :3].T, "ik.R")
+        e = parallel.end * Z
+        epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
+        if e[1].is_negative:
+            epsilon = sp.atan2(-e[1], -e[0]) - sp.pi / 2
+        angle = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - epsilon
+        ahead = f"Pair({source(sp.sin(angle))}, {source(sp.cos(angle))})"
+        after = last.end * self.arm.last[:3, :3]
+        axis = f"{lead} * {source(after.T[:, 2])}"
+        axis = _times(base.end.T, f"turned(pair).T * {axis}")
+        offset = f"lambda pair: {axis}, {source(length)}, {ahead}"
+        pair1 = self._turn_base(base, beside, [u, v], f", {offset}")
+        self.add(f"M = ik.matrix('M', {_times(base.end.T, f'turned({pair1}).T * {lead}')})")
+        lengths = f"{source(_length(u))}, {source(_length(v))}"
+        self.add(
+            f"reaching = Reaching(ik, q[0], q[1], {source(length)}, {lengths}, {ahead}, "
+            f"{pair1}.lever)"
+        )
+        lift = sum((row.turn for row in parallel.rows), sp.S.Zero)
+        pair, _ = self._wrist(lift, parallel, groups[2:], "M", ", reaching=reaching")
+        c, t = sp.Symbol(f"{pair}.c"), sp.Symbol(f"{pair}.s")
+        q = _at("q")
+        past = length * rotation("z", angle) * sp.Matrix([c, t, 0])
+        self.add(f"x = ik.let('ex', {source(q[0] - past[0])})")
+        self.add(f"y = ik.let('ey', {source(q[1] - past[1])})")
+        turns = [row.turn for row in parallel.rows]
+        self._two_links(turns[:2], [u, v], "x", "y")
+        return "turret, three parallel joints and two more (UR)"
+
+
+def _plain(group: Group) -> Group:
+    """A slide of its own with a constant turn, the turn put into the frame that follows."""
+    (row, *others) = group.rows
+    if others or not row.slides:
+        if any(row.slides and row.turn != 0 for row in group.rows[1:]):
+            raise NoChainError(
+                "the row of a slide has a constant angle theta",
+                "Put this angle into the row before or after it, whose axis is parallel.",
+            )
+        return group
+    R = rotation("z", row.turn)
+    shift = tuple(R * sp.Matrix(row.shift))
+    return Group((row._replace(turn=sp.S.Zero, shift=shift),), R * group.end)
+
+
+def _at(name: str) -> Any:
+    """The vector of this name in the lines, entry by entry."""
+    return sp.Matrix([sp.Symbol(f"{name}[{i}]") for i in range(3)])
+
+
+def _times(R: sp.Matrix, value: str) -> str:
+    return value if (R - sp.eye(3)).is_zero_matrix else f"{source(R)} * {value}"
+
+
+def _length(v: sp.Matrix) -> Any:
+    """The length of a plane vector; of one along an axis without a root."""
+    return sp.sqrt(sp.simplify(v.dot(v))) if v != sp.zeros(2, 1) else sp.S.Zero
+
+
+def _only(found: set[Any]) -> Any:
+    (symbol,) = found
+    return symbol
+
+
+def _symbol(arm: Serial, rows: Sequence[Any], i: int) -> Any:
+    """The joint that slides in a row."""
+    return _only(rows[i].shift[2].free_symbols & set(arm.joints))

@@ -68,137 +68,12 @@ raise_core(const cf_function *f, const cf_array *spec, PyArrayObject *array)
     Py_XDECREF(expected);
 }
 
-/* Raises "toy.f: q holds str", with the name of the type of `object`. */
-static void
-raise_type(const cf_function *f, const char *what, PyObject *object, const char *more)
-{
-    PyObject *type = PyType_GetName(Py_TYPE(object));
-    if (type != NULL) {
-        PyErr_Format(PyExc_TypeError, "%s: %s %U%s", f->name, what, type, more);
-        Py_DECREF(type);
-    }
-}
-
-/* Whether it is a masked array, whose mask a conversion would drop; -1 with an exception. */
-static int
-is_masked(PyObject *object)
-{
-    if (!PyArray_Check(object) || PyArray_CheckExact(object)) {
-        return 0;
-    }
-    PyObject *name = PyUnicode_FromString("numpy.ma");
-    PyObject *module = name ? PyImport_GetModule(name) : NULL;
-    Py_XDECREF(name);
-    if (module == NULL) {
-        return PyErr_Occurred() ? -1 : 0;
-    }
-    PyObject *type = PyObject_GetAttrString(module, "MaskedArray");
-    int masked = type ? PyObject_IsInstance(object, type) : -1;
-    Py_XDECREF(type);
-    Py_DECREF(module);
-    return masked;
-}
-
-/* Whether an object is a real number: text is none, though float() would read it. */
-static int
-is_real(PyObject *object)
-{
-    if (PyArray_IsScalar(object, Generic)) {
-        PyArray_Descr *type = PyArray_DescrFromScalar(object);
-        int known = type != NULL && strchr("biuf", type->kind) != NULL;
-        Py_XDECREF(type);
-        return known;
-    }
-    const PyNumberMethods *number = Py_TYPE(object)->tp_as_number;
-    return number != NULL && (number->nb_float != NULL || number->nb_index != NULL) &&
-           !PyComplex_Check(object);
-}
-
-static int
-check_objects(const cf_function *f, const char *prefix, const char *name, PyArrayObject *array)
-{
-    PyObject *flat = PyArray_IterNew((PyObject *)array), *value;
-    int status = flat ? 0 : -1;
-    while (status == 0 && (value = PyIter_Next(flat)) != NULL) {
-        if (!is_real(value)) {
-            PyObject *what = PyUnicode_FromFormat("%s%s holds", prefix, name);
-            const char *text = what ? PyUnicode_AsUTF8(what) : NULL;
-            if (text != NULL) {
-                raise_type(f, text, value, ", expected real numbers");
-            }
-            Py_XDECREF(what);
-            status = -1;
-        }
-        Py_DECREF(value);
-    }
-    Py_XDECREF(flat);
-    return PyErr_Occurred() ? -1 : status;
-}
-
-/* Long doubles as doubles. NumPy's own conversion warns of those that are too large. */
-static PyArrayObject *
-narrow(PyArrayObject *array)
-{
-    PyArrayObject *wide = (PyArrayObject *)PyArray_FromArray(
-        array, PyArray_DescrFromType(NPY_LONGDOUBLE), NPY_ARRAY_CARRAY_RO);
-    if (wide == NULL) {
-        return NULL;
-    }
-    PyArrayObject *real = (PyArrayObject *)PyArray_SimpleNew(PyArray_NDIM(wide),
-                                                             PyArray_DIMS(wide), NPY_DOUBLE);
-    const npy_longdouble *from = PyArray_DATA(wide);
-    for (npy_intp k = 0; real != NULL && k < PyArray_SIZE(wide); k++) {
-        ((double *)PyArray_DATA(real))[k] = (double)from[k];
-    }
-    Py_DECREF(wide);
-    return real;
-}
-
-/* An array of native doubles, of any strides and alignment. Complex numbers and text are refused
- * here because NumPy would only warn of the former and parse the latter. */
-static PyArrayObject *
-real_array(const cf_function *f, const char *prefix, const char *name, PyObject *object)
-{
-    int masked = is_masked(object);
-    if (masked != 0) {
-        if (masked > 0) {
-            PyErr_Format(PyExc_TypeError, "%s: %s%s is a masked array, expected real numbers",
-                         f->name, prefix, name);
-        }
-        return NULL;
-    }
-    PyArrayObject *array = (PyArrayObject *)PyArray_FROM_O(object);
-    if (array == NULL || cf_has_kind(array, CF_REAL)) {
-        return array;
-    }
-    char kind = PyArray_DESCR(array)->kind;
-    if (strchr("biufO", kind) == NULL) {
-        PyErr_Format(PyExc_TypeError, "%s: %s%s has dtype %S, expected real numbers", f->name,
-                     prefix, name, (PyObject *)PyArray_DESCR(array));
-        Py_DECREF(array);
-        return NULL;
-    }
-    if (kind == 'O' && check_objects(f, prefix, name, array) < 0) {
-        Py_DECREF(array);
-        return NULL;
-    }
-    if (kind == 'f' && PyArray_ITEMSIZE(array) > (npy_intp)sizeof(double)) {
-        PyArrayObject *narrowed = narrow(array);
-        Py_DECREF(array);
-        return narrowed;
-    }
-    PyObject *real = PyArray_FromArray(array, PyArray_DescrFromType(NPY_DOUBLE),
-                                       NPY_ARRAY_FORCECAST);
-    Py_DECREF(array);
-    return (PyArrayObject *)real;
-}
-
 static int
 take_inputs(operands *o)
 {
     const cf_function *f = o->call->function;
     for (size_t k = 0; k < f->n_in; k++) {
-        o->in[k] = real_array(f, "", f->in[k].name, o->call->in[k]);
+        o->in[k] = cf_real_array(f, "", f->in[k].name, o->call->in[k]);
         if (o->in[k] == NULL) {
             return -1;
         }
@@ -214,7 +89,7 @@ take_field(operands *o, size_t k, PyObject *object)
     if (known != 0) {
         return known < 0 ? -1 : 0;
     }
-    o->field[k] = real_array(f, "params.", f->param_names[k], object);
+    o->field[k] = cf_real_array(f, "params.", f->param_names[k], object);
     return o->field[k] == NULL ? -1 : 0;
 }
 
@@ -249,7 +124,7 @@ take_params(operands *o)
             "params must be Parameters or a sequence of its %zu fields, not", f->n_params);
         const char *text = what ? PyUnicode_AsUTF8(what) : NULL;
         if (text != NULL) {
-            raise_type(f, text, params,
+            cf_raise_type(f, text, params,
                        PyDict_Check(params) ? "; write Parameters(**params)" : "");
         }
         Py_XDECREF(what);
@@ -393,14 +268,6 @@ broadcast_all(operands *o)
     return 0;
 }
 
-PyArrayObject *
-cf_new_output(const cf_array *spec, int n_axes, const npy_intp *length)
-{
-    return (PyArrayObject *)PyArray_NewFromDescr(
-        &PyArray_Type, PyArray_DescrFromType(cf_type_number(spec->kind)), n_axes,
-        (npy_intp *)length, NULL, NULL, 0, NULL);
-}
-
 /* The array that the caller gave for output k, borrowed and not yet checked. */
 static PyArrayObject *
 given_output(const cf_call *call, size_t k)
@@ -415,13 +282,13 @@ given_output(const cf_call *call, size_t k)
         }
         array = PyTuple_GET_ITEM(call->out, (Py_ssize_t)k);
     }
-    int masked = is_masked(array);
+    int masked = cf_is_masked(array);
     if (!PyArray_Check(array) || masked != 0) {
         PyObject *what =
             masked < 0 ? NULL : PyUnicode_FromFormat("out for %s must be an array, not", f->out[k].name);
         const char *text = what ? PyUnicode_AsUTF8(what) : NULL;
         if (text != NULL) {
-            raise_type(f, text, array, "");
+            cf_raise_type(f, text, array, "");
         }
         Py_XDECREF(what);
         return NULL;

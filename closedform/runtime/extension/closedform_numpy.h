@@ -34,13 +34,30 @@ CF_INTERNAL PyObject *cf_call_any(const cf_call *call);
 /* What the caller gets for `items`, one for each output; steals them, also on failure. */
 CF_INTERNAL PyObject *cf_result(const cf_call *call, PyObject **items);
 
-/* A new array for one output; `n_axes` and `length` count all axes, the core included. */
-CF_INTERNAL PyArrayObject *cf_new_output(const cf_array *spec, int n_axes, const npy_intp *length);
+/* Raises "toy.f: q holds str", with the name of the type of `object`. */
+CF_INTERNAL void cf_raise_type(const cf_function *f, const char *what, PyObject *object,
+                               const char *more);
+
+/* Whether it is a masked array, whose mask a conversion would drop; -1 with an exception. */
+CF_INTERNAL int cf_is_masked(PyObject *object);
+
+/* An array of native doubles, of any strides and alignment. */
+CF_INTERNAL PyArrayObject *cf_real_array(const cf_function *f, const char *prefix,
+                                         const char *name, PyObject *object);
 
 static inline int
 cf_type_number(cf_kind kind)
 {
     return kind == CF_REAL ? NPY_DOUBLE : kind == CF_STATUS ? NPY_UBYTE : NPY_BOOL;
+}
+
+/* A new array for one output; `n_axes` and `length` count all axes, the core included. */
+static inline PyArrayObject *
+cf_new_output(const cf_array *spec, int n_axes, const npy_intp *length)
+{
+    return (PyArrayObject *)PyArray_NewFromDescr(
+        &PyArray_Type, PyArray_DescrFromType(cf_type_number(spec->kind)), n_axes,
+        (npy_intp *)length, NULL, NULL, 0, NULL);
 }
 
 /* Whether the elements of `array` are of that kind, in native byte order. */

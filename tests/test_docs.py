@@ -1,0 +1,56 @@
+"""The pages for people name files that exist, and each page is found from another."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from closedform.lazy import homes
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+FOLDERS = ("closedform", "derivations", "docs", "generated", "templates", "tests", "benchmarks")
+HISTORY = {"CHANGELOG.md"}
+"""It names what is gone, too."""
+MADE = {"tests/fuzz/cases/"}
+"""Folders that exist only after something has failed."""
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_file_that_a_page_names_exists(page: Path) -> None:
+    if page.name in HISTORY:
+        pytest.skip("names what is gone, too")
+    text = re.sub(r"```.*?```", "", page.read_text("utf-8"), flags=re.DOTALL)
+    quoted = re.findall(rf"`((?:{'|'.join(FOLDERS)})/[\w./-]*)`", text)
+    linked = re.findall(r"\]\((?!https?:)([^)#]+)\)", text)
+    missing = [p for p in quoted if "NAME" not in p and p not in MADE and not (ROOT / p).exists()]
+    missing += [p for p in linked if not (page.parent / p).exists()]
+    assert not missing
+
+
+def test_the_index_lists_every_decision() -> None:
+    folder = ROOT / "docs" / "decisions"
+    listed = set(re.findall(r"\]\(([\w-]+\.md)\)", (folder / "README.md").read_text("utf-8")))
+    assert listed == {page.name for page in folder.glob("*.md")} - {"README.md"}
+
+
+def test_the_architecture_names_every_package() -> None:
+    text = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    packages = {path.parent.name for path in (ROOT / "closedform").glob("*/__init__.py")}
+    rows = re.findall(r"^\| `closedform/(\w+)/` \|", text, flags=re.MULTILINE)
+    assert set(rows) == packages
+    layers = re.search(r"^layers = \[(.*?)\]", (ROOT / "pyproject.toml").read_text(), re.M | re.S)
+    assert layers
+    assert rows == [name for name in re.findall(r'"(\w+)"', layers[1]) if name in packages]
+
+
+def test_a_name_for_authors_is_the_one_of_its_module() -> None:
+    import importlib
+
+    import closedform
+
+    for name, home in homes(closedform.__path__).items():
+        assert getattr(closedform, name) is getattr(importlib.import_module(home), name)
+        assert name in dir(closedform)

@@ -18,7 +18,7 @@ from closedform.model.derivation import Derivation, Paper
 from closedform.model.functions import Program, real
 from closedform.pipeline.run import find, load
 from closedform.proof.prove import InverseResult, Proof
-from closedform.scaffold.propose import Proposal, source
+from closedform.scaffold.source import source
 
 HEADER = "a, alpha, d, theta\n"
 MADE = "made"
@@ -334,13 +334,6 @@ def test_a_kept_proof_is_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert not (tmp_path / MADE).exists()
 
 
-def test_a_proposal_has_no_names_but_its_own(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    d, L, t = toy()
+def test_a_line_of_a_script_holds_names_only() -> None:
     with pytest.raises(ValueError, match="is not a name"):
         source(sp.Symbol(OPEN) + 1)
-    with pytest.raises(NameError):
-        Proposal("none", (OPEN,), (), 1).apply(Chain(d, from_dh(d, [(L, 0, 0, t)]).pose))
-    assert not (tmp_path / MADE).exists()

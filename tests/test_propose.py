@@ -6,12 +6,23 @@ import pytest
 import sympy as sp
 from sympy import pi
 
+import closedform
+from closedform.lazy import homes
 from closedform.lemmas.chain import Chain
 from closedform.mechanics.arm import Serial, from_dh, from_screws
 from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
-from closedform.scaffold.propose import NoChainError, propose
+from closedform.scaffold.propose import NoChainError, Proposal, propose
+
+
+def run(proposal: Proposal, ik: Chain) -> None:
+    """Run the lines as the script that holds them does."""
+    names = {s.name: s for s in (*(p.symbol for p in ik.d.parameters), *ik.joints)}
+    exec("from sympy import *", known := {})
+    known |= {name: getattr(closedform, name) for name in homes(closedform.__path__)}
+    exec(proposal.source, known | names | {"ik": ik})
+
 
 LENGTHS = ("a", "b", "c", "e", "f", "g")
 
@@ -93,7 +104,7 @@ def test_the_proof_accepts_the_proposal(structure: str) -> None:
     assert found.structure == structure
     forward = serial.export(d)
     ik = Chain(d, forward, angles=["yaw"] if "yaw" in d.task else [])
-    found.apply(ik)
+    run(found, ik)
     ik.finish("Inverse.")
     (inverse,) = prove(d).inverses
     assert inverse.branches == branches == inverse.solutions == found.branches
@@ -137,7 +148,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
     found = propose(serial)
     assert found.structure == "turret and two parallel joints"
     ik = Chain(d, serial.export(d))
-    found.apply(ik)
+    run(found, ik)
     ik.finish("Inverse.")
     assert prove(d).inverses[0].branches == 4
 
@@ -216,7 +227,7 @@ def test_the_proof_decides_and_not_the_proposal() -> None:
     )
     assert wrong != found
     ik = Chain(d, serial.export(d))
-    wrong.apply(ik)
+    run(wrong, ik)
     ik.finish("Inverse.")
     with pytest.raises(ProofError, match="does not follow from the forward map"):
         prove(d)

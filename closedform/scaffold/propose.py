@@ -20,17 +20,12 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.lemmas import links as linklemmas
-from closedform.lemmas import tangent
-from closedform.lemmas.pairs import Pair
 from closedform.mechanics.arm import Group, Serial
 from closedform.mechanics.axes import met
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.source import source
 
 Z = sp.Matrix([0, 0, 1])
-NAMES = ("Abs", "Matrix", "Rational", "atan", "atan2", "cos", "pi", "sin", "sqrt")
-"""What the lines use of SymPy."""
 
 
 class NoChainError(ValueError):
@@ -57,23 +52,6 @@ class Proposal:
     @property
     def source(self) -> str:
         return "\n".join(self.lines) + "\n"
-
-    def apply(self, ik: Any) -> None:
-        """Run the lines, for the chain ``ik``; what is wrong with them the proof finds.
-
-        The lines hold nothing that stood in a table but names and expressions that were printed
-        from SymPy objects by :func:`source`, which refuses any other name.
-        """
-        names: dict[str, Any] = {
-            "__builtins__": {},
-            **{s.name: s for s in (*(p.symbol for p in ik.d.parameters), *ik.joints)},
-            **{n: getattr(linklemmas, n) for n in (*self.lemmas, "turned", "Reaching")},
-            **{n: getattr(tangent, n) for n in ("Links", "LinksAndWrist")},
-            **{n: getattr(sp, n) for n in NAMES},
-            "Pair": Pair,
-            "ik": ik,
-        }
-        exec(compile(self.source, "proposal", "exec"), names)
 
 
 def propose(arm: Serial) -> Proposal:

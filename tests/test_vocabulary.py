@@ -269,7 +269,7 @@ def test_mistakes_in_a_script_are_named() -> None:
         d.function("fk", "", {"q": (theta,)}, {"y": theta})
     with pytest.raises(TypeError, match="exact rational"):
         d.parameter("k", value=0.1, unit="m", meaning="")
-    with pytest.raises(ValueError, match="double is a word of Python or C"):
+    with pytest.raises(ValueError, match="double is a word of C;"):
         d.parameter("double", value=1, unit="m", meaning="")
     with pytest.raises(ValueError, match=r"polar: k: 'a\\nb' must be one line of printable text"):
         d.parameter("k", value=1, unit="m", meaning="a\nb")

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from closedform.emit import sines
-from closedform.emit.code import ATOM, LOGIC, WRAPS, Printer, Text
+from closedform.emit.code import ATOM, LOGIC, Printer, Text, call, word
 from closedform.emit.docstring import docstring
 from closedform.emit.text import WIDTH, banner, call_signature, interface
 from closedform.lower import Lowered
@@ -19,19 +19,6 @@ from closedform.model.functions import Function
 from closedform.model.names import in_python
 from closedform.model.tolerances import DOUBLE, GENERATED
 
-CALLS = {
-    "sqrt": "np.sqrt",
-    "atan2": "np.arctan2",
-    "abs": "np.abs",
-    "max": "np.maximum",
-    "min": "np.minimum",
-    "select": "_runtime.select",
-    "sign": "_runtime.sign",
-    "not": "np.logical_not",
-    **{op: f"_runtime.{op}" for op in WRAPS},
-    "poison": "_runtime.poison",
-    "status": "_runtime.status",
-}
 COMMON = "Where nothing vanishes; last, whether something does."
 DTYPES = {"real": "np.float64", "status": "np.uint8", "bool": "np.bool_"}
 
@@ -41,20 +28,20 @@ class NumpyPrinter(Printer):
 
     has_meaning = staticmethod(in_python)
 
-    def constant(self, text: str) -> Text:
-        return Text(text)
+    nan, true, false = word("np.nan"), word("np.True_"), word("np.False_")
+    sqrt, atan2 = call("np.sqrt"), call("np.arctan2")
+    abs, max, min = call("np.abs"), call("np.maximum"), call("np.minimum")
+    not_ = call("np.logical_not")
+    sign, select = call("_runtime.sign"), call("_runtime.select")
+    wrap, wrap_cut = call("_runtime.wrap"), call("_runtime.wrap_cut")
+    poison, status = call("_runtime.poison"), call("_runtime.status")
 
-    def call(self, op: str, args: list[str], node: Node) -> Text:
-        if op == "nan":
-            return Text("np.nan")
-        if op in ("true", "false"):
-            return Text(f"np.{op.capitalize()}_")
-        if op == "tolerance":
-            return Text(f"_runtime.{str(node.payload).upper()}")
-        if op == "finite":
-            tests = [f"np.isfinite({a})" for a in args]
-            return Text(" & ".join(tests), LOGIC if len(tests) > 1 else ATOM)
-        return Text(f"{CALLS[op]}({', '.join(args)})")
+    def tolerance(self, node: Node) -> Text:
+        return Text(f"_runtime.{str(node.payload).upper()}")
+
+    def finite(self, node: Node, *args: Text) -> Text:
+        tests = [f"np.isfinite({a.code})" for a in args]
+        return Text(" & ".join(tests), LOGIC if len(tests) > 1 else ATOM)
 
 
 @dataclass(frozen=True)

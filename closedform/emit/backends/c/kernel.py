@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import prod
 
-from closedform.emit.cguards import (
+from closedform.emit.backends.c.guards import (
     deciding_products,
     final_values,
     given_up_where,

@@ -1,4 +1,4 @@
-"""Prints a derivation as a NumPy module."""
+"""NumPy: a module a robot, and the runtime that all share."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ import re
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from closedform.emit import sines
+from closedform.emit.backend import Backend, Files, Mechanism, Pages, runtime
 from closedform.emit.code import ATOM, LOGIC, Printer, Text, call, word
 from closedform.emit.docstring import docstring
+from closedform.emit.render import render
 from closedform.emit.text import WIDTH, banner, call_signature, interface
 from closedform.lower import Lowered
 from closedform.lower.graph import Node
@@ -82,9 +85,30 @@ def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, 
     }
 
 
-def runtime() -> dict[str, Any]:
-    """The context of ``numpy/_runtime.py.jinja``."""
-    return {name: repr(getattr(DOUBLE, name)) for name in GENERATED} | {"sines": sines}
+def _numbers() -> list[str]:
+    """The tolerances, and the sine and cosine by the operations of the C."""
+    turns, limit, shift = sines.RIGHT_ANGLE, sines.LIMIT, sines.ROUND
+    return [
+        "".join(f"{name.upper()} = {getattr(DOUBLE, name)!r}\n" for name in GENERATED),
+        f"    wide = size > {limit}\n",
+        f"    wide = np.abs(angle) > {limit}\n",
+        f"    if size > {limit}:\n",
+        f"    shifted = size * {sines.RIGHT_ANGLES}\n"
+        f"    shifted += {shift}\n    n = shifted - {shift}\n",
+        f"    part = n * {turns[1]}\n    tail = size - n * {turns[0]}\n",
+        f"    n *= {turns[2]}\n",
+        *(_polynomial(name, c) for name, c in (("sine", sines.SINE), ("cosine", sines.COSINE))),
+        f"    near = angle - turns * (4 * {turns[0]})\n    near -= turns * (4 * {turns[1]})\n"
+        f"    turns *= 4 * {turns[2]}\n",
+    ]
+
+
+def _polynomial(name: str, c: Sequence[float]) -> str:
+    return (
+        f"    {name} = z * {c[5]}\n    {name} += {c[4]}\n    {name} *= z2\n"
+        f"    part = z * {c[3]}\n    part += {c[2]}\n    {name} += part\n    {name} *= z2\n"
+        f"    part = z * {c[1]}\n    part += {c[0]}\n    {name} += part\n"
+    )
 
 
 def _function(derivation: Derivation, function: Function, program: Lowered) -> NumpyFunction:
@@ -190,3 +214,21 @@ def tuple_code(items: Iterable[str]) -> str:
     """A tuple as Python writes it, on one line."""
     listed = list(items)
     return f"({listed[0]},)" if len(listed) == 1 else f"({', '.join(listed)})"
+
+
+class Numpy(Backend):
+    runner = "python"
+
+    def pages(self, mechanism: Mechanism) -> Pages:
+        context = module(mechanism.derivation, mechanism.lowered)
+        path = Path("numpy", f"{mechanism.derivation.name}.py")
+        return Pages({path: render("numpy/module.py.jinja", context)})
+
+    def shared(self, shares: Sequence[Any]) -> Files:
+        return {Path("numpy", "_runtime.py"): runtime("numpy/_runtime.py", _numbers())}
+
+    def first_file(self, robot: str) -> Path:
+        return Path("numpy", f"{robot}.py")
+
+
+BACKEND = Numpy()

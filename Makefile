@@ -7,7 +7,8 @@ endif
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-DERIVING := $(shell find closedform derivations templates -name '*.py' -o -name '*.jinja')
+DERIVING := $(shell find closedform derivations templates -name '*.py' -o -name '*.jinja' \
+	-o -path 'closedform/runtime/*' -type f ! -name '*.pyc')
 PRINTED := $(shell find generated -type f ! -name '*.so' ! -path '*/__pycache__/*')
 PORTABLE := $(filter-out generated/c/extension.c,$(wildcard generated/c/*.c))
 PDFS := $(patsubst generated/latex/%.tex,build/pdf/%.pdf,$(wildcard generated/latex/*.tex))

@@ -11,7 +11,7 @@ import sympy as sp
 
 from closedform.algebra.formulas import FormulaError, formula, number
 from closedform.cli.commands import main
-from closedform.emit.latex import Page
+from closedform.emit.backends.latex.article import Page
 from closedform.lemmas.chain import Chain
 from closedform.mechanics.arm import from_dh, from_screws
 from closedform.model.derivation import Derivation, Paper

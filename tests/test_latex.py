@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from closedform.emit.errata import markdown, part, together
-from closedform.emit.latex import Page, Printer, decimal, document, measure
+from closedform.emit.backends.latex.article import Page, Printer, decimal, document, measure
+from closedform.emit.backends.latex.errata import markdown, part, together
+from closedform.emit.backends.latex.prose import Prose, escape, loosen, mixed, spaced, symbol_name
 from closedform.emit.notebook import notebook
-from closedform.emit.prose import Prose, escape, loosen, mixed, spaced, symbol_name
 from closedform.emit.render import render
 from closedform.emit.show import show
 from closedform.lemmas.sine_cosine import linear_pair

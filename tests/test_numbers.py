@@ -8,7 +8,7 @@ import pytest
 
 import closedform.check.crosscheck
 from closedform.check.crosscheck import check_forward, check_inverse, module_backend
-from closedform.check.report import _module
+from closedform.check.runners.python import module
 from closedform.check.samples import Sample
 from closedform.emit.render import pages, shared_files
 from closedform.model.derivation import Derivation
@@ -44,7 +44,7 @@ def printed(folder: Path, d: Derivation) -> ModuleType:
     """The NumPy module of a derivation, unproved."""
     done = pages(d, Proof(d.name, "own", (), 0, ()), ["numpy"])
     pipeline.write(folder, {**done.files, **shared_files([done.share], ["numpy"])})
-    return _module(folder, d.name)
+    return module(folder / "numpy", d.name)
 
 
 @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ def test_a_posture_at_two_limits_at_once_is_not_lost(
 
         return changed
 
-    printed_module = _module(tmp_path, d.name)
+    printed_module = module(tmp_path / "numpy", d.name)
     broken = closedform.check.crosscheck.Backend(
         "broken", without_half, np.float64, backend.tolerances
     )

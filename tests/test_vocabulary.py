@@ -15,9 +15,7 @@ from sympy import cos, sin, sqrt
 
 from closedform.check.clibrary import CLibrary
 from closedform.check.crosscheck import Backend, crosscheck, float_backend, module_backend
-from closedform.emit.c import shared
-from closedform.emit.numpy import runtime
-from closedform.emit.render import pages, render
+from closedform.emit.render import pages, shared_files
 from closedform.lemmas.sine_cosine import linear_pair
 from closedform.lemmas.triangle import two_link_triangle
 from closedform.mechanics.frames import (
@@ -160,9 +158,9 @@ def printed(d: Derivation, folder: Path) -> tuple[ModuleType, CLibrary]:
     package = folder / "toys"
     (package / "c").mkdir(parents=True)
     (package / "__init__.py").write_text("")
-    (package / "_runtime.py").write_text(render("numpy/_runtime.py.jinja", runtime()))
-    (package / "c" / "closedform.h").write_text(render("c/closedform.h.jinja", shared([])))
-    for path, text in pages(d, prove(d), ("numpy", "c")).files.items():
+    own = pages(d, prove(d), ("numpy", "c"))
+    common = shared_files([own.share], ("numpy", "c"))
+    for path, text in {**own.files, **common}.items():
         (package / ("c" if path.parts[0] == "c" else ".") / path.name).write_text(text)
     name = f"toys_{d.name}"
     for module in (name, f"{name}._runtime"):
@@ -269,7 +267,7 @@ def test_mistakes_in_a_script_are_named() -> None:
         d.function("fk", "", {"q": (theta,)}, {"y": theta})
     with pytest.raises(TypeError, match="exact rational"):
         d.parameter("k", value=0.1, unit="m", meaning="")
-    with pytest.raises(ValueError, match="double is a word of Python or C"):
+    with pytest.raises(ValueError, match="double is a word of C;"):
         d.parameter("double", value=1, unit="m", meaning="")
     with pytest.raises(ValueError, match=r"polar: k: 'a\\nb' must be one line of printable text"):
         d.parameter("k", value=1, unit="m", meaning="a\nb")

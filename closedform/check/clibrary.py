@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from closedform.check.runners import FailedError, UnavailableError
 from closedform.lower import Lowered, lower
 from closedform.model.derivation import Derivation
 
@@ -24,10 +25,10 @@ def compiler() -> str:
     for name in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
         if name and shutil.which(name):
             return name
-    raise FileNotFoundError("no C compiler found: install gcc or clang, or set CC")
+    raise UnavailableError("no C compiler found: install gcc or clang, or set CC")
 
 
-class CompileError(Exception):
+class CompileError(FailedError):
     """The C compiler refuses a file, and the first thing it says about it."""
 
 

@@ -2,67 +2,36 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from types import ModuleType
 
-from closedform.check.clibrary import CLibrary, compiler
-from closedform.check.crosscheck import Backend, Finding, crosscheck, float_backend, module_backend
+from closedform.check import runners
+from closedform.check.crosscheck import Finding, crosscheck
+from closedform.emit.backends import load
 from closedform.emit.escape import markdown_text
 from closedform.model.derivation import Derivation
-from closedform.model.tolerances import DOUBLE
-
-_PACKAGE = "_closedform_printed"
 
 
 def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> tuple[str, list[str]]:
     """The page, and what should not be: errors above the tolerances.
 
-    ``root`` is the folder that the NumPy and the C were printed to.  C is compiled if there is a
-    compiler, in both float types.
+    ``root`` is the folder that everything was printed to, each back end below its own name.  What
+    cannot be run here is left out, and the page says so.
     """
     findings: list[Finding] = []
     remarks: list[str] = []
-    with tempfile.TemporaryDirectory() as scratch:
-        for backend in _backends(derivation, root, backends, Path(scratch), remarks):
-            findings += crosscheck(derivation, backend)
+    for name in backends:
+        if not (kind := load(name).runner):
+            continue
+        try:
+            with tempfile.TemporaryDirectory() as scratch:
+                for backend in runners.load(kind)(name, derivation, root / name, Path(scratch)):
+                    findings += crosscheck(derivation, backend)
+        except runners.UnavailableError as error:
+            remarks.append(f"What is in {name}/ was not checked: {error}.")
     failures = [f"{f.function} ({f.backend}): {x}" for f in findings for x in f.failures]
     return _page(derivation, findings, failures, remarks), failures
-
-
-def _backends(
-    derivation: Derivation,
-    root: Path,
-    backends: Sequence[str],
-    scratch: Path,
-    remarks: list[str],
-) -> Iterator[Backend]:
-    if "numpy" in backends:
-        yield module_backend("numpy", _module(root, derivation.name))
-    if "c" in backends:
-        try:
-            compiler()
-        except FileNotFoundError as error:
-            remarks.append(f"The C was not checked: {error}.")
-            return
-        sources = root / "c"
-        double = CLibrary(derivation, sources, scratch)
-        yield Backend("c", double.function, double.dtype, DOUBLE)
-        yield float_backend(CLibrary(derivation, sources, scratch, single=True).function)
-
-
-def _module(root: Path, name: str) -> ModuleType:
-    """The NumPy module that was just printed, whatever else is called so."""
-    for loaded in [m for m in sys.modules if m.partition(".")[0] == _PACKAGE]:
-        del sys.modules[loaded]
-    package = ModuleType(_PACKAGE)
-    package.__path__ = [str(root.resolve())]
-    sys.modules[_PACKAGE] = package
-    importlib.invalidate_caches()
-    return importlib.import_module(f"{_PACKAGE}.numpy.{name}")
 
 
 def _page(

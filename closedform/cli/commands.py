@@ -213,22 +213,23 @@ def _next(
     """What to do with one robot that was printed into a folder of the user's."""
     if not robot.proof.inverses:
         return f"write the inverse in {source.path.name}; docs/adding-a-mechanism.md says how"
-    names = {"numpy": f"{robot.name}.py", "c": f"{robot.name}.c", "latex": f"{robot.name}.tex"}
-    printed = [str(root / b / names[b]) for b in backends if b in names]
-    return f"use {' and '.join(printed) or root}"
+    from closedform.emit.backends import load
+
+    first = [load(backend).first_file(robot.name) for backend in backends]
+    return f"use {' and '.join(str(root / path) for path in first if path) or root}"
 
 
 def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
     """Compare what was printed with the symbolic source, and write down what was found."""
-    from closedform.check.clibrary import CompileError
     from closedform.check.report import report
+    from closedform.check.runners import FailedError
 
     with Progress() as progress:
         for source in chosen:
             progress(source.name, "cross-check")
             try:
                 text, failures = report(pipeline.load(source), root, backends)
-            except CompileError as error:
+            except FailedError as error:
                 raise CommandError(f"{source.name}: {error}") from error
             _write(root, {Path(f"{source.name}-crosscheck.md"): text})
             if failures:

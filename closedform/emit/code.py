@@ -1,7 +1,8 @@
 """What every printer shares: names for values, which values get a name, and precedence.
 
 A value that is used once is printed where it is used; one that is used twice, or whose text grows
-too long, is named first.  A language is a subclass with one method per operator.
+too long, is named first.  A language is a subclass with one method per operator of
+:mod:`closedform.lower.operators`; a class that lacks one is refused when it is made.
 """
 
 from __future__ import annotations
@@ -14,11 +15,10 @@ from fractions import Fraction
 import sympy as sp
 
 from closedform.lower import Lowered
-from closedform.lower.graph import BOOLEAN, Node, constant_of
-from closedform.lower.program import LEAVES
+from closedform.lower.graph import Node, constant_of
+from closedform.lower.operators import BOOLEAN, LEAVES, OPERATORS, PRINTED
 
 LONGEST = 44
-WRAPS = ("wrap", "wrap_cut")
 ATOM, UNARY, PRODUCT, SUM, COMPARE, LOGIC = 7, 6, 5, 4, 3, 2
 
 
@@ -95,10 +95,18 @@ def _inverse_power_of_two(node: Node) -> sp.Expr | None:
 
 
 class Printer:
-    """Turns a lowered program into lines of code; subclasses say how each operator looks."""
+    """Turns a lowered program into lines of code; subclasses say how each operator looks.
+
+    The method of an operator takes the node and the text of each operand.
+    """
 
     has_meaning: Callable[[str], bool]
     """Whether a name has a meaning of its own in the language."""
+
+    def __init_subclass__(cls) -> None:
+        missing = [o.method for o in PRINTED if not hasattr(cls, o.method)]
+        if missing:
+            raise TypeError(f"{cls.__name__} prints no {', '.join(missing)}: write these methods")
 
     def __init__(self, lowered: Lowered, reserved: Iterable[str] = ()):
         self.lowered = lowered
@@ -143,44 +151,80 @@ class Printer:
         return uses > 1 or len(text.code) > LONGEST
 
     def render(self, node: Node) -> Text:
-        args = tuple(self.text[a.id] for a in node.args)
-        match node.op:
-            case "const":
-                return self.constant(literal(node.payload))
-            case "input":
-                return Text(self.inputs[str(node.payload)])
-            case "sin" | "cos":
-                return Text(self._sines[node.args[0].id][node.op == "cos"])
-            case "principal":
-                return Text(self._principals[node.args[0].id])
-            case "add":
-                return Text(f"{args[0].at(SUM)} + {args[1].at(PRODUCT)}", SUM)
-            case "sub":
-                return Text(f"{args[0].at(SUM)} - {args[1].at(PRODUCT)}", SUM)
-            case "mul":
-                return Text(f"{args[0].at(PRODUCT)} * {args[1].at(UNARY)}", PRODUCT)
-            case "div" if (inverse := _inverse_power_of_two(node.args[1])) is not None:
-                return Text(
-                    f"{args[0].at(PRODUCT)} * {self.constant(literal(inverse)).code}", PRODUCT
-                )
-            case "div":
-                return Text(f"{args[0].at(PRODUCT)} / {args[1].at(UNARY)}", PRODUCT)
-            case "neg":
-                return Text(f"-{args[0].at(UNARY)}", UNARY)
-            case "lt" | "le" | "eq":
-                sign = {"lt": "<", "le": "<=", "eq": "=="}[node.op]
-                return Text(f"{args[0].at(SUM)} {sign} {args[1].at(SUM)}", COMPARE)
-            case "and" | "or":
-                sign = {"and": "&", "or": "|"}[node.op]
-                chained = node.args[0].op == node.op and args[0].precedence == LOGIC
-                left = args[0].code if chained else args[0].at(UNARY)
-                return Text(f"{left} {sign} {args[1].at(UNARY)}", LOGIC)
-            case op:
-                return self.call(op, [a.code for a in args], node)
+        """The code of a node, by the method of its operator."""
+        method: Callable[..., Text] = getattr(self, OPERATORS[node.op].method)
+        return method(node, *(self.text[a.id] for a in node.args))
 
-    def constant(self, text: str) -> Text:
-        raise NotImplementedError
+    # What reads alike in the languages that descend from C, Python among them
 
-    def call(self, op: str, args: list[str], node: Node) -> Text:
-        """Operators that look different in every language."""
-        raise NotImplementedError
+    def const(self, node: Node) -> Text:
+        return self.number(literal(node.payload))
+
+    def input(self, node: Node) -> Text:
+        return Text(self.inputs[str(node.payload)])
+
+    def sin(self, node: Node, _: Text) -> Text:
+        return Text(self._sines[node.args[0].id][0])
+
+    def cos(self, node: Node, _: Text) -> Text:
+        return Text(self._sines[node.args[0].id][1])
+
+    def principal(self, node: Node, _: Text) -> Text:
+        return Text(self._principals[node.args[0].id])
+
+    def add(self, node: Node, a: Text, b: Text) -> Text:
+        return Text(f"{a.at(SUM)} + {b.at(PRODUCT)}", SUM)
+
+    def sub(self, node: Node, a: Text, b: Text) -> Text:
+        return Text(f"{a.at(SUM)} - {b.at(PRODUCT)}", SUM)
+
+    def mul(self, node: Node, a: Text, b: Text) -> Text:
+        return Text(f"{a.at(PRODUCT)} * {b.at(UNARY)}", PRODUCT)
+
+    def div(self, node: Node, a: Text, b: Text) -> Text:
+        inverse = _inverse_power_of_two(node.args[1])
+        if inverse is not None:
+            return Text(f"{a.at(PRODUCT)} * {self.number(literal(inverse)).code}", PRODUCT)
+        return Text(f"{a.at(PRODUCT)} / {b.at(UNARY)}", PRODUCT)
+
+    def neg(self, node: Node, a: Text) -> Text:
+        return Text(f"-{a.at(UNARY)}", UNARY)
+
+    def lt(self, node: Node, a: Text, b: Text) -> Text:
+        return Text(f"{a.at(SUM)} < {b.at(SUM)}", COMPARE)
+
+    def le(self, node: Node, a: Text, b: Text) -> Text:
+        return Text(f"{a.at(SUM)} <= {b.at(SUM)}", COMPARE)
+
+    def eq(self, node: Node, a: Text, b: Text) -> Text:
+        return Text(f"{a.at(SUM)} == {b.at(SUM)}", COMPARE)
+
+    def and_(self, node: Node, a: Text, b: Text) -> Text:
+        return self.logic(node, "&", a, b)
+
+    def or_(self, node: Node, a: Text, b: Text) -> Text:
+        return self.logic(node, "|", a, b)
+
+    def logic(self, node: Node, sign: str, a: Text, b: Text) -> Text:
+        """Conditions joined by an operator; a chain of the same one needs no parentheses."""
+        chained = node.args[0].op == node.op and a.precedence == LOGIC
+        left = a.code if chained else a.at(UNARY)
+        return Text(f"{left} {sign} {b.at(UNARY)}", LOGIC)
+
+    def number(self, text: str) -> Text:
+        """A decimal number."""
+        return Text(text)
+
+
+def call(function: str) -> Callable[[Printer, Node, Text], Text]:
+    """A method that prints an operator as a call of a function."""
+
+    def method(printer: Printer, node: Node, *args: Text) -> Text:
+        return Text(f"{function}({', '.join(a.code for a in args)})")
+
+    return method
+
+
+def word(code: str) -> Callable[[Printer, Node], Text]:
+    """A method that prints an operator without operands as a word."""
+    return lambda printer, node: Text(code)

@@ -1,7 +1,7 @@
 """Text as it stands in each language: printed faithfully, and unable to end what it stands in.
 
 The templates apply these filters where text enters them.  LaTeX has its own module,
-:mod:`closedform.emit.prose`, which also makes formulas of what reads like one.
+:mod:`closedform.emit.backends.latex.prose`, which also makes formulas of what reads like one.
 """
 
 from __future__ import annotations

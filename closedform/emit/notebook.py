@@ -8,8 +8,8 @@ Importing this module is enough: it registers its printers with :mod:`closedform
 
 from __future__ import annotations
 
-from closedform.emit.latex import Page
-from closedform.emit.prose import escape
+from closedform.emit.backends.latex.article import Page
+from closedform.emit.backends.latex.prose import escape
 from closedform.model.derivation import Derivation
 from closedform.model.display import prints
 from closedform.model.functions import Bound, Let

@@ -1,4 +1,4 @@
-"""The one Jinja environment, and the list of files that derivations turn into."""
+"""The one Jinja environment, and the files that the back ends print."""
 
 from __future__ import annotations
 
@@ -6,20 +6,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 import jinja2
 
-from closedform.emit import c, latex, numpy
-from closedform.emit.errata import Part, part, together
+from closedform.emit.backend import Files, Mechanism
+from closedform.emit.backends import load, names
 from closedform.emit.escape import FILTERS
-from closedform.emit.table import csv
-from closedform.lower import lower
 from closedform.model.derivation import Derivation
 from closedform.proof.prove import Proof
 
-BACKENDS = ("numpy", "c", "latex", "data")
+Share = Mapping[str, Any]
+"""What one mechanism adds to the files that all share, by back end."""
 
 
 @cache
@@ -40,59 +38,36 @@ def render(template: str, context: Mapping[str, Any]) -> str:
 
 
 @dataclass(frozen=True)
-class Share:
-    """What one mechanism adds to the files that all share: plain strings, cheap to hand on."""
+class Printed:
+    """The files of one mechanism, and its share of others."""
 
-    c: Mapping[str, Any] | None = None
-    errata: Part | None = None
-
-
-@dataclass(frozen=True)
-class Pages:
-    """The files of one mechanism, by their path below ``generated/``, and its share of others."""
-
-    files: dict[Path, str]
+    files: Files
     share: Share
 
 
-def pages(derivation: Derivation, proof: Proof, backends: Sequence[str] = BACKENDS) -> Pages:
+def pages(derivation: Derivation, proof: Proof, backends: Sequence[str] = names()) -> Printed:
     """Print one mechanism."""
-    name = derivation.name
-    printed: dict[Path, str] = {}
-    robot = None
-    lowered = (
-        {f.name: lower(f, derivation) for f in derivation.functions}
-        if {"numpy", "c"} & set(backends)
-        else {}
+    mechanism = Mechanism(derivation, proof)
+    printed = {name: load(name).pages(mechanism) for name in backends}
+    return Printed(
+        {path: text for own in printed.values() for path, text in own.files.items()},
+        {name: own.share for name, own in printed.items()},
     )
-    if "numpy" in backends:
-        context = numpy.module(derivation, lowered)
-        printed[Path("numpy", f"{name}.py")] = render("numpy/module.py.jinja", context)
-    if "c" in backends:
-        robot = c.robot(derivation, lowered)
-        printed[Path("c", f"{name}.h")] = render("c/robot.h.jinja", robot)
-        printed[Path("c", f"{name}.c")] = render("c/robot.c.jinja", robot)
-        printed[Path("c", f"{name}.py")] = render("c/module.py.jinja", robot)
-    if "latex" in backends:
-        context = latex.document(derivation, proof)
-        printed[Path("latex", f"{name}.tex")] = render("latex/robot.tex.jinja", context)
-    if "data" in backends:
-        for table in derivation.tables:
-            printed[Path("data", f"{table.name}.csv")] = csv(derivation, table)
-    return Pages(printed, Share(robot, part(derivation, proof) if "latex" in backends else None))
 
 
-def shared_files(shares: Sequence[Share], backends: Sequence[str] = BACKENDS) -> dict[Path, str]:
+def shared_files(shares: Sequence[Share], backends: Sequence[str] = names()) -> Files:
     """The files that all mechanisms share, from what each of them reported."""
-    printed: dict[Path, str] = {}
-    if "numpy" in backends:
-        context = numpy.runtime()
-        printed[Path("numpy", "_runtime.py")] = render("numpy/_runtime.py.jinja", context)
-    if "c" in backends:
-        context = c.shared([share.c for share in shares if share.c is not None])
-        for name in ("closedform.h", "extension.c", "CMakeLists.txt", "closedform-config.cmake.in"):
-            printed[Path("c", name)] = render(f"c/{name}.jinja", context)
-    if "latex" in backends:
-        context = together(share.errata for share in shares)
-        printed[Path("errata.md")] = render("errata.md.jinja", context)
+    printed: Files = {}
+    for name in backends:
+        printed |= load(name).shared([share[name] for share in shares])
     return printed
+
+
+def standalone(printed: Files) -> Files:
+    """Without the files that only work inside the Python package."""
+    backends = names()
+    return {
+        path: text
+        for path, text in printed.items()
+        if path.parts[0] not in backends or load(path.parts[0]).works_alone(path)
+    }

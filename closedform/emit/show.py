@@ -31,7 +31,7 @@ def show(
     Formulas are drawn in Unicode, or in ASCII if not ``pretty``.
     """
     if format == "latex":
-        from closedform.emit.latex import document
+        from closedform.emit.backends.latex.article import document
         from closedform.emit.render import render
 
         empty = Proof(derivation.name, derivation.paper.key, (), 0, ())

@@ -11,6 +11,7 @@ import sympy as sp
 
 from closedform._version import __version__
 from closedform.lower import Lowered
+from closedform.lower.operators import GROUPS
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
 
@@ -94,20 +95,8 @@ def describe_operations(program: Lowered) -> str:
     """Operation counts by kind, in words."""
     groups = Counter[str]()
     for op, n in program.operations().items():
-        groups[GROUPS.get(op, "compare and select")] += n
+        groups[GROUPS[op]] += n
     return ", ".join(f"{n} {kind}" for kind, n in groups.items()) or "none"
-
-
-GROUPS = {
-    "add": "add",
-    "sub": "add",
-    "mul": "multiply",
-    "div": "divide",
-    "sqrt": "sqrt",
-    "sincos": "sincos",
-    "principal": "reduce to a turn",
-    "atan2": "atan2",
-}
 
 
 def call_signature(function: Function) -> str:

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from closedform.lower.graph import BOOLEAN, Graph, Node, hardly_ever, reachable, rebuild
+from closedform.lower.graph import Graph, Node, hardly_ever, reachable, rebuild
+from closedform.lower.operators import BOOLEAN
 from closedform.lower.share import same
 
 

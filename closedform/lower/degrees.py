@@ -13,7 +13,8 @@ from fractions import Fraction
 from math import ceil
 from typing import TypeAlias
 
-from closedform.lower.graph import BOOLEAN, Node, constant_of, reachable
+from closedform.lower.graph import Node, constant_of, reachable
+from closedform.lower.operators import BOOLEAN
 
 NUMBERS = frozenset({"", "-", "1", "deg", "degree", "degrees", "rad", "radian", "radians"})
 """The units of parameters that are not lengths."""

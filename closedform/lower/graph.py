@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
+from closedform.lower.operators import OPERATORS
+
 
 @dataclass(frozen=True, eq=False)
 class Node:
@@ -26,9 +28,6 @@ class Node:
         return f"{self.op}#{self.id}"
 
 
-BOOLEAN = frozenset({"lt", "le", "eq", "and", "or", "not", "finite", "true", "false"})
-
-
 @dataclass
 class Graph:
     """Makes nodes; equal nodes are one."""
@@ -38,6 +37,9 @@ class Graph:
     def node(self, op: str, *args: Node, payload: Hashable = None) -> Node:
         key = (op, tuple(a.id for a in args), payload)
         if key not in self._nodes:
+            arity = OPERATORS[op].arity
+            if arity is not None and arity != len(args):
+                raise TypeError(f"{op} takes {arity} operands, not {len(args)}")
             self._nodes[key] = Node(len(self._nodes), op, args, payload)
         return self._nodes[key]
 

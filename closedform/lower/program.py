@@ -14,6 +14,7 @@ from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.common import common_case
 from closedform.lower.degrees import NUMBERS, Degrees, degrees
 from closedform.lower.graph import Graph, Node, reachable
+from closedform.lower.operators import COUNTED, LEAVES
 from closedform.lower.ranges import Ranges, UnboundedError
 from closedform.lower.roots import fewer_roots
 from closedform.lower.share import share
@@ -31,9 +32,6 @@ from closedform.model.functions import (
 )
 from closedform.model.tolerances import HIGHEST_DEGREE
 
-LEAVES = frozenset({
-    "const", "input", "nan", "tolerance", "true", "false", "sin", "cos", "principal",
-})  # fmt: skip
 SPARED = 0.15
 """Which part of the operations a common case must spare to be worth a program of its own."""
 ALONE = 0.6
@@ -105,7 +103,7 @@ class Lowered:
         """How many operators of each kind there are (a sincos counts once)."""
         counts: Counter[str] = Counter()
         for node in self.schedule():
-            if node.op not in LEAVES and node.op != "neg":
+            if node.op in COUNTED:
                 counts[node.op] += 1
         counts["sincos"], counts["principal"] = len(self.angles), len(self.turned)
         return {k: counts[k] for k in sorted(counts) if counts[k]}

@@ -1,7 +1,7 @@
 """Which names and texts a derivation may have.
 
-Names become identifiers of Python and C, and names of files: one that means something else there is
-refused where it is declared.  A text may say anything that prints, because
+Names become identifiers of Python, C and JavaScript, and names of files: one that means something
+else there is refused where it is declared.  A text may say anything that prints, because
 :mod:`closedform.emit.escape` escapes it for each language; only control characters are refused.
 """
 
@@ -52,6 +52,17 @@ PYTHON_LOCALS = frozenset({
     "Solutions", "Status", "ASSEMBLY_MODES", "BRANCHES", "JOINTS", "SINGULARITIES", "TASK",
 })  # fmt: skip
 """What the NumPy modules call their own."""
+JAVASCRIPT_WORDS = frozenset({
+    "arguments", "await", "break", "case", "catch", "class", "const", "continue", "debugger",
+    "default", "delete", "do", "else", "enum", "eval", "export", "extends", "false", "finally",
+    "for", "function", "if", "implements", "import", "in", "instanceof", "interface", "let", "new",
+    "null", "package", "private", "protected", "public", "return", "static", "super", "switch",
+    "this", "throw", "true", "try", "typeof", "undefined", "var", "void", "while", "with", "yield",
+    "Infinity", "Math", "NaN", "Number", "Object",
+})  # fmt: skip
+"""Words of JavaScript, and what its modules use of what is there everywhere."""
+JAVASCRIPT_LOCALS = frozenset({"parameters"})
+"""What the functions of the JavaScript modules call their own."""
 FUNCTIONS = frozenset({"default", "fields", "params", "runtime", "values"})
 """What, behind the name of the robot or an underscore, is a name in the printed code already."""
 FORMS = frozenset({
@@ -89,6 +100,15 @@ def in_python(name: str) -> bool:
     return keyword.iskeyword(name) or name in PYTHON_LOCALS
 
 
+def in_javascript(name: str) -> bool:
+    """Whether a name has a meaning of its own in a JavaScript module."""
+    return name in JAVASCRIPT_WORDS
+
+
+MEANINGS = {"Python": in_python, "C": in_c, "JavaScript": in_javascript}
+"""Of each language, what tells whether a name has a meaning of its own there."""
+
+
 def check_identifier(name: str, where: str) -> None:
     """Raise ``ValueError`` unless a name consists of ASCII letters, digits and ``_``."""
     if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name):
@@ -106,9 +126,11 @@ def check_symbol(name: str, where: str) -> None:
     check_identifier(name, where)
     if name.lower() in NOT_FINITE:
         raise ValueError(f"{where}: {name} is not a finite number, and not a name either")
-    if in_python(name) or in_c(name):
+    languages = [language for language, has_meaning in MEANINGS.items() if has_meaning(name)]
+    if languages:
         raise ValueError(
-            f"{where}: {name} is a word of Python or C; take another name, such as {name}_0"
+            f"{where}: {name} is a word of {' and '.join(languages)}; take another name, such as "
+            f"{name}_0"
         )
 
 
@@ -116,7 +138,7 @@ def check_argument(name: str, others: Collection[str], where: str) -> None:
     """Raise ``ValueError`` unless an input or an output may have this name beside the others."""
     check_symbol(name, where)
     base = next((name.removesuffix(s) for s in C_SUFFIXES if name.endswith(s)), "")
-    taken = C_LOCALS | frozenset(others)
+    taken = C_LOCALS | JAVASCRIPT_LOCALS | frozenset(others)
     if name in taken or base in taken or re.fullmatch(r"(angle|wide)_\d+", name):
         raise ValueError(f"{where}: the name {name} is taken; take another one, such as {name}_0")
 
@@ -126,7 +148,7 @@ def check_function(name: str, others: Collection[str], where: str) -> None:
     check_identifier(name, where)
     if name != name.lower():
         raise ValueError(f"{where}: write the function {name} in lower-case letters")
-    if in_python(name) or name in FUNCTIONS:
+    if in_python(name) or in_javascript(name) or name in FUNCTIONS:
         raise ValueError(f"{where}: the name {name} is taken; call the function {name}_0, say")
     for other in others:
         short, long = sorted((name, other), key=len)
@@ -216,5 +238,6 @@ __all__ = [
     "check_symbol",
     "check_text",
     "in_c",
+    "in_javascript",
     "in_python",
 ]

@@ -28,6 +28,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from closedform.emit.backends import names as backend_names
 from closedform.pipeline.disk import replace
 from closedform.pipeline.imports import package, sources_of
 
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from closedform.model.derivation import Derivation
     from closedform.proof.prove import Proof
 
-BACKENDS = ("numpy", "c", "latex", "data")
+BACKENDS = backend_names()
 EXTRA = ("sympy", "flint", "jinja2")
 COMPILED = frozenset({".so", ".pyd", ".pyc"})
 
@@ -458,12 +459,10 @@ def default_jobs() -> int:
 
 
 def standalone(printed: Files) -> Files:
-    """Without the files that only work inside the package: the binding of the C to Python."""
-    return {
-        path: text
-        for path, text in printed.items()
-        if path.parts[0] != "c" or (path.suffix != ".py" and path.name != "extension.c")
-    }
+    """Without the files that only work inside the package, as the binding of the C to Python."""
+    from closedform.emit import render
+
+    return render.standalone(printed)
 
 
 def write(root: Path, printed: Files) -> list[Path]:

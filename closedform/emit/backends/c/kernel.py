@@ -13,18 +13,18 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import prod
 
-from closedform.emit.cguards import (
+from closedform.emit.backends.c.guards import (
     deciding_products,
     final_values,
     given_up_where,
     not_negative,
     unused_where,
 )
-from closedform.emit.code import COMPARE, PRODUCT, UNARY, WRAPS, Line, Printer, Text
+from closedform.emit.code import COMPARE, PRODUCT, UNARY, Line, Printer, Text, call, word
 from closedform.emit.text import WIDTH
 from closedform.lower import Lowered
 from closedform.lower.graph import Node, hardly_ever, reachable, strip_sign
-from closedform.lower.program import LEAVES
+from closedform.lower.operators import LEAVES
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
 from closedform.model.names import C_LOCALS, in_c
@@ -32,17 +32,6 @@ from closedform.model.names import C_LOCALS, in_c
 LANES = 8
 FEW = 2
 """So many quotients by one divisor are worth a jump each, to be infinite where it is zero."""
-CALLS = {
-    "sqrt": "cf_sqrt",
-    "atan2": "cf_atan2",
-    "abs": "cf_abs",
-    "max": "cf_max",
-    "min": "cf_min",
-    **{op: f"cf_{op}" for op in WRAPS},
-    "select": "cf_select",
-    "sign": "cf_sign",
-}
-RARE = {"select": "cf_rarely", "poison": "cf_poison", "status": "cf_status"}
 
 
 class CPrinter(Printer):
@@ -96,27 +85,62 @@ class CPrinter(Printer):
             nodes, key=lambda n: 0 if n.id in self._arguments else 1 if self._together(n) else 2
         )
 
-    def render(self, node: Node) -> Text:
-        if node.op == "div" and node.args[1].op != "const":
-            return self._quotient(node)
+    nan, true, false = word("CLOSEDFORM_NAN"), word("1"), word("0")
+    abs, max, min, sign = call("cf_abs"), call("cf_max"), call("cf_min"), call("cf_sign")
+    wrap, wrap_cut = call("cf_wrap"), call("cf_wrap_cut")
+
+    def number(self, text: str) -> Text:
+        return Text(f"CLOSEDFORM_C({text})")
+
+    def tolerance(self, node: Node) -> Text:
+        return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
+
+    def mul(self, node: Node, a: Text, b: Text) -> Text:
+        product = super().mul(node, a, b)
         if node.id in self._deciding:
-            return Text(f"cf_rounded(single, one, {super().render(node).code})")
+            return Text(f"cf_rounded(single, one, {product.code})")
+        return product
+
+    def div(self, node: Node, a: Text, b: Text) -> Text:
+        return super().div(node, a, b) if node.args[1].op == "const" else self._quotient(node, a, b)
+
+    def sqrt(self, node: Node, a: Text) -> Text:
+        if not_negative(node.args[0]):
+            return Text(f"cf_sqrt({a.code})")
+        return Text(f"cf_root({'1' if self.branch else 'single'}, {a.code})")
+
+    def atan2(self, node: Node, y: Text, x: Text) -> Text:
         if not self._together(node):
-            return super().render(node)
+            return Text(f"cf_atan2({y.code}, {x.code})")
         if not self.arctangents:
             self.head = len(self.lines)
-        y, x = (self.text[a.id].code for a in node.args)
-        self.arctangents.append((y, x))
+        self.arctangents.append((y.code, x.code))
         return Text(f"angles[{len(self.arctangents) - 1}]")
 
-    def _quotient(self, node: Node) -> Text:
+    def not_(self, node: Node, a: Text) -> Text:
+        return Text(f"!{a.at(UNARY)}", PRODUCT)  # gcc warns of `!a | b`
+
+    def finite(self, node: Node, *args: Text) -> Text:
+        return Text(f"{' + '.join(f'cf_nought({a.code})' for a in args)} == 0", COMPARE)
+
+    def select(self, node: Node, condition: Text, a: Text, b: Text) -> Text:
+        arguments = f"{condition.code}, {a.code}, {b.code}"
+        rarely = f"cf_rarely(single, {arguments})"
+        return Text(rarely if self._spares(node) else f"cf_select({arguments})")
+
+    def poison(self, node: Node, failed: Text) -> Text:
+        return Text(f"cf_poison(single, {failed.code})")
+
+    def status(self, node: Node, invalid: Text, unreachable: Text, singular: Text) -> Text:
+        return Text(f"cf_status(single, {invalid.code}, {unreachable.code}, {singular.code})")
+
+    def _quotient(self, node: Node, dividend: Text, divisor: Text) -> Text:
         """Divides by 1 where nothing uses the quotient: its divisor may vanish there.
 
         Elsewhere a division by zero is not carried out.  It gives what it would give where nothing
         more is computed with it; NaN where something is, and of many quotients by one divisor, each
         of which would need a jump.  The loop over the branches is part of a single call.
         """
-        dividend, divisor = (self.text[a.id] for a in node.args)
         unused = self._unused_where.get(node.id)
         if unused is not None:
             where = "1" if self.branch else "single"
@@ -125,7 +149,7 @@ class CPrinter(Printer):
             safe = f"cf_divisor({where}, {either}, {divisor.code})"
             return Text(f"{dividend.at(PRODUCT)} / {safe}", PRODUCT)
         if self.branch:
-            return super().render(node)
+            return super().div(node, dividend, divisor)
         if node.id in self._final and self._divided[node.args[1].id] <= FEW:
             return Text(f"cf_quotient(single, {dividend.code}, {divisor.code})")
         return Text(f"{dividend.at(PRODUCT)} / {self._nonzero(node.args[1])}", PRODUCT)
@@ -139,26 +163,6 @@ class CPrinter(Printer):
             self._tested[divisor.id] = self.names.fresh()
             self.lines.append(Line(self._tested[divisor.id], code, False))
         return self._tested[divisor.id]
-
-    def constant(self, text: str) -> Text:
-        return Text(f"CLOSEDFORM_C({text})")
-
-    def call(self, op: str, args: list[str], node: Node) -> Text:
-        if op == "nan":
-            return Text("CLOSEDFORM_NAN")
-        if op in ("true", "false"):
-            return Text("1" if op == "true" else "0")
-        if op == "not":
-            return Text(f"!{self.text[node.args[0].id].at(6)}", 5)  # gcc warns of `!a | b`
-        if op == "tolerance":
-            return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
-        if op == "finite":
-            return Text(f"{' + '.join(f'cf_nought({a})' for a in args)} == 0", COMPARE)
-        if op == "sqrt" and not not_negative(node.args[0]):
-            return Text(f"cf_root({'1' if self.branch else 'single'}, {args[0]})")
-        if op in RARE and (op != "select" or self._spares(node)):
-            return Text(f"{RARE[op]}({', '.join(['single', *args])})")
-        return Text(f"{CALLS[op]}({', '.join(args)})")
 
     @staticmethod
     def _spares(select: Node) -> bool:

@@ -1,11 +1,13 @@
-"""Prints a table of a derivation as comma-separated values: the nearest doubles."""
+"""The tables of a derivation as comma-separated values: the nearest doubles."""
 
 from __future__ import annotations
 
 import io
 from csv import writer
+from pathlib import Path
 
 from closedform.algebra.balls import Evaluator, to_float
+from closedform.emit.backend import Backend, Mechanism, Pages
 from closedform.model.derivation import Derivation, Table
 from closedform.model.functions import reject_floats
 
@@ -24,3 +26,12 @@ def csv(derivation: Derivation, table: Table) -> str:
         numbers = [float(value), *map(to_float, evaluate([value]))]
         lines.writerow([n + 0.0 for n in numbers])  # never -0.0
     return text.getvalue()
+
+
+class Data(Backend):
+    def pages(self, mechanism: Mechanism) -> Pages:
+        d = mechanism.derivation
+        return Pages({Path("data", f"{t.name}.csv"): csv(d, t) for t in d.tables})
+
+
+BACKEND = Data()

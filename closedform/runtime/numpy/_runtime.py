@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-FEASIBILITY = {{ feasibility }}
-VANISHING = {{ vanishing }}
-DETERMINED = {{ determined }}
-ROTATION = {{ rotation }}
+FEASIBILITY = 1e-12
+VANISHING = 8.881784197001252e-16
+DETERMINED = 0.0009765625
+ROTATION = 1e-06
 
 BLOCK = 8000
 """Postures that a kernel treats at once: its intermediate arrays then stay in the cache.  It is no
@@ -127,7 +127,7 @@ def sincos_as_in_c(angle: Any) -> tuple[Any, Any]:
     quadrant += 1
     c ^= (quadrant & 2) << 62
     sine *= np.copysign(1.0, angle)
-    wide = size > {{ sines.LIMIT }}
+    wide = size > 400000.0
     if np.count_nonzero(wide):
         for k in np.flatnonzero(wide):
             sine.flat[k], cosine.flat[k] = _sincos_of_one(float(angle.flat[k]))
@@ -138,7 +138,7 @@ def _sincos_of_one(angle: float) -> tuple[Any, Any]:
     size = abs(angle)
     if not math.isfinite(size):
         return np.float64(np.nan), np.float64(np.nan)
-    if size > {{ sines.LIMIT }}:
+    if size > 400000.0:
         return np.float64(math.sin(angle)), np.float64(math.cos(angle))
     shifted, sine, cosine = _sincos_of_rest(size)
     quadrant = int(shifted) & 3
@@ -151,30 +151,38 @@ def _sincos_of_one(angle: float) -> tuple[Any, Any]:
 
 def _sincos_of_rest(size: Any) -> tuple[Any, Any, Any]:
     """The quarter turns in a size of an angle, at the end of the word; sine, cosine of the rest."""
-    shifted = size * {{ sines.RIGHT_ANGLES }}
-    shifted += {{ sines.ROUND }}
-    n = shifted - {{ sines.ROUND }}
-    part = n * {{ sines.RIGHT_ANGLE[1] }}
-    tail = size - n * {{ sines.RIGHT_ANGLE[0] }}
+    shifted = size * 0.6366197723675814
+    shifted += 4503599627370496.0
+    n = shifted - 4503599627370496.0
+    part = n * 2.5633441515839558e-12
+    tail = size - n * 1.5707963267923333
     r = tail - part
     tail -= r
     tail -= part
-    n *= {{ sines.RIGHT_ANGLE[2] }}
+    n *= 1.0562999066987428e-23
     tail -= n
     z = r * r
     z2 = z * z
-{% for name, c in (("sine", sines.SINE), ("cosine", sines.COSINE)) %}
-    {{ name }} = z * {{ c[5] }}
-    {{ name }} += {{ c[4] }}
-    {{ name }} *= z2
-    part = z * {{ c[3] }}
-    part += {{ c[2] }}
-    {{ name }} += part
-    {{ name }} *= z2
-    part = z * {{ c[1] }}
-    part += {{ c[0] }}
-    {{ name }} += part
-{% endfor %}
+    sine = z * 1.5895442710921173e-10
+    sine += -2.5050734577586117e-08
+    sine *= z2
+    part = z * 2.7557313539658054e-06
+    part += -0.00019841269829360994
+    sine += part
+    sine *= z2
+    part = z * 0.008333333333321842
+    part += -0.1666666666666663
+    sine += part
+    cosine = z * -1.1358749458908495e-11
+    cosine += 2.087570540007036e-09
+    cosine *= z2
+    part = z * -2.7557314217063467e-07
+    part += 2.4801587289002127e-05
+    cosine += part
+    cosine *= z2
+    part = z * -0.0013888888888873342
+    part += 0.041666666666666595
+    cosine += part
     sine *= r * z
     part = 0.5 * z
     part = 1.0 - part
@@ -194,11 +202,11 @@ def principal(angle: Any) -> Any:
     """An angle of any size in [-pi, pi], give or take rounding; no less accurate if it is large."""
     turns = np.rint(angle * (0.5 / np.pi))
     # 2 pi in three parts; the products with the first two are exact
-    near = angle - turns * (4 * {{ sines.RIGHT_ANGLE[0] }})
-    near -= turns * (4 * {{ sines.RIGHT_ANGLE[1] }})
-    turns *= 4 * {{ sines.RIGHT_ANGLE[2] }}
+    near = angle - turns * (4 * 1.5707963267923333)
+    near -= turns * (4 * 2.5633441515839558e-12)
+    turns *= 4 * 1.0562999066987428e-23
     near -= turns
-    wide = np.abs(angle) > {{ sines.LIMIT }}
+    wide = np.abs(angle) > 400000.0
     if np.count_nonzero(wide):
         return np.where(wide, np.arctan2(np.sin(angle), np.cos(angle)), near)
     return near

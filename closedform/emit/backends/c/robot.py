@@ -11,16 +11,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from closedform._version import __version__
-from closedform.emit import sines
-from closedform.emit.ckernel import CArray, CProgram, Emission
-from closedform.emit.csize import CSize, size_of
+from closedform.emit.backends.c.kernel import CArray, CProgram, Emission
+from closedform.emit.backends.c.size import CSize, size_of
 from closedform.emit.docstring import comment, docstring
 from closedform.emit.text import WIDTH, banner, interface
 from closedform.lower import Lowered
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
-from closedform.model.tolerances import DOUBLE, FLOAT, GENERATED, HIGHEST_DEGREE
 
 
 @dataclass(frozen=True)
@@ -70,20 +67,6 @@ def robot(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, A
         "interface": interface(derivation),
         "field_names": ", ".join(f'"{p.name}"' for p in derivation.parameters),
         "functions": [_function(derivation, f, lowered[f.name]) for f in derivation.functions],
-    }
-
-
-def shared(robots: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """The context of the files that all robots share, from those of the robots."""
-    return {
-        "robots": robots,
-        "tolerances": [
-            (name.upper(), repr(getattr(DOUBLE, name)), repr(getattr(FLOAT, name)))
-            for name in GENERATED
-        ],
-        "sizes": [(n, DOUBLE.sizes(n), FLOAT.sizes(n)) for n in range(2, HIGHEST_DEGREE + 1)],
-        "sines": sines,
-        "version": __version__,
     }
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from closedform.emit.prose import Prose
+from closedform.emit.backends.latex.prose import Prose
 from closedform.model.claims import PROVED, VERDICTS
 from closedform.model.derivation import Derivation
 from closedform.proof.prove import ClaimResult, Proof

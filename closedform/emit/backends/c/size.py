@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from closedform.emit.ckernel import CArray, folded
+from closedform.emit.backends.c.kernel import CArray, folded
 from closedform.lower import Lowered
 from closedform.model.derivation import Derivation
 

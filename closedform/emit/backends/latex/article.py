@@ -16,7 +16,15 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
 from closedform.algebra.formulas import PRINTED, formula
-from closedform.emit.prose import Prose, escape, loosen, mixed, spaced, symbol_name, upright
+from closedform.emit.backends.latex.prose import (
+    Prose,
+    escape,
+    loosen,
+    mixed,
+    spaced,
+    symbol_name,
+    upright,
+)
 from closedform.emit.text import citation
 from closedform.model.claims import REFUTED
 from closedform.model.derivation import Continuum, Derivation, Inverse, Joint, Step

@@ -108,19 +108,45 @@ typedef uint64_t cf_word;
 /* Which part of its natural scale counts as zero, and between which sizes of a mechanism no power up
  * to the second, third ... leaves the range of the type; the reasons stand in tolerances.py. */
 #ifdef CLOSEDFORM_FLOAT
-{% for name, double, single in tolerances %}
-#define CLOSEDFORM_{{ name }} CLOSEDFORM_C({{ single }})
-{% endfor %}
-{% for degree, double, single in sizes %}
-#define CF_SIZES_{{ degree }} CLOSEDFORM_C({{ single[0] }}), CLOSEDFORM_C({{ single[1] }})
-{% endfor %}
+#define CLOSEDFORM_FEASIBILITY CLOSEDFORM_C(1e-06)
+#define CLOSEDFORM_VANISHING CLOSEDFORM_C(4.76837158203125e-07)
+#define CLOSEDFORM_DETERMINED CLOSEDFORM_C(0.015625)
+#define CLOSEDFORM_ROTATION CLOSEDFORM_C(0.0001)
+#define CF_SIZES_2 CLOSEDFORM_C(2.3283064365386963e-10), CLOSEDFORM_C(7.205759403792794e+16)
+#define CF_SIZES_3 CLOSEDFORM_C(4.76837158203125e-07), CLOSEDFORM_C(137438953472.0)
+#define CF_SIZES_4 CLOSEDFORM_C(1.52587890625e-05), CLOSEDFORM_C(268435456.0)
+#define CF_SIZES_5 CLOSEDFORM_C(0.000244140625), CLOSEDFORM_C(4194304.0)
+#define CF_SIZES_6 CLOSEDFORM_C(0.0009765625), CLOSEDFORM_C(262144.0)
+#define CF_SIZES_7 CLOSEDFORM_C(0.001953125), CLOSEDFORM_C(65536.0)
+#define CF_SIZES_8 CLOSEDFORM_C(0.00390625), CLOSEDFORM_C(16384.0)
+#define CF_SIZES_9 CLOSEDFORM_C(0.0078125), CLOSEDFORM_C(4096.0)
+#define CF_SIZES_10 CLOSEDFORM_C(0.015625), CLOSEDFORM_C(2048.0)
+#define CF_SIZES_11 CLOSEDFORM_C(0.03125), CLOSEDFORM_C(1024.0)
+#define CF_SIZES_12 CLOSEDFORM_C(0.03125), CLOSEDFORM_C(512.0)
+#define CF_SIZES_13 CLOSEDFORM_C(0.0625), CLOSEDFORM_C(256.0)
+#define CF_SIZES_14 CLOSEDFORM_C(0.0625), CLOSEDFORM_C(256.0)
+#define CF_SIZES_15 CLOSEDFORM_C(0.0625), CLOSEDFORM_C(128.0)
+#define CF_SIZES_16 CLOSEDFORM_C(0.0625), CLOSEDFORM_C(128.0)
 #else
-{% for name, double, single in tolerances %}
-#define CLOSEDFORM_{{ name }} CLOSEDFORM_C({{ double }})
-{% endfor %}
-{% for degree, double, single in sizes %}
-#define CF_SIZES_{{ degree }} CLOSEDFORM_C({{ double[0] }}), CLOSEDFORM_C({{ double[1] }})
-{% endfor %}
+#define CLOSEDFORM_FEASIBILITY CLOSEDFORM_C(1e-12)
+#define CLOSEDFORM_VANISHING CLOSEDFORM_C(8.881784197001252e-16)
+#define CLOSEDFORM_DETERMINED CLOSEDFORM_C(0.0009765625)
+#define CLOSEDFORM_ROTATION CLOSEDFORM_C(1e-06)
+#define CF_SIZES_2 CLOSEDFORM_C(8.636168555094445e-78), CLOSEDFORM_C(3.273390607896142e+150)
+#define CF_SIZES_3 CLOSEDFORM_C(6.681911775230489e-52), CLOSEDFORM_C(1.7498005798264095e+100)
+#define CF_SIZES_4 CLOSEDFORM_C(2.938735877055719e-39), CLOSEDFORM_C(1.8092513943330656e+75)
+#define CF_SIZES_5 CLOSEDFORM_C(1.9721522630525295e-31), CLOSEDFORM_C(1.6069380442589903e+60)
+#define CF_SIZES_6 CLOSEDFORM_C(2.5849394142282115e-26), CLOSEDFORM_C(9.353610478917779e+49)
+#define CF_SIZES_7 CLOSEDFORM_C(1.0587911840678754e-22), CLOSEDFORM_C(5.575186299632656e+42)
+#define CF_SIZES_8 CLOSEDFORM_C(5.421010862427522e-20), CLOSEDFORM_C(4.253529586511731e+37)
+#define CF_SIZES_9 CLOSEDFORM_C(1.3877787807814457e-17), CLOSEDFORM_C(2.596148429267414e+33)
+#define CF_SIZES_10 CLOSEDFORM_C(4.440892098500626e-16), CLOSEDFORM_C(1.2676506002282294e+30)
+#define CF_SIZES_11 CLOSEDFORM_C(1.4210854715202004e-14), CLOSEDFORM_C(1.2379400392853803e+27)
+#define CF_SIZES_12 CLOSEDFORM_C(2.2737367544323206e-13), CLOSEDFORM_C(9.671406556917033e+24)
+#define CF_SIZES_13 CLOSEDFORM_C(1.8189894035458565e-12), CLOSEDFORM_C(7.555786372591432e+22)
+#define CF_SIZES_14 CLOSEDFORM_C(1.4551915228366852e-11), CLOSEDFORM_C(2.3611832414348226e+21)
+#define CF_SIZES_15 CLOSEDFORM_C(5.820766091346741e-11), CLOSEDFORM_C(7.378697629483821e+19)
+#define CF_SIZES_16 CLOSEDFORM_C(2.3283064365386963e-10), CLOSEDFORM_C(4.611686018427388e+18)
 #endif
 
 /* The real_t nearest to pi: the largest angle returned. */
@@ -344,26 +370,32 @@ CF_INLINE real_t cf_atan_poly(real_t z)
 
 #else
 
-#define CF_TRIG_LIMIT CLOSEDFORM_C({{ sines.LIMIT }})
-#define CF_PIO2_1 CLOSEDFORM_C({{ sines.RIGHT_ANGLE[0] }})
-#define CF_PIO2_2 CLOSEDFORM_C({{ sines.RIGHT_ANGLE[1] }})
-#define CF_PIO2_3 CLOSEDFORM_C({{ sines.RIGHT_ANGLE[2] }})
-#define CF_ROUND CLOSEDFORM_C({{ sines.ROUND }}) /* 2^52 */
+#define CF_TRIG_LIMIT CLOSEDFORM_C(400000.0)
+#define CF_PIO2_1 CLOSEDFORM_C(1.5707963267923333)
+#define CF_PIO2_2 CLOSEDFORM_C(2.5633441515839558e-12)
+#define CF_PIO2_3 CLOSEDFORM_C(1.0562999066987428e-23)
+#define CF_ROUND CLOSEDFORM_C(4503599627370496.0) /* 2^52 */
 #define CF_BELOW_PI CF_PI
 #define CF_PIO2_LO CLOSEDFORM_C(6.123233995736766e-17)
 #define CF_TWO_PI_LO CLOSEDFORM_C(2.4492935982947064e-16)
 
 /* relative error of sin 2^-57.8, of cos 2^-63.9, of atan 2^-56.7 */
-{% for name, c in (("sin", sines.SINE), ("cos", sines.COSINE)) %}
-CF_INLINE real_t cf_{{ name }}_poly(real_t one, real_t z)
+CF_INLINE real_t cf_sin_poly(real_t one, real_t z)
 {
     const real_t z2 = z * z;
-    return ({{ c[0] }} + z * {{ c[1] }} * one) +
-           z2 * (({{ c[2] }} + z * {{ c[3] }} * one) +
-                 z2 * ({{ c[4] }} + z * {{ c[5] }} * one) * one) * one;
+    return (-0.1666666666666663 + z * 0.008333333333321842 * one) +
+           z2 * ((-0.00019841269829360994 + z * 2.7557313539658054e-06 * one) +
+                 z2 * (-2.5050734577586117e-08 + z * 1.5895442710921173e-10 * one) * one) * one;
 }
 
-{% endfor %}
+CF_INLINE real_t cf_cos_poly(real_t one, real_t z)
+{
+    const real_t z2 = z * z;
+    return (0.041666666666666595 + z * -0.0013888888888873342 * one) +
+           z2 * ((2.4801587289002127e-05 + z * -2.7557314217063467e-07 * one) +
+                 z2 * (2.087570540007036e-09 + z * -1.1358749458908495e-11 * one) * one) * one;
+}
+
 CF_INLINE real_t cf_atan_poly(real_t z)
 {
     const real_t z2 = z * z, z4 = z2 * z2, z8 = z4 * z4;
@@ -396,7 +428,7 @@ CF_INLINE void cf_sincos_rounded(real_t one, real_t x, real_t *s, real_t *c)
 {
     const real_t ax = cf_abs(x);
     /* Adding CF_ROUND rounds to an integer, and leaves its low bits at the end of the word. */
-    const real_t shifted = ax * CLOSEDFORM_C({{ sines.RIGHT_ANGLES }}) * one + CF_ROUND;
+    const real_t shifted = ax * CLOSEDFORM_C(0.6366197723675814) * one + CF_ROUND;
     const real_t n = shifted - CF_ROUND;
     const cf_word quadrant = cf_to_word(shifted);
 

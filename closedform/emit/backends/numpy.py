@@ -1,4 +1,4 @@
-"""Prints a derivation as a NumPy module."""
+"""NumPy: a module a robot, and the runtime that all share."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ import re
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from closedform.emit import sines
-from closedform.emit.code import ATOM, LOGIC, WRAPS, Printer, Text
+from closedform.emit.backend import Backend, Files, Mechanism, Pages, runtime
+from closedform.emit.code import ATOM, LOGIC, Printer, Text, call, word
 from closedform.emit.docstring import docstring
+from closedform.emit.render import render
 from closedform.emit.text import WIDTH, banner, call_signature, interface
 from closedform.lower import Lowered
 from closedform.lower.graph import Node
@@ -19,19 +22,6 @@ from closedform.model.functions import Function
 from closedform.model.names import in_python
 from closedform.model.tolerances import DOUBLE, GENERATED
 
-CALLS = {
-    "sqrt": "np.sqrt",
-    "atan2": "np.arctan2",
-    "abs": "np.abs",
-    "max": "np.maximum",
-    "min": "np.minimum",
-    "select": "_runtime.select",
-    "sign": "_runtime.sign",
-    "not": "np.logical_not",
-    **{op: f"_runtime.{op}" for op in WRAPS},
-    "poison": "_runtime.poison",
-    "status": "_runtime.status",
-}
 COMMON = "Where nothing vanishes; last, whether something does."
 DTYPES = {"real": "np.float64", "status": "np.uint8", "bool": "np.bool_"}
 
@@ -41,20 +31,20 @@ class NumpyPrinter(Printer):
 
     has_meaning = staticmethod(in_python)
 
-    def constant(self, text: str) -> Text:
-        return Text(text)
+    nan, true, false = word("np.nan"), word("np.True_"), word("np.False_")
+    sqrt, atan2 = call("np.sqrt"), call("np.arctan2")
+    abs, max, min = call("np.abs"), call("np.maximum"), call("np.minimum")
+    not_ = call("np.logical_not")
+    sign, select = call("_runtime.sign"), call("_runtime.select")
+    wrap, wrap_cut = call("_runtime.wrap"), call("_runtime.wrap_cut")
+    poison, status = call("_runtime.poison"), call("_runtime.status")
 
-    def call(self, op: str, args: list[str], node: Node) -> Text:
-        if op == "nan":
-            return Text("np.nan")
-        if op in ("true", "false"):
-            return Text(f"np.{op.capitalize()}_")
-        if op == "tolerance":
-            return Text(f"_runtime.{str(node.payload).upper()}")
-        if op == "finite":
-            tests = [f"np.isfinite({a})" for a in args]
-            return Text(" & ".join(tests), LOGIC if len(tests) > 1 else ATOM)
-        return Text(f"{CALLS[op]}({', '.join(args)})")
+    def tolerance(self, node: Node) -> Text:
+        return Text(f"_runtime.{str(node.payload).upper()}")
+
+    def finite(self, node: Node, *args: Text) -> Text:
+        tests = [f"np.isfinite({a.code})" for a in args]
+        return Text(" & ".join(tests), LOGIC if len(tests) > 1 else ATOM)
 
 
 @dataclass(frozen=True)
@@ -95,9 +85,30 @@ def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, 
     }
 
 
-def runtime() -> dict[str, Any]:
-    """The context of ``numpy/_runtime.py.jinja``."""
-    return {name: repr(getattr(DOUBLE, name)) for name in GENERATED} | {"sines": sines}
+def _numbers() -> list[str]:
+    """The tolerances, and the sine and cosine by the operations of the C."""
+    turns, limit, shift = sines.RIGHT_ANGLE, sines.LIMIT, sines.ROUND
+    return [
+        "".join(f"{name.upper()} = {getattr(DOUBLE, name)!r}\n" for name in GENERATED),
+        f"    wide = size > {limit}\n",
+        f"    wide = np.abs(angle) > {limit}\n",
+        f"    if size > {limit}:\n",
+        f"    shifted = size * {sines.RIGHT_ANGLES}\n"
+        f"    shifted += {shift}\n    n = shifted - {shift}\n",
+        f"    part = n * {turns[1]}\n    tail = size - n * {turns[0]}\n",
+        f"    n *= {turns[2]}\n",
+        *(_polynomial(name, c) for name, c in (("sine", sines.SINE), ("cosine", sines.COSINE))),
+        f"    near = angle - turns * (4 * {turns[0]})\n    near -= turns * (4 * {turns[1]})\n"
+        f"    turns *= 4 * {turns[2]}\n",
+    ]
+
+
+def _polynomial(name: str, c: Sequence[float]) -> str:
+    return (
+        f"    {name} = z * {c[5]}\n    {name} += {c[4]}\n    {name} *= z2\n"
+        f"    part = z * {c[3]}\n    part += {c[2]}\n    {name} += part\n    {name} *= z2\n"
+        f"    part = z * {c[1]}\n    part += {c[0]}\n    {name} += part\n"
+    )
 
 
 def _function(derivation: Derivation, function: Function, program: Lowered) -> NumpyFunction:
@@ -203,3 +214,21 @@ def tuple_code(items: Iterable[str]) -> str:
     """A tuple as Python writes it, on one line."""
     listed = list(items)
     return f"({listed[0]},)" if len(listed) == 1 else f"({', '.join(listed)})"
+
+
+class Numpy(Backend):
+    runner = "python"
+
+    def pages(self, mechanism: Mechanism) -> Pages:
+        context = module(mechanism.derivation, mechanism.lowered)
+        path = Path("numpy", f"{mechanism.derivation.name}.py")
+        return Pages({path: render("numpy/module.py.jinja", context)})
+
+    def shared(self, shares: Sequence[Any]) -> Files:
+        return {Path("numpy", "_runtime.py"): runtime("numpy/_runtime.py", _numbers())}
+
+    def first_file(self, robot: str) -> Path:
+        return Path("numpy", f"{robot}.py")
+
+
+BACKEND = Numpy()

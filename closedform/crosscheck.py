@@ -171,13 +171,16 @@ def _compare(
     bounds = _ulp_bounds(computed, *values.exact.balls(rows), scales, lengths, backend)
     bounds[exists <= 0] = 0.0
     finding.compared += int((exists > 0).sum())
+    largest: dict[Any, float] = {}
     for place in np.argsort(-bounds, axis=None):
         row, k = np.unravel_index(place, bounds.shape)
         if not bounds[row, k] > finding.worst:
             break
         exacts = values.exact.exactly(rows[row])
-        sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
-        most = NESTED * max([*sizes, *lengths], default=1.0)
+        if row not in largest:
+            sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
+            largest[row] = max([*sizes, *lengths], default=1.0)
+        most = NESTED * largest[row]
         scale = min(scales[row, k], most) if math.isfinite(scales[row, k]) else math.inf
         error = _ulps(computed[row, k], exacts[k], scale, backend)
         if error > WELL_CONDITIONED:

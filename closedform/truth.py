@@ -20,7 +20,7 @@ from closedform.chain import numbers_of_tool
 from closedform.derivation import Derivation, Inverse
 from closedform.functions import Bound, Function, Let, Require, Vanishes, substitute
 from closedform.lower import lower
-from closedform.reference import to_float
+from closedform.reference import free_symbols, to_float
 from closedform.samples import Magnitudes, Sample, with_parameters
 
 Array = NDArray[Any]
@@ -120,7 +120,7 @@ class Solutions:
         sized = {*parameters, *slides}
         places = (3, 7, 11) if len(function.symbols) == 16 else ()
         self._sized = [
-            np.array([bool(e.free_symbols & sized) or k in places for k, e in enumerate(m)])
+            np.array([bool(free_symbols([e]) & sized) or k in places for k, e in enumerate(m)])
             for m in maps
         ]
         self._in_numbers = max(numbers_of_tool(derivation), default=0.0)

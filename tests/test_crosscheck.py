@@ -47,8 +47,8 @@ def backend(name: str, robot: str, scratch: Path) -> Backend:
     return module_backend(name, importlib.import_module(f"closedform.generated.{name}.{robot}"))
 
 
+@pytest.mark.parametrize("name", ["numpy", "c", "c float"])  # in turn: they share the exact values
 @pytest.mark.parametrize("robot", ROBOTS)
-@pytest.mark.parametrize("name", ["numpy", "c", "c float"])
 def test_against_the_symbolic_source(
     robot: str, name: str, tmp_path: Path, findings: list[Finding]
 ) -> None:

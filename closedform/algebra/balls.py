@@ -83,7 +83,7 @@ class Evaluator:
         self.exprs = tuple(sp.sympify(e, strict=True) for e in exprs)
         self.rel_bits, self.max_bits = rel_bits, max_bits
         named = {name: sp.sympify(value, strict=True) for name, value in (named or {}).items()}
-        missing = _free_symbols((*self.exprs, *named.values())) - {*self.symbols, *named}
+        missing = free_symbols((*self.exprs, *named.values())) - {*self.symbols, *named}
         if missing:
             raise KeyError(f"no value for {', '.join(sorted(map(str, missing)))}")
         self._program = _Program(self.symbols, self.exprs, named)
@@ -105,7 +105,7 @@ class Evaluator:
                         return balls
                     obstacle = "a value stays wide"
                 except _Open as reason:
-                    obstacle = str(reason)
+                    obstacle = "".join(map(str, reason.args))
             if bits == self.max_bits:
                 break
             bits = min(2 * bits, self.max_bits)
@@ -126,7 +126,7 @@ class Evaluator:
         return all(balls[k].rad() <= scales[k] * part for k in wide)
 
 
-def _free_symbols(exprs: Iterable[Expr]) -> set[Expr]:
+def free_symbols(exprs: Iterable[Expr]) -> set[Expr]:
     """The symbols in expressions; a part that occurs many times is looked at once."""
     seen: set[Expr] = set()
     pending = list(exprs)
@@ -142,11 +142,14 @@ def to_float(ball: arb) -> float:
     """The double nearest to the midpoint."""
     if not ball.is_finite():
         return math.nan
-    mantissa, exponent = ball.mid().man_exp()
+    mantissa, exponent = map(int, ball.mid().man_exp())
+    bits = mantissa.bit_length()
+    if bits < 1000 and -1000 < bits + exponent < 1000:  # a normal number: rounded once
+        return math.ldexp(float(mantissa), exponent)
     try:
-        return float(Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
+        return float(Fraction(mantissa) * Fraction(2) ** exponent)
     except OverflowError:
-        return math.copysign(math.inf, int(mantissa))
+        return math.copysign(math.inf, mantissa)
 
 
 class _Point:
@@ -304,7 +307,7 @@ class _Program:
             for test, block, result in arms:
                 holds = test(registers)
                 if holds is None:
-                    raise _Open(f"a condition of {e} stays open")
+                    raise _Open("a condition of ", e, " stays open")
                 if holds:
                     _execute(block, registers)
                     return registers[result]

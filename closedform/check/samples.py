@@ -16,7 +16,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from closedform.algebra.balls import Evaluator, to_float
+from closedform.check.rows import RowEvaluator, inaccurate
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
 
@@ -34,6 +34,17 @@ class Sample:
     name: str
     values: Array
     parameters: tuple[float, ...]
+
+    @property
+    def rows(self) -> Array:
+        """Each row followed by the parameters."""
+        return with_parameters(self.values, self.parameters)
+
+
+def with_parameters(values: Array, parameters: Sequence[float]) -> Array:
+    """Rows of values, each followed by the parameters."""
+    sizes = np.broadcast_to(np.array(parameters, float), (len(values), len(parameters)))
+    return np.concatenate([np.asarray(values, float), sizes], axis=1)
 
 
 def parameter_sets(derivation: Derivation, rng: np.random.Generator) -> Iterator[tuple[float, ...]]:
@@ -141,18 +152,19 @@ class Magnitudes:
         self._known: dict[sp.Basic, int] = {}
         self._divisors: list[sp.Expr] = []
         self._results = [self._place(sp.sympify(e, strict=True)) for e in exprs]
-        self._evaluate = Evaluator(tuple(symbols), self._divisors)
+        self._evaluate = RowEvaluator(symbols, self._divisors)
 
-    def __call__(self, values: Sequence[float], dtype: type = float) -> list[float]:
-        """Infinite where the float type overflows, zero where the value does not exist."""
-        found = [abs(to_float(d)) for d in self._evaluate(values)] if self._divisors else []
+    def __call__(self, rows: Array, dtype: type = float) -> Array:
+        """A row a point: infinite where the float type overflows, zero where no value exists."""
+        found = self._evaluate.settled(rows, inaccurate(bits=40))
         with np.errstate(all="ignore"):
-            given = [dtype(abs(v)) for v in (*values, *found)]
+            given = list(abs(np.concatenate([rows, found], axis=1)).astype(dtype).T)
             done: list[Any] = []
             for step in self._steps:
                 done.append(step(done, given))
-            scales = [float(done[k]) for k in self._results]
-        return [0.0 if math.isnan(s) else s for s in scales]
+            scales = [np.broadcast_to(done[k], len(rows)).astype(float) for k in self._results]
+        shaped = np.stack(scales, axis=-1) if scales else np.empty((len(rows), 0))
+        return np.where(np.isnan(shaped), 0.0, shaped)
 
     def _place(self, e: sp.Basic) -> int:
         if e not in self._known:

@@ -1,0 +1,319 @@
+"""Balls over arrays: many points at once, in the widest float type, each with a bound of its error.
+
+What such a ball leaves open is evaluated in Arb, point by point, so that nothing that is decided
+rests on a rounding.  Where the widest type is double, more is left open: slower, and as right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property, reduce
+from typing import Any, TypeAlias
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from closedform.algebra.balls import Evaluator, to_float
+from closedform.check.arrays import WIDE
+
+Array = NDArray[Any]
+Ball: TypeAlias = "tuple[Any, Any]"  # midpoints and radii
+Truth: TypeAlias = "tuple[Any, Any]"  # whether a condition holds, and whether that is certain
+
+ROUNDING = WIDE(np.finfo(WIDE).eps)
+"""Twice the error of an operation that is rounded correctly, so that those of radii are covered."""
+LIBRARY = 16 * ROUNDING
+"""The same for sines, cosines and arctangents: of those of libm three units are documented."""
+LEAST = np.sqrt(WIDE(np.finfo(WIDE).tiny))
+"""Of what is smaller an error is not relative any more."""
+OPEN = WIDE("inf")
+
+
+class RowEvaluator:
+    """Expressions at many points: fast, with bounds of the errors, and in Arb where asked for."""
+
+    def __init__(
+        self,
+        symbols: Iterable[sp.Symbol],
+        exprs: Iterable[Any],
+        named: Mapping[sp.Symbol, Any] | None = None,
+    ) -> None:
+        self.symbols = tuple(symbols)
+        self.exprs = tuple(sp.sympify(e, strict=True) for e in exprs)
+        self._named = dict(named or {})
+        self._program = _Program(self.symbols, self.exprs, self._named)
+        self._exact: dict[tuple[float, ...], list[Any]] = {}
+
+    @cached_property
+    def _evaluator(self) -> Evaluator:
+        return Evaluator(self.symbols, self.exprs, named=self._named)
+
+    def exactly(self, row: Sequence[float]) -> list[Any]:
+        """The balls of Arb at one point."""
+        point = tuple(map(float, row))
+        if point not in self._exact:
+            self._exact[point] = self._evaluator(point)
+        return self._exact[point]
+
+    def balls(self, rows: Array) -> tuple[Array, Array]:
+        """Midpoints and radii, a row a point; a radius that is not finite leaves all open."""
+        shape = (len(rows), len(self.exprs))
+        middle, radius = np.empty(shape, WIDE), np.empty(shape, WIDE)
+        with np.errstate(all="ignore"):
+            for k, (x, r) in enumerate(self._program.run(rows)):
+                middle[:, k], radius[:, k] = x, r
+        radius[~(np.isfinite(middle) & np.isfinite(radius))] = OPEN
+        return middle, radius
+
+    def settled(self, rows: Array, doubtful: Callable[[Array, Array], Array]) -> Array:
+        """The values; those of the rows that are ``doubtful(middle, radius)`` are those of Arb."""
+        middle, radius = self.balls(rows)
+        for row in np.flatnonzero(doubtful(middle, radius).any(axis=1)):
+            middle[row] = [to_float(b) for b in self.exactly(rows[row])]
+        return middle
+
+
+def beside(*limits: float) -> Callable[[Array, Array], Array]:
+    """Doubtful is on which side of one of the limits a value is."""
+
+    def doubtful(middle: Array, radius: Array) -> Array:
+        with np.errstate(invalid="ignore"):
+            return np.asarray(~np.logical_and.reduce([abs(middle - x) > radius for x in limits]))
+
+    return doubtful
+
+
+def inaccurate(bits: int) -> Callable[[Array, Array], Array]:
+    """Doubtful is what has fewer significant bits."""
+
+    def doubtful(middle: Array, radius: Array) -> Array:
+        return np.asarray(~(radius <= abs(middle) * 2.0**-bits))
+
+    return doubtful
+
+
+class _Program:
+    """One step for each distinct part of the expressions, over lists of what is known so far."""
+
+    def __init__(
+        self, symbols: Sequence[sp.Symbol], exprs: Sequence[Any], named: Mapping[sp.Symbol, Any]
+    ) -> None:
+        self._steps: list[tuple[Callable[..., Any], tuple[int, ...]]] = []
+        self._places: dict[Any, int] = {s: k for k, s in enumerate(symbols)}
+        self._width = len(symbols)
+        for name, value in named.items():
+            self._places[name] = self._place(sp.sympify(value, strict=True))
+        self._results = [self._place(e) for e in exprs]
+
+    def run(self, rows: Array) -> list[Any]:
+        columns = np.asarray(rows, WIDE).T
+        known: list[Any] = [(x + WIDE(0), WIDE(0)) for x in columns]  # without a negative zero
+        for function, operands in self._steps:
+            known.append(function(*[known[k] for k in operands]))
+        return [known[k] for k in self._results]
+
+    def _place(self, e: Any) -> int:
+        if e not in self._places:
+            function, operands = self._step(e)
+            places = tuple(map(self._place, operands))
+            self._steps.append((function, places))
+            self._places[e] = self._width + len(self._steps) - 1
+        return self._places[e]
+
+    def _step(self, e: Any) -> tuple[Callable[..., Any], Sequence[Any]]:
+        if e.is_Rational:
+            number = WIDE(int(e.p)) / WIDE(int(e.q))
+            exact = e.q == 1 and abs(int(e.p)) < 2**53
+            return _constant(number, WIDE(0) if exact else 2 * abs(number) * ROUNDING), ()
+        if e is sp.pi:
+            return _constant(4 * np.arctan(WIDE(1)), 4 * LIBRARY), ()
+        if e in (sp.true, sp.false):
+            return _constant(bool(e), True), ()
+        if e.is_Pow:
+            return _power(e), [e.base]
+        if isinstance(e, sp.Piecewise):
+            return _chosen, [part for branch in e.args for part in branch]
+        if isinstance(e, sp.cot | sp.sec | sp.csc):
+            return _reciprocal, [_RECIPROCAL[e.func](e.args[0])]
+        function = next((f for kind, f in _FUNCTIONS.items() if isinstance(e, kind)), None)
+        if function is None:
+            raise TypeError(f"cannot evaluate {e}: it is of type {type(e).__name__}")
+        return function, e.args
+
+
+def _constant(value: Any, certainty: Any) -> Callable[..., Any]:
+    return lambda: (value, certainty)
+
+
+def _rounded(value: Any, radius: Any, error: Any = ROUNDING) -> Ball:
+    return value, radius + abs(value) * error
+
+
+def _sum(*terms: Ball) -> Ball:
+    def add(a: Ball, b: Ball) -> Ball:
+        return _rounded(a[0] + b[0], a[1] + b[1])
+
+    return reduce(add, terms)
+
+
+def _product(*factors: Ball) -> Ball:
+    return reduce(_times, factors)
+
+
+def _times(a: Ball, b: Ball) -> Ball:
+    (x, r), (y, s) = a, b
+    value, radius = _rounded(x * y, abs(x) * s + (abs(y) + s) * r)
+    lost = (abs(value) < LEAST) & (x != 0) & (y != 0)
+    return value, np.where(lost, OPEN, radius) if np.any(lost) else radius
+
+
+def _reciprocal(a: Ball) -> Ball:
+    x, r = a
+    size = abs(x)
+    value = 1 / x
+    radius = r / (size * (size - r))
+    return _rounded(value, np.where(size > r, radius, OPEN))
+
+
+def _root(a: Ball) -> Ball:
+    x, r = a
+    value = np.sqrt(x)
+    radius = np.where(r > 0, r / np.sqrt(x - r), 0)
+    return _rounded(value, np.where((x > r) | ((x == 0) & (r == 0)), radius, OPEN))
+
+
+def _power(e: Any) -> Callable[[Ball], Ball]:
+    """The power with the constant exponent of `e`."""
+    if not (e.exp.is_Rational and e.exp.q in (1, 2)):
+        raise TypeError(f"cannot evaluate the power {e}")
+    times, root, inverted = abs(int(e.exp.p)), e.exp.q == 2, e.exp < 0
+
+    def power(a: Ball) -> Ball:
+        base = _root(a) if root else a
+        if inverted:
+            base = _reciprocal(base)
+        return reduce(_times, [base] * times)
+
+    return power
+
+
+def _periodic(function: Callable[[Any], Any]) -> Callable[[Ball], Ball]:
+    """A sine or a cosine; of an angle that is not known nothing is."""
+
+    def bounded(a: Ball) -> Ball:
+        x, r = a
+        return _rounded(function(x), np.where(r < 1, r, OPEN), LIBRARY)
+
+    return bounded
+
+
+def _tangent(a: Ball) -> Ball:
+    return _times(_periodic(np.sin)(a), _reciprocal(_periodic(np.cos)(a)))
+
+
+def _monotone(function: Callable[[Any], Any]) -> Callable[[Ball], Ball]:
+    """NaN, and so open, where the ball reaches beyond the domain."""
+
+    def bounded(a: Ball) -> Ball:
+        x, r = a
+        value, ends = function(x), (function(x - r), function(x + r))
+        errors = [abs(end - value) + LIBRARY * (abs(end) + abs(value)) for end in ends]
+        return value, np.where(np.isfinite(r), np.maximum(*errors), OPEN)
+
+    return bounded
+
+
+def _direction(a: Ball, b: Ball) -> Ball:
+    """The angle of a point in the plane, unless its ball touches the cut or the origin."""
+    (y, s), (x, r) = a, b
+    distance, off = np.hypot(x, y) * (1 - ROUNDING), np.hypot(r, s) * (1 + ROUNDING)
+    radius = np.where(off > 0, off / (distance - off), 0)
+    certain = (distance > off) & (distance > LEAST) & ((x > r) | (abs(y) > s) | (s == 0))
+    return _rounded(np.arctan2(y + WIDE(0), x), np.where(certain, radius, OPEN), LIBRARY)
+
+
+def _absolute(a: Ball) -> Ball:
+    return abs(a[0]), a[1]
+
+
+def _sign(a: Ball) -> Ball:
+    x, r = a
+    return np.sign(x), np.where((abs(x) > r) | (r == 0), WIDE(0), OPEN)
+
+
+def _extreme(choose: Callable[[Any, Any], Any]) -> Callable[..., Ball]:
+    def extreme(*balls: Ball) -> Ball:
+        def further(a: Ball, b: Ball) -> Ball:
+            return choose(a[0], b[0]), np.maximum(a[1], b[1])
+
+        return reduce(further, balls)
+
+    return extreme
+
+
+def _comparison(holds: Callable[[Any, Any], Any]) -> Callable[[Ball, Ball], Truth]:
+    """Certain where the balls are apart, or are points."""
+
+    def compare(a: Ball, b: Ball) -> Truth:
+        (x, r), (y, s) = a, b
+        apart = abs(x - y) * (1 - ROUNDING) > r + s
+        known = np.isfinite(x) & np.isfinite(y)
+        return holds(x, y), known & (apart | ((r == 0) & (s == 0)))
+
+    return compare
+
+
+def _not(a: Truth) -> Truth:
+    return np.logical_not(a[0]), a[1]
+
+
+def _combined(decisive: bool) -> Callable[..., Truth]:
+    """``Or`` is decided by one True, ``And`` by one False."""
+
+    def combine(*truths: Truth) -> Truth:
+        join = np.logical_or if decisive else np.logical_and
+        value = reduce(join, [t for t, _ in truths])
+        settled = reduce(np.logical_or, [c & (t == decisive) for t, c in truths])
+        return value, settled | reduce(np.logical_and, [c for _, c in truths])
+
+    return combine
+
+
+def _chosen(*parts: Any) -> Ball:
+    """The branch of the first condition that holds."""
+    middle: Any = WIDE("nan")
+    radius: Any = OPEN
+    for (x, r), (holds, certain) in reversed(list(zip(parts[::2], parts[1::2], strict=True))):
+        middle = np.where(holds, x, middle)
+        radius = np.where(certain, np.where(holds, r, radius), OPEN)
+    return middle, radius
+
+
+_FUNCTIONS: dict[Any, Callable[..., Any]] = {
+    sp.Add: _sum,
+    sp.Mul: _product,
+    sp.sin: _periodic(np.sin),
+    sp.cos: _periodic(np.cos),
+    sp.tan: _tangent,
+    sp.atan: _monotone(np.arctan),
+    sp.asin: _monotone(np.arcsin),
+    sp.acos: _monotone(np.arccos),
+    sp.atan2: _direction,
+    sp.Abs: _absolute,
+    sp.sign: _sign,
+    sp.Max: _extreme(np.maximum),
+    sp.Min: _extreme(np.minimum),
+    sp.Ge: _comparison(np.greater_equal),
+    sp.Gt: _comparison(np.greater),
+    sp.Le: _comparison(np.less_equal),
+    sp.Lt: _comparison(np.less),
+    sp.Eq: _comparison(np.equal),
+    sp.Ne: _comparison(np.not_equal),
+    sp.Not: _not,
+    sp.And: _combined(False),
+    sp.Or: _combined(True),
+}
+_RECIPROCAL = {sp.cot: sp.tan, sp.sec: sp.cos, sp.csc: sp.sin}
+
+__all__ = ["RowEvaluator", "beside", "inaccurate"]

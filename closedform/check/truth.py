@@ -1,0 +1,298 @@
+"""The symbolic source of a function, ready to be evaluated: what generated code is compared with.
+
+Many points are evaluated at once, in balls over arrays; what those leave open is settled in Arb.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+import sympy as sp
+from flint import arb
+from numpy.typing import NDArray
+
+from closedform.algebra.balls import free_symbols, to_float
+from closedform.check.arrays import columns
+from closedform.check.rows import RowEvaluator, beside
+from closedform.check.samples import Magnitudes, Sample, with_parameters
+from closedform.lemmas.chain import numbers_of_tool
+from closedform.lower import lower
+from closedform.model.derivation import Derivation, Inverse
+from closedform.model.functions import Bound, Function, Let, Require, Vanishes, substitute
+
+Array = NDArray[Any]
+T = TypeVar("T")
+
+KEPT = 32
+"""So many functions are kept ready to be evaluated, for the next back end."""
+
+
+def kept(make: Callable[..., T]) -> Callable[..., T]:
+    """Make something once for the same objects, which need not be hashable."""
+    made: dict[tuple[int, ...], tuple[tuple[Any, ...], T]] = {}
+
+    def find(*arguments: Any) -> T:
+        key = tuple(map(id, arguments))
+        if key not in made:
+            if len(made) >= KEPT:
+                del made[next(iter(made))]
+            made[key] = arguments, make(*arguments)
+        return made[key][1]
+
+    return find
+
+
+class Values:
+    """The exact values of a function that is not an inverse, and where they exist."""
+
+    def __init__(self, derivation: Derivation, function: Function):
+        signs = [signs for _, signs in function.cases()]
+        self.exprs = [e for s in signs for e in function.values(s)]
+        self.entries = len(self.exprs) // len(signs)
+        """Of one case."""
+        symbols = symbols_of(derivation, function)
+        self.exact = RowEvaluator(symbols, self.exprs)
+        self.scales = Magnitudes(symbols, self.exprs)
+        self.lengths = numbers_of_tool(derivation)
+        self.operations = sum(lower(function, derivation).operations().values())
+        self._bounds = [_margins(function, symbols, s) for s in signs]
+        self._flags = [_margins(function, symbols, s, Vanishes) for s in signs]
+
+    def existence(self, rows: Array, slack: float) -> Array:
+        """Of each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""
+        least = np.stack([_least(b, rows, slack, -slack) for b in self._bounds], axis=1)
+        return np.repeat((least > slack) * 1 - (least < -slack), self.entries, axis=1)
+
+    def flagged(self, rows: Array, limit: float) -> Array:
+        """Where a flag is raised, and so the value a convention."""
+        found = [f.settled(rows, beside(limit)) < limit for f in self._flags]
+        return np.asarray(np.concatenate(found, axis=1).any(axis=1))
+
+
+class Condition:
+    """The exact truth value of a function, and the bounds it rests on."""
+
+    def __init__(self, derivation: Derivation, function: Function):
+        symbols = symbols_of(derivation, function)
+        (entry,) = (e for a in function.outputs for e in a.entries)
+        self._bounds = _margins(function, symbols, {})
+        self._holds = RowEvaluator(symbols, [sp.Piecewise((1, entry), (0, True))])
+
+    def __call__(self, rows: Array, slack: float) -> tuple[Array, Array]:
+        """The truth, and where no bound is within ``slack`` of zero."""
+        margins = self._bounds.settled(rows, beside(slack, -slack))
+        holds = self._holds.settled(rows, beside(0.5))[:, 0] == 1
+        expected = np.asarray(holds & (margins > 0).all(axis=1))
+        return expected, np.asarray(~(abs(margins) <= slack).any(axis=1))
+
+
+class Solutions:
+    """The exact equations and bounds of an inverse, ready to be evaluated."""
+
+    def __init__(self, derivation: Derivation, function: Function, inverse: Inverse):
+        self.function = function
+        parameters = tuple(p.symbol for p in derivation.parameters)
+        revolute = {j.symbol for j in derivation.joints if j.kind == "revolute"}
+        self.angular = np.array([u in revolute for u in inverse.unknowns])
+        place = (*inverse.unknowns, *function.symbols, *parameters)
+        self._equations = RowEvaluator(place, inverse.equations)
+        pairs = list(zip(inverse.forward, inverse.targets, strict=True))
+        self._is_turn = [
+            t for _, x in pairs for t in [x in inverse.angles] * (1 + (x in inverse.angles))
+        ]
+        lengths = [f for f, x in pairs if x not in inverse.angles]
+        self._scales = Magnitudes(place, lengths)
+        explicit = tuple(inverse.targets) == function.symbols
+        self.has_images = explicit or bool(inverse.images)
+        maps = [inverse.forward] if explicit else []
+        if inverse.images:
+            forward = derivation[inverse.images]
+            maps = [forward.values(mode) for _, mode in forward.cases()]
+        self._posture = (*inverse.unknowns, *parameters)
+        self._map_exprs = maps
+        self._maps = [RowEvaluator(self._posture, m) for m in maps]
+        slides = {j.symbol for j in derivation.joints if j.kind == "prismatic"}
+        self._sliding = np.array([u in slides for u in inverse.unknowns])
+        self._turns = np.array([x in inverse.angles for x in function.symbols])
+        sized = {*parameters, *slides}
+        places = (3, 7, 11) if len(function.symbols) == 16 else ()
+        self._sized = [
+            np.array([bool(free_symbols([e]) & sized) or k in places for k, e in enumerate(m)])
+            for m in maps
+        ]
+        self._in_numbers = max(numbers_of_tool(derivation), default=0.0)
+        given = (*function.symbols, *parameters)
+        self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
+        required = [e for s in function.body if isinstance(s, Require) for e in s.values]
+        self._required = RowEvaluator(given, function.explicit(required, {})[0])
+        factors = next((f for f in derivation.functions if f.name == "singularities"), None)
+        entries: list[sp.Expr] = []
+        if factors and self.has_images:
+            entries = [e for _, signs in factors.cases() for e in factors.values(signs)]
+        self._factors = RowEvaluator((*inverse.unknowns, *parameters), entries)
+
+    def images(self, sample: Sample) -> tuple[Array, Array]:
+        """What the postures are taken to, in each assembly mode they have, and the postures."""
+        rows, postures = [], []
+        for forward in self._maps:
+            for row, posture in zip(sample.rows, sample.values, strict=True):
+                image = forward.exactly(row)
+                if all(b.is_finite() for b in image):
+                    rows.append([to_float(b) for b in image])
+                    postures.append(posture)
+        shape = (-1, len(self.function.symbols))
+        return np.array(rows).reshape(shape), np.array(postures).reshape(-1, len(self.angular))
+
+    def wide_images(self, postures: NDArray[Any], parameters: Sequence[float]) -> NDArray[Any]:
+        """What postures are taken to in each assembly mode, NaN where it does not exist."""
+        rows = with_parameters(postures, parameters)
+        return np.stack([columns(m, self._posture, rows) for m in self._map_exprs])
+
+    def missed(
+        self,
+        images: NDArray[Any],
+        solutions: NDArray[Any],
+        given: NDArray[Any],
+        parameters: Sequence[float],
+    ) -> NDArray[np.float64]:
+        """How far the image in the nearest assembly mode is from the target.
+
+        Lengths are counted in the sum of those of links and slides, angles as they are.
+        """
+        fixed = np.abs(parameters).sum() + self._in_numbers
+        size = fixed + np.abs(solutions * self._sliding).sum(axis=-1)
+        apart = []
+        for image, sized in zip(images, self._sized, strict=True):
+            difference = (image - given).astype(float)
+            turned = np.abs(np.angle(np.exp(1j * difference)))
+            by_size = np.abs(difference) / np.where(sized, size[:, None], 1.0)
+            apart.append(np.where(self._turns, turned, by_size).max(axis=-1))
+        return np.asarray(np.fmin.reduce([*apart, np.full(len(given), np.inf)]))
+
+    def exact_miss(
+        self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]
+    ) -> float:
+        """The same for one answer, in Arb."""
+        if not np.isfinite(solution.astype(float)).all():
+            return math.inf
+        point = [*map(float, solution), *map(float, parameters)]
+        balls = [forward.exactly(point) for forward in self._maps]
+        offsets = [
+            [to_float(b - arb(float(g))) for b, g in zip(m, given, strict=True)] for m in balls
+        ]
+        images = np.array(offsets)[:, None]
+        return float(self.missed(images, solution[None], 0 * given[None], parameters)[0])
+
+    def residual(
+        self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]
+    ) -> float:
+        """The largest violation of an equation, over the largest natural scale.
+
+        The sine and the cosine of an angle have a scale of their own, which is 1.
+        """
+        if not np.isfinite(solution).all():
+            return math.inf
+        point = [*map(float, solution), *map(float, given), *map(float, parameters)]
+        scale = max(self._scales(np.array([point]))[0], default=1.0) or 1.0
+        errors = [abs(to_float(e)) for e in self._equations.exactly(point)]
+        return max(e / (1.0 if t else scale) for e, t in zip(errors, self._is_turn, strict=True))
+
+    def residual_bounds(self, answers: Array, given: Array, parameters: Sequence[float]) -> Array:
+        """What the residual of each answer does not exceed."""
+        points = with_parameters(np.concatenate([answers, given], axis=1), parameters)
+        scale = self._scales(points).max(axis=1, initial=0.0)
+        scale[scale == 0] = 1.0
+        middle, radius = self._equations.balls(points)
+        with np.errstate(invalid="ignore"):
+            errors = (abs(middle) + radius) / np.where(self._is_turn, 1.0, scale[:, None])
+        return np.asarray(np.where(np.isfinite(errors), errors, np.inf).max(axis=1))
+
+    def margins(self, given: Array, parameters: Sequence[float], *limits: float) -> Array:
+        """The smallest bound of each branch over its scale, negative where the branch is none.
+
+        It is decided on which side of each of the ``limits`` it is.
+        """
+        rows = with_parameters(given, parameters)
+        return np.stack([_least(b, rows, *limits) for b in self._bounds], axis=1)
+
+    def unfit(self, given: NDArray[Any], parameters: Sequence[float]) -> float:
+        """How far an input misses what is required of it, as that its matrix is a rotation."""
+        missed = self._required.exactly([*map(float, given), *parameters])
+        return max((abs(to_float(m)) for m in missed), default=0.0)
+
+    def condition(self, posture: NDArray[Any], parameters: Sequence[float]) -> float:
+        """The smallest factor of the singular set, at most 1."""
+        factors = self._factors.exactly([*map(float, posture), *parameters])
+        return min([1.0, *(abs(to_float(f)) for f in factors if f.is_finite())])
+
+    def gap(self, solutions: NDArray[Any], posture: NDArray[Any]) -> NDArray[np.float64]:
+        """The distance of each solution from a posture, angles modulo a turn."""
+        difference = solutions.astype(float) - posture
+        turned = np.abs(np.angle(np.exp(1j * difference)))
+        return np.asarray(np.where(self.angular, turned, np.abs(difference)).max(axis=-1))
+
+
+def _least(bounds: RowEvaluator, rows: Array, *limits: float) -> Array:
+    """The least of some bounds at each point; 1 where there are none.
+
+    Where one is provably below all limits, the others are not looked at: they may rest on its root.
+    """
+
+    def doubtful(middle: Array, radius: Array) -> Array:
+        with np.errstate(invalid="ignore"):
+            below = (middle + radius < min(limits)).any(axis=1, keepdims=True)
+        return beside(*limits)(middle, radius) & ~below
+
+    if not bounds.exprs:
+        return np.ones(len(rows))
+    return np.asarray(np.fmin.reduce(bounds.settled(rows, doubtful), axis=1))
+
+
+def _margins(
+    function: Function,
+    symbols: Sequence[sp.Symbol],
+    signs: Mapping[sp.Symbol, int],
+    kind: type = Bound,
+) -> RowEvaluator:
+    """The bounds (or what the flags look at) of a branch, over their natural scales.
+
+    No flag holds, and what is chosen only where one does is left out.
+    """
+    named: dict[sp.Symbol, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
+    lowered: dict[sp.Basic, sp.Basic] = {}
+    margins = []
+    for statement in function.body:
+        if isinstance(statement, (Let, Bound)):
+            named[statement.symbol] = substitute(statement.value, lowered)
+        elif isinstance(statement, Vanishes):
+            lowered[statement.symbol] = sp.false
+        if isinstance(statement, kind) and isinstance(statement, (Bound, Vanishes)):
+            margins.append(substitute(statement.value / statement.scale, lowered))
+    used: set[sp.Basic] = set()
+    pending = {s for e in margins for s in e.free_symbols}
+    while pending:
+        used |= pending
+        pending = {s for n in pending & named.keys() for s in named[n].free_symbols} - used
+    return RowEvaluator(symbols, margins, named={n: e for n, e in named.items() if n in used})
+
+
+def symbols_of(derivation: Derivation, function: Function) -> tuple[sp.Symbol, ...]:
+    """What the values of a function depend on, in the order of a row."""
+    return (*function.symbols, *(p.symbol for p in derivation.parameters))
+
+
+values_of, condition_of = kept(Values), kept(Condition)
+
+
+@kept
+def solutions_of(derivation: Derivation, function: Function, inverse: Inverse) -> Solutions:
+    """The exact equations of an inverse; of a reduced one, those of its forward map."""
+    if inverse.reduction:
+        inverse = inverse.posed(function.symbols, derivation[inverse.images].values({}))
+    return Solutions(derivation, function, inverse)
+
+
+__all__ = ["Condition", "Solutions", "Values", "condition_of", "kept", "solutions_of", "values_of"]

@@ -20,7 +20,7 @@ import sympy as sp
 
 from closedform.check.clibrary import compiler
 from closedform.check.report import _page
-from closedform.emit.render import pages, shared_files
+from closedform.emit.pages import pages, shared_files
 from closedform.model.derivation import Derivation, Inverse, Paper, Table
 from closedform.model.functions import Branches, Program, branches, choose, real
 from closedform.model.names import check_symbol

@@ -10,7 +10,7 @@ import closedform.check.crosscheck
 from closedform.check.crosscheck import check_forward, check_inverse, module_backend
 from closedform.check.runners.python import module
 from closedform.check.samples import Sample
-from closedform.emit.render import pages, shared_files
+from closedform.emit.pages import pages, shared_files
 from closedform.model.derivation import Derivation
 from closedform.pipeline import run as pipeline
 from closedform.proof.prove import Proof, prove

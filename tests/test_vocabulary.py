@@ -15,7 +15,7 @@ from sympy import cos, sin, sqrt
 
 from closedform.check.clibrary import CLibrary
 from closedform.check.crosscheck import Backend, crosscheck, float_backend, module_backend
-from closedform.emit.render import pages, shared_files
+from closedform.emit.pages import pages, shared_files
 from closedform.lemmas.sine_cosine import linear_pair
 from closedform.lemmas.triangle import two_link_triangle
 from closedform.mechanics.frames import (

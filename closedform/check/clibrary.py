@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from closedform.check.runners import FailedError, UnavailableError
+from closedform.check.failures import FailedError, UnavailableError
 from closedform.lower import Lowered, lower
 from closedform.model.derivation import Derivation
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from closedform.check import runners
 from closedform.check.crosscheck import Finding, crosscheck
+from closedform.check.failures import UnavailableError
 from closedform.emit.backends import load
 from closedform.emit.escape import markdown_text
 from closedform.model.derivation import Derivation
@@ -28,7 +29,7 @@ def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> tuple
             with tempfile.TemporaryDirectory() as scratch:
                 for backend in runners.load(kind)(name, derivation, root / name, Path(scratch)):
                     findings += crosscheck(derivation, backend)
-        except runners.UnavailableError as error:
+        except UnavailableError as error:
             remarks.append(f"What is in {name}/ was not checked: {error}.")
     failures = [f"{f.function} ({f.backend}): {x}" for f in findings for x in f.failures]
     return _page(derivation, findings, failures, remarks), failures

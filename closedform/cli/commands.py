@@ -221,8 +221,8 @@ def _next(
 
 def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
     """Compare what was printed with the symbolic source, and write down what was found."""
+    from closedform.check.failures import FailedError
     from closedform.check.report import report
-    from closedform.check.runners import FailedError
 
     with Progress() as progress:
         for source in chosen:

@@ -1,23 +1,15 @@
-"""The one Jinja environment, and the files that the back ends print."""
+"""The one Jinja environment."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
 import jinja2
 
-from closedform.emit.backend import Files, Mechanism
-from closedform.emit.backends import load, names
 from closedform.emit.escape import FILTERS
-from closedform.model.derivation import Derivation
-from closedform.proof.prove import Proof
-
-Share = Mapping[str, Any]
-"""What one mechanism adds to the files that all share, by back end."""
 
 
 @cache
@@ -35,39 +27,3 @@ def environment() -> jinja2.Environment:
 
 def render(template: str, context: Mapping[str, Any]) -> str:
     return environment().get_template(template).render(context)
-
-
-@dataclass(frozen=True)
-class Printed:
-    """The files of one mechanism, and its share of others."""
-
-    files: Files
-    share: Share
-
-
-def pages(derivation: Derivation, proof: Proof, backends: Sequence[str] = names()) -> Printed:
-    """Print one mechanism."""
-    mechanism = Mechanism(derivation, proof)
-    printed = {name: load(name).pages(mechanism) for name in backends}
-    return Printed(
-        {path: text for own in printed.values() for path, text in own.files.items()},
-        {name: own.share for name, own in printed.items()},
-    )
-
-
-def shared_files(shares: Sequence[Share], backends: Sequence[str] = names()) -> Files:
-    """The files that all mechanisms share, from what each of them reported."""
-    printed: Files = {}
-    for name in backends:
-        printed |= load(name).shared([share[name] for share in shares])
-    return printed
-
-
-def standalone(printed: Files) -> Files:
-    """Without the files that only work inside the Python package."""
-    backends = names()
-    return {
-        path: text
-        for path, text in printed.items()
-        if path.parts[0] not in backends or load(path.parts[0]).works_alone(path)
-    }

@@ -33,7 +33,7 @@ from closedform.pipeline.disk import replace
 from closedform.pipeline.imports import package, sources_of
 
 if TYPE_CHECKING:
-    from closedform.emit.render import Share
+    from closedform.emit.pages import Share
     from closedform.model.derivation import Derivation
     from closedform.proof.prove import Proof
 
@@ -304,7 +304,7 @@ def print_robot(
     source: Source, backends: Sequence[str], store: Store, fresh: bool, report: Report
 ) -> Printed:
     """Prove one robot, unless a kept proof still holds, and print its files."""
-    from closedform.emit.render import pages
+    from closedform.emit.pages import pages
 
     report(source.name, "derivation")
     start = time.perf_counter()
@@ -336,7 +336,7 @@ def run(
     report: Report = lambda _name, _what: None,
 ) -> Result:
     """Print the chosen robots, and what all of ``together`` share (by default the chosen)."""
-    from closedform.emit.render import shared_files
+    from closedform.emit.pages import shared_files
 
     store = store or default_store()
     together = chosen if together is None else together
@@ -460,9 +460,9 @@ def default_jobs() -> int:
 
 def standalone(printed: Files) -> Files:
     """Without the files that only work inside the package, as the binding of the C to Python."""
-    from closedform.emit import render
+    from closedform.emit import pages
 
-    return render.standalone(printed)
+    return pages.standalone(printed)
 
 
 def write(root: Path, printed: Files) -> list[Path]:

@@ -19,14 +19,6 @@ if TYPE_CHECKING:
     Run = Callable[[str, Derivation, Path, Path], Iterator[Backend]]
 
 
-class UnavailableError(Exception):
-    """What is needed to run code of this kind is not installed."""
-
-
-class FailedError(Exception):
-    """Code cannot be run: the first thing that its compiler or its interpreter says about it."""
-
-
 def load(kind: str) -> Run:
     """The runner of this kind."""
     run: Run = import_module(f"{__name__}.{kind}").run

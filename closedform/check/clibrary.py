@@ -1,4 +1,4 @@
-"""Generated C, compiled on the spot and called through ctypes: how single precision is checked."""
+"""Generated C, compiled and called through ctypes, to check single precision."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ FLAGS = ("-std=c99", "-O3", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-
 
 
 def compiler() -> str:
-    """The C compiler: ``$CC``, or ``cc``, ``gcc``, ``clang``, whichever is found first."""
+    """The C compiler: ``$CC``, or the first of ``cc``, ``gcc`` and ``clang`` that is found."""
     for name in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
         if name and shutil.which(name):
             return name
-    raise FileNotFoundError("no C compiler found: install gcc or clang, or set CC")
+    raise FileNotFoundError("no C compiler was found; install gcc or clang, or set CC")
 
 
 class CompileError(Exception):
-    """The C compiler refuses a file, and the first thing it says about it."""
+    """The C compiler rejects a file; the message has its first complaint."""
 
 
 class CLibrary:

@@ -1,9 +1,9 @@
 """Compares generated code with the symbolic source, evaluated in Arb balls.
 
 A function of the joints is compared value by value; its error is counted in ulps of the natural
-scale (see :func:`closedform.check.samples.Magnitudes`).  An inverse is compared four ways: its
-answers are put into the exact equations, and those on and near the singular set into the exact
-forward map; its statuses are compared with the exact bounds, and every posture whose image is the
+scale (see :func:`closedform.check.samples.Magnitudes`).  An inverse is compared in four ways.  Its
+answers are put into the exact equations; those on and near the singular set also into the exact
+forward map.  Its statuses are compared with the exact bounds.  Every posture whose image is the
 target must be among the branches.
 """
 
@@ -31,14 +31,14 @@ from closedform.model.functions import Bound, Function, Let, Require, Vanishes, 
 from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
 
 WELL_CONDITIONED = 3.0
-"""An error of more ulps is set against how much the value moves when its inputs do."""
+"""A larger error, in ulps, is compared with how far the value moves if the inputs do."""
 
 SUSPECTS = 5
-"""So many of the worst answers on and near the singular set are evaluated in Arb."""
+"""The number of worst answers on and near the singular set that are evaluated in Arb."""
 
 NESTED = 64.0
-"""The natural scale counts for at most so many times the largest value or parameter, or length that
-is a number: that of a long chain of steps, each with the scale of the one before, says nothing."""
+"""The natural scale is at most this many times the largest value, parameter or numerical length.
+In a long chain of steps it grows with every step and says nothing any more."""
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 
@@ -69,7 +69,7 @@ def float_backend(call: Callable[[str], Callable[..., Any]]) -> Backend:
 
 @dataclass
 class Finding:
-    """The worst error of one function in one backend, and where; ``failures`` should be empty."""
+    """The worst error of one function in one backend, and its place; no ``failures`` if right."""
 
     robot: str
     function: str
@@ -91,7 +91,7 @@ class Finding:
 
 
 def crosscheck(derivation: Derivation, backend: Backend) -> list[Finding]:
-    """Every function of a derivation in one backend."""
+    """Check every function of a derivation in one backend."""
     inverses = {i.function: i for i in derivation.inverses}
     findings = []
     for function in derivation.functions:
@@ -120,7 +120,7 @@ def _round(sample: Sample, backend: Backend) -> Sample:
 
 
 def _thinned(sample: Sample, entries: int) -> Sample:
-    """Fewer rows of a function with many entries, which all are evaluated in Arb."""
+    """Fewer rows for a function with many entries, because each entry is evaluated in Arb."""
     return Sample(sample.name, sample.values[:: max(1, entries // 12)], sample.parameters)
 
 
@@ -158,7 +158,7 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
             values = [*map(float, sample.values[row]), *sample.parameters]
             raised = (to_float(size) for flag in flags for size in flag(values))
             if any(size < 2 * backend.tolerances.vanishing for size in raised):
-                continue  # where a flag is raised the value is a convention
+                continue  # if a flag holds, the value is a convention
             slack = 2 * backend.tolerances.feasibility
             exists = [_feasible(margin, values, slack) for margin in margins]
             scales = magnitudes(values, backend.dtype)
@@ -169,7 +169,7 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
             for k, exact in enumerate(exacts):
                 if not exists[k // entries]:
                     if exists[k // entries] is False and not np.isnan(computed[row, k]):
-                        finding.fail(f"a value out of bounds, entry {k} at {values}")
+                        finding.fail(f"a value beyond the bounds, entry {k} at {values}")
                     continue
                 scale = min(scales[k], most) if math.isfinite(scales[k]) else scales[k]
                 error = _ulps(float(computed[row, k]), exact, scale, backend)
@@ -185,7 +185,7 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
 
 
 def check_boolean(derivation: Derivation, function: Function, backend: Backend) -> Finding:
-    """Compare truth values with the exact bounds, where those are not within a tolerance of zero.
+    """Compare truth values with the exact bounds, except within a tolerance of zero.
 
     A condition in the output itself is compared in Arb as well.
     """
@@ -213,7 +213,7 @@ def check_boolean(derivation: Derivation, function: Function, backend: Backend) 
 def _variation(
     reference: Evaluator, k: int, values: Sequence[float], exact: arb, backend: Backend
 ) -> float:
-    """How far the exact value moves when every input moves by an ulp: near a singularity, far."""
+    """How far the exact value moves if every input moves by an ulp; far, near a singularity."""
     moved = []
     for i, value in enumerate(values):
         nearby = [*values[:i], value * (1 + backend.eps), *values[i + 1 :]]
@@ -237,8 +237,8 @@ def check_inverse(
 ) -> Finding:
     """Put the answers into the exact equations; compare statuses; look for known postures.
 
-    Where the inputs are the images of the unknowns, they are made from postures, which must come
-    back; else (the assembly modes of a loop) inputs are sampled as they are.
+    If the inputs are images of the unknowns, they are made from postures, which the inverse must
+    return.  Otherwise (the assembly modes of a loop) the inputs are sampled directly.
     """
     finding = Finding(derivation.name, function.name, backend.name, unit="residual / eps")
     if inverse.reduction:
@@ -308,7 +308,7 @@ class _Truth:
         self._factors = Evaluator((*inverse.unknowns, *parameters), entries)
 
     def images(self, sample: Sample) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """What the postures are taken to, in each assembly mode they have, and the postures."""
+        """The images of the postures in each assembly mode that they have, and the postures."""
         rows, postures = [], []
         for forward in self._maps:
             for row in sample.values:
@@ -320,7 +320,7 @@ class _Truth:
         return np.array(rows).reshape(shape), np.array(postures).reshape(-1, len(self.angular))
 
     def wide_images(self, postures: NDArray[Any], parameters: Sequence[float]) -> NDArray[Any]:
-        """What postures are taken to in each assembly mode, NaN where it does not exist."""
+        """The images of postures in each assembly mode; NaN if the mode does not exist."""
         sizes = np.broadcast_to(np.array(parameters), (len(postures), len(parameters)))
         rows = np.concatenate([postures, sizes], axis=1)
         return np.stack([columns(m, self._posture, rows) for m in self._map_exprs])
@@ -332,24 +332,24 @@ class _Truth:
         given: NDArray[Any],
         parameters: Sequence[float],
     ) -> NDArray[np.float64]:
-        """How far the image in the nearest assembly mode is from the target.
+        """The distance of the image in the nearest assembly mode from the target.
 
-        Lengths are counted in the sum of those of links and slides, angles as they are.
+        Lengths are divided by the sum of the lengths of links and slides; angles are in rad.
         """
         fixed = np.abs(parameters).sum() + self._in_numbers
         size = fixed + np.abs(solutions * self._sliding).sum(axis=-1)
-        apart = []
+        distances = []
         for image, sized in zip(images, self._sized, strict=True):
             difference = (image - given).astype(float)
             turned = np.abs(np.angle(np.exp(1j * difference)))
             by_size = np.abs(difference) / np.where(sized, size[:, None], 1.0)
-            apart.append(np.where(self._turns, turned, by_size).max(axis=-1))
-        return np.asarray(np.fmin.reduce([*apart, np.full(len(given), np.inf)]))
+            distances.append(np.where(self._turns, turned, by_size).max(axis=-1))
+        return np.asarray(np.fmin.reduce([*distances, np.full(len(given), np.inf)]))
 
     def exact_miss(
         self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]
     ) -> float:
-        """The same for one answer, in Arb."""
+        """The same distance for one answer, in Arb."""
         if not np.isfinite(solution.astype(float)).all():
             return math.inf
         point = [*map(float, solution), *map(float, parameters)]
@@ -363,9 +363,9 @@ class _Truth:
     def residual(
         self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]
     ) -> float:
-        """The largest violation of an equation, over the largest natural scale.
+        """The largest violation of an equation, divided by the largest natural scale.
 
-        The sine and the cosine of an angle have a scale of their own, which is 1.
+        For the sine and the cosine of an angle the scale is 1.
         """
         if not np.isfinite(solution).all():
             return math.inf
@@ -375,12 +375,12 @@ class _Truth:
         return max(e / (1.0 if t else scale) for e, t in zip(errors, self._is_turn, strict=True))
 
     def margin(self, given: NDArray[Any], parameters: Sequence[float], branch: int) -> float:
-        """The smallest bound of a branch over its scale, negative where the branch is none."""
+        """The smallest bound of a branch over its scale; negative if the branch does not exist."""
         margins = map(to_float, self._bounds[branch]([*map(float, given), *parameters]))
         return min(margins, default=1.0)
 
     def unfit(self, given: NDArray[Any], parameters: Sequence[float]) -> float:
-        """How far an input misses what is required of it, as that its matrix is a rotation."""
+        """How far an input violates a requirement, such as that its matrix is a rotation."""
         missed = self._required([*map(float, given), *parameters])
         return max((abs(to_float(m)) for m in missed), default=0.0)
 
@@ -397,7 +397,7 @@ class _Truth:
 
 
 def _feasible(margins: Evaluator, values: Sequence[float], slack: float) -> bool | None:
-    """Whether all margins are positive; ``None`` if that hangs on one within ``slack`` of zero."""
+    """Whether all margins are positive; ``None`` if one within ``slack`` of zero decides."""
     found = list(map(to_float, margins(values)))
     if min(found, default=1.0) > slack:
         return True
@@ -410,9 +410,9 @@ def _margins(
     signs: Mapping[sp.Symbol, int],
     kind: type = Bound,
 ) -> Evaluator:
-    """The bounds (or what the flags look at) of a branch, over their natural scales.
+    """The bounds of a branch (or the values that its flags test), over their natural scales.
 
-    No flag holds, and what is chosen only where one does is left out.
+    No flag holds, and what is used only if a flag holds is left out.
     """
     named: dict[sp.Symbol, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
     lowered: dict[sp.Basic, sp.Basic] = {}
@@ -450,7 +450,7 @@ def _check_batch(
             feasible = margin > 0 if abs(margin) > slack else None
             problem = _contradiction(truth, backend, solution, int(code), feasible, exact)
             if feasible is False and code in (OK, SINGULAR):
-                # where a joint is free, another turn of it may reach what the generic one does not
+                # if a joint is free, another angle of it may reach what the usual one does not
                 missed = truth.residual(solution, given, sample.parameters)
                 allowed = backend.tolerances.round_trip + truth.unfit(given, sample.parameters)
                 problem = "" if missed <= allowed else problem
@@ -458,7 +458,7 @@ def _check_batch(
                 finding.fail(f"branch {branch} {problem}; {where}")
             elif exact and code in (OK, SINGULAR):
                 residual = truth.residual(solution, given, sample.parameters)
-                if not margin < -16 * backend.eps:  # there it is out of reach, and missed by that
+                if not margin < -16 * backend.eps:  # beyond, the target is out of reach and missed
                     finding.see(residual / backend.eps, lambda: where)  # noqa: B023
                 if not residual <= backend.tolerances.round_trip:
                     finding.fail(f"branch {branch} misses by {residual:.3g}; {where}")
@@ -468,9 +468,9 @@ def _check_batch(
 
 
 def _check_round_trips(finding: Finding, truth: _Truth, backend: Backend, postures: Sample) -> None:
-    """The exact forward map takes every answer that is OK to the target.
+    """Check that the exact forward map takes every OK answer to the target.
 
-    What seems to be off by more than half of what is allowed is evaluated in Arb, the worst first.
+    Answers that seem to miss by more than half of the tolerance are evaluated in Arb, worst first.
     """
     allowed, parameters = backend.tolerances.forward, postures.parameters
     images = truth.wide_images(postures.values, parameters)
@@ -489,7 +489,7 @@ def _check_round_trips(finding: Finding, truth: _Truth, backend: Backend, postur
             exact = truth.exact_miss(answers[k], given[k], parameters)
             if not exact <= allowed:
                 finding.fail(
-                    f"branch {branch[k]} is OK, and fk misses by {exact:.3g}; "
+                    f"branch {branch[k]} is OK, but fk misses by {exact:.3g}; "
                     f"{posed.name}: {given[k].tolist()}, parameters {parameters}"
                 )
 
@@ -502,7 +502,7 @@ def _contradiction(
     feasible: bool | None,
     exact: bool,
 ) -> str:
-    """What is wrong with a status and the answer that goes with it."""
+    """What is wrong with a status and its answer; empty if nothing is."""
     if code in (UNREACHABLE, INVALID):
         if not np.isnan(solution).all():
             return f"has status {code} and an answer"
@@ -524,7 +524,7 @@ def _check_known(
     posture: NDArray[Any],
     where: str,
 ) -> None:
-    """The posture that made the input is among the branches, unless a joint is free."""
+    """Check that the posture behind the input is among the branches, unless a joint is free."""
     parameters = sample.parameters
     condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
     sizes = [abs(p) for p in parameters if p]
@@ -533,16 +533,16 @@ def _check_known(
     if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, sample):
         return
     allowed = backend.eps * spread / condition
-    if nearest > 1e3 * allowed:  # a joint that is nearly free turns far for an ulp of the target
+    if nearest > 1e3 * allowed:  # an ulp of the target turns a nearly free joint far
         allowed += _movement(truth, backend, sample, solutions)
     if not nearest <= 1e3 * allowed:
         finding.fail(f"{posture.tolist()} is not among {solutions.tolist()}; {where}")
 
 
 def _movement(truth: _Truth, backend: Backend, sample: Sample, solutions: NDArray[Any]) -> float:
-    """How far the answers move when every coordinate of the target moves by an ulp.
+    """How far the answers move if every coordinate of the target moves by an ulp.
 
-    An ulp may be lost in the rounding of what is computed first, so four count as well.
+    The first rounding may hide a single ulp, so four ulps are tried as well.
     """
     largest = 0.0
     for ulps in (1, 4):
@@ -555,7 +555,7 @@ def _movement(truth: _Truth, backend: Backend, sample: Sample, solutions: NDArra
 def _leaves_the_workspace(truth: _Truth, backend: Backend, sample: Sample) -> bool:
     """Whether a target an ulp away is out of reach by more than the tolerance in all branches.
 
-    Where a large offset is taken from a large distance, an ulp of the target is far inside.
+    If a large offset is subtracted from a large distance, an ulp of the target moves far inside.
     """
     slack = backend.tolerances.feasibility
     branches = range(len(list(truth.function.cases())))
@@ -566,7 +566,7 @@ def _leaves_the_workspace(truth: _Truth, backend: Backend, sample: Sample) -> bo
 
 
 def _nearby(backend: Backend, sample: Sample, ulps: int = 1) -> Sample:
-    """Targets that are off one target by some ulps of every coordinate."""
+    """Targets that differ from one target by some ulps in every coordinate."""
     columns = np.arange(sample.values.shape[1])
     signs = np.array([(-1) ** ((pattern >> (columns % 2)) & 1) for pattern in range(4)])
     moved = sample.values * (1 + ulps * signs * backend.eps)
@@ -574,7 +574,7 @@ def _nearby(backend: Backend, sample: Sample, ulps: int = 1) -> Sample:
 
 
 def table(findings: Sequence[Finding]) -> Iterator[str]:
-    """The worst errors as lines of text, a row a function and a column a backend."""
+    """The worst errors as lines of text: a row for each function, a column for each backend."""
     names = list(dict.fromkeys(f.backend for f in findings))
     rows: dict[tuple[str, str], dict[str, Finding]] = {}
     for f in findings:

@@ -1,4 +1,4 @@
-"""The cross-check of one robot's printed code, as a page to keep beside it."""
+"""The cross-check of one robot's printed code, as a page beside the code."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _PACKAGE = "_closedform_printed"
 
 
 def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> tuple[str, list[str]]:
-    """The page, and what should not be: errors above the tolerances.
+    """The page, and the errors above the tolerances.
 
-    ``root`` is the folder that the NumPy and the C were printed to.  C is compiled if there is a
-    compiler, in both float types.
+    ``root`` is the folder that holds the printed NumPy and C.  If there is a compiler, C is checked
+    in both float types.
     """
     findings: list[Finding] = []
     remarks: list[str] = []
@@ -55,7 +55,7 @@ def _backends(
 
 
 def _module(root: Path, name: str) -> ModuleType:
-    """The NumPy module that was just printed, whatever else is called so."""
+    """The NumPy module that was just printed, even if another module has its name."""
     for loaded in [m for m in sys.modules if m.partition(".")[0] == _PACKAGE]:
         del sys.modules[loaded]
     package = ModuleType(_PACKAGE)

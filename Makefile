@@ -1,4 +1,4 @@
-# make help lists the targets. With -j N, N robots are proved at a time.
+# make help lists the targets. make -j N proves N robots at a time.
 
 ifndef PYTHON
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -15,7 +15,7 @@ PDFS := $(patsubst generated/latex/%.tex,build/pdf/%.pdf,$(wildcard generated/la
 COMPILERS := $(foreach cc,gcc clang,$(foreach type,double float,warnings-$(cc)-$(type)))
 WARNINGS := -std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
 
-# Two makes at once take turns at what writes: the second finds everything done.
+# Two makes at once take turns wherever one writes: the second finds everything done.
 define LOCK
 import fcntl, os, sys
 lock = os.open(sys.argv[1], os.O_RDWR | os.O_CREAT)
@@ -27,7 +27,7 @@ except OSError:
 os.set_inheritable(lock, True)
 os.execvp(sys.argv[2], sys.argv[2:])
 endef
-# An environment in which venv or pip was killed is made anew; where pip fails it is kept.
+# If venv or pip was killed, the environment is made anew; if pip fails, it is kept.
 define INSTALL
 set -e
 for file in pyproject.toml setup.py; do
@@ -37,7 +37,7 @@ done
 [ ! -e .venv/unfinished ] || rm -rf .venv
 mkdir -p .venv
 touch .venv/unfinished
-echo "installing into .venv what is needed"
+echo "installing what is needed into .venv"
 [ -x $(BIN)/python ] || $(PYTHON) -m venv .venv
 status=0
 $(BIN)/python -m pip install --quiet --no-compile --editable '.[dev]' || status=$$?
@@ -52,26 +52,26 @@ LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
 	portability $(COMPILERS) format pdf bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
-all: native  ## derive, prove, generate and build; one line a robot (the default)
+all: native  ## derive, prove, generate and build; prints a line for each robot (the default)
 	@cat build/derived.txt
 
 .venv/installed.stamp: pyproject.toml setup.py
 	@test -n "$(PYTHON)" || { echo "closedform needs Python 3.11 or later: make PYTHON=..."; exit 1; }
 	@$(LOCKED) sh -c "$$INSTALL"
 
-# The list of what was proved. Files in generated/ are written only where they change.
+# The list of what was proved. Only files in generated/ that change are written.
 build/derived.txt: .venv/installed.stamp $(DERIVING) $(PRINTED)
 	@$(LOCKED) sh -c '$(BIN)/closedform derive > $@.new && mv $@.new $@'
 
-# What is there already is checked by content, which takes less than a second.
+# setup.py compares contents, so nothing is compiled twice; the check takes less than a second.
 native: build/derived.txt
 	@$(LOCKED) $(BIN)/python setup.py --quiet build_ext --inplace
 
-test: all  ## run the tests on all cores; ARGS="-k name" selects
+test: all  ## run the tests on all cores; ARGS="-k NAME" selects some
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
-# Nothing here may depend on all, which would first mend what is to be found.
-check: lint types regenerated warnings  ## lint, types, warnings of C; generated/ is what is printed
+# Nothing here may depend on all: it would overwrite the differences that check has to find.
+check: lint types regenerated warnings  ## lint, types, C warnings; whether generated/ is up to date
 
 lint: .venv/installed.stamp
 	$(BIN)/ruff check .
@@ -86,43 +86,42 @@ regenerated: .venv/installed.stamp
 
 warnings: $(COMPILERS)
 
-# Optimised, because without it a compiler does not see every use of an unset variable.
+# Optimised, because a compiler without optimisation misses some uses of unset variables.
 $(filter %-float,$(COMPILERS)): FLOAT := -DCLOSEDFORM_FLOAT
 $(COMPILERS): warnings-%:
 	@compiler=$(firstword $(subst -, ,$*)); \
-	command -v $$compiler >/dev/null || { echo "$@: there is no $$compiler, skipped"; exit 0; }; \
+	command -v $$compiler >/dev/null || { echo "$@: skipped, $$compiler is not installed"; exit 0; }; \
 	for source in $(PORTABLE); do \
 		$$compiler $(WARNINGS) $(FLOAT) -O1 -c -o /dev/null $$source || exit 1; done; \
 	echo "$@: clean"
 
-# Not checked: parameters of one type beside each other, which are what kernels take; products of
-# small constants as sizes; the underscore with which NumPy's macros begin; memcpy, for which C99
-# has no other name.
+# Not checked: neighbouring parameters of one type, because kernels take them; products of small
+# constants as sizes; the leading underscore of NumPy's macros; memcpy, because C99 has no substitute.
 TIDY := -*,bugprone-*,clang-analyzer-*,portability-*,-bugprone-easily-swappable-parameters,$\
 -bugprone-implicit-widening-of-multiplication-result,-bugprone-reserved-identifier,$\
 -clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling
 
-analysed:  ## cppcheck and clang-tidy on the C, where they are installed
+analysed:  ## run cppcheck and clang-tidy on the C, if they are installed
 	@if command -v cppcheck >/dev/null; then \
 		cppcheck --quiet --std=c99 --enable=warning,performance,portability --error-exitcode=1 \
 			--suppress=missingIncludeSystem --suppressions-list=tests/cppcheck-suppressions.txt \
 			-Igenerated/c -Iclosedform/runtime/extension $(PORTABLE) closedform/runtime/extension/closedform_rows.c \
 			closedform/runtime/extension/closedform_sweep.c && echo "$@: cppcheck clean"; \
-	else echo "$@: there is no cppcheck, skipped"; fi
+	else echo "$@: skipped, cppcheck is not installed"; fi
 	@if command -v clang-tidy >/dev/null; then \
 		clang-tidy --quiet --checks='$(TIDY)' --warnings-as-errors='*' $(PORTABLE) \
 			closedform/runtime/extension/closedform_rows.c closedform/runtime/extension/closedform_sweep.c \
 			-- -std=c99 -Igenerated/c -Iclosedform/runtime/extension && echo "$@: clang-tidy clean"; \
-	else echo "$@: there is no clang-tidy, skipped"; fi
+	else echo "$@: skipped, clang-tidy is not installed"; fi
 
-portability: all  ## try compilers, other processors and Pythons that are here; ARGS=--all
+portability: all  ## try installed compilers, processor emulators and Pythons; ARGS=--all
 	$(BIN)/python tests/portability/run.py $(ARGS)
 
-format: .venv/installed.stamp  ## lay out the Python that is written by hand
+format: .venv/installed.stamp  ## format the Python that is written by hand
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-pdf: $(PDFS)  ## the derivations as PDF, in build/pdf
+pdf: $(PDFS)  ## compile the derivations to PDF, in build/pdf
 
 build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
 	@command -v pdflatex >/dev/null || { \
@@ -134,23 +133,24 @@ build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
 	@mv $(@D)/unfinished/$*.pdf $@
 	@echo $@
 
-bench: all  ## time the generated code beside the peers installed; writes benchmarks/RESULTS.md
+bench: all  ## time the generated code and the installed peers; writes benchmarks/RESULTS.md
 	$(BIN)/python -m benchmarks $(ARGS)
 
-fuzz: all  ## attack with random input; ARGS="--seconds 600 --seed 2"; failures are saved and tested
+fuzz: all  ## attack with random input; make test repeats failures; ARGS="--seconds 600 --seed 2"
 	PYTHONPATH=tests $(BIN)/python -m fuzz $(ARGS)
 
 accuracy: all  ## compare a billion sines, cosines and arctangents with libm; ARGS="--samples N"
 	$(BIN)/python -m benchmarks.accuracy $(ARGS)
 
-clean:  ## remove what was built, but neither .venv nor generated sources
+clean:  ## remove what was built, except .venv and the generated sources
 	rm -rf build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	rm -f generated/c/_native*.so generated/.*.[0-9]* generated/*/.*.[0-9]*
 	find closedform derivations generated templates tests -name __pycache__ -exec rm -rf {} +
 
-distclean: clean  ## and .venv
+distclean: clean  ## clean, and remove .venv
 	rm -rf .venv
 
-help:  ## this list
+help:  ## show this list
+
 	@sed -n 's/^\([a-z]*\):.*  ## \(.*\)/\1|\2/p' Makefile | while IFS='|' read -r name what; do \
 		printf '%-10s %s\n' "$$name" "$$what"; done

@@ -1,8 +1,8 @@
-"""``python -m benchmarks``: the generated code beside its peers, on one core, interleaved.
+"""``python -m benchmarks`` times the generated code and its peers, in turns on one core.
 
-Every competitor's values are checked before it is timed; the times of one table are taken in turns
-and their medians printed, as nanoseconds a posture and as ratios. A competitor that fails is listed
-with its error. The result is also written to ``benchmarks/RESULTS.md``.
+The values of every competitor are checked before it is timed. The competitors of a table run in
+turns; their medians are printed, with the ratios to closedform. A competitor that fails is listed
+with its error. The result of a whole run is also written to ``benchmarks/RESULTS.md``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from .cases import CASES, Case, NotApplicableError, check
 
 MILLION = 1_000_000
 SETTLED = 0.1
-"""Seconds before a batch is timed: JAX frees its arrays in the background of what comes next."""
+"""Seconds to wait before timing a batch, because JAX frees its arrays in the background."""
 PACKAGES = {"sympy.cse": "sympy", "lambdify": "sympy"}
 Run = Callable[[], float]
 Maker = Callable[[], Run]
@@ -39,7 +39,7 @@ Competitors = dict[str, Run]
 
 
 class Report:
-    """Lines of Markdown, printed as they come."""
+    """Lines of Markdown, printed as they are added."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
@@ -49,7 +49,7 @@ class Report:
         print(line, flush=True)
 
     def table(self, title: str, unit: str, competitors: Competitors, rounds: int) -> None:
-        """Times all competitors in turns; ratios are to the first one."""
+        """Time all competitors in turns; the ratios are to the first one."""
         self.write(f"\n| {title} | median, {unit} | times closedform |\n|---|---:|---:|")
         times: dict[str, list[float]] = {name: [] for name in competitors}
         for _ in range(rounds):
@@ -78,7 +78,7 @@ def clock(call: timeit.Timer, postures: int, repeat: int) -> Run:
 def compared(
     report: Report, title: str, unit: str, makers: Mapping[str, Maker], rounds: int
 ) -> None:
-    """One table of the competitors that can be made, and the errors of those that cannot."""
+    """Write a table of the competitors that work, and the errors of those that fail."""
     competitors: Competitors = {}
     failures = []
     for name, make in makers.items():
@@ -105,7 +105,7 @@ def from_c(
 def calls_from_c(report: Report, cases: list[Case], rounds: int, folder: Path) -> None:
     report.write("\n## One call from C\n")
     flags = " ".join(native.FLAGS)
-    report.write(f"Every competitor compiled with `{flags}`, 512 postures in turn.")
+    report.write(f"Every competitor is compiled with `{flags}` and runs over 512 postures.")
     for case in cases:
         inputs = case.inputs(512)
         expected = case.values(inputs)
@@ -127,7 +127,7 @@ def from_python(
 
 
 def calls_from_python(report: Report, cases: list[Case], rounds: int, n: int) -> None:
-    """Batches of ``n`` in both layouts, or single postures."""
+    """Write the tables of batches of ``n`` postures in both layouts, or of single postures."""
     report.write(f"\n## {'One call' if n == 1 else f'Batch of {n:,}'} from Python")
     layouts = {"planes": ", structure of arrays, `out=`", "rows": ", `(N, n)` arrays"}
     for case in cases:
@@ -138,7 +138,7 @@ def calls_from_python(report: Report, cases: list[Case], rounds: int, n: int) ->
                 name: partial(from_python, peer, case, layout, inputs, expected)
                 for name, peer in batches.PEERS.items()
             }
-            compared(report, case.title + words, "ns a posture", makers, rounds)
+            compared(report, case.title + words, "ns per posture", makers, rounds)
 
 
 def versions() -> str:
@@ -168,14 +168,17 @@ def machine() -> str:
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("cases", nargs="*", help="part of a title, as in 'pose'; all without")
-    parser.add_argument("--rounds", type=int, default=9)
-    parser.add_argument("--batch", type=int, default=MILLION)
+    parser.add_argument("cases", nargs="*", help="part of a title, such as 'pose'; default all")
+    parser.add_argument("--rounds", type=int, default=9, help="times that each competitor runs")
+    parser.add_argument("--batch", type=int, default=MILLION, help="postures in a batch")
     parser.add_argument(
-        "--only", choices=("c", "batch", "single", "inverse"), action="append", help="these tables"
+        "--only",
+        choices=("c", "batch", "single", "inverse"),
+        action="append",
+        help="write only this table; can be repeated",
     )
     parser.add_argument(
-        "-o", "--output", type=Path, help="file to write, RESULTS.md of a whole run"
+        "-o", "--output", type=Path, help="file to write; RESULTS.md for a whole run"
     )
     arguments = parser.parse_args()
     if hasattr(os, "sched_setaffinity"):
@@ -183,7 +186,7 @@ def main() -> int:
     chosen = [c for c in CASES if not arguments.cases or any(w in c.title for w in arguments.cases)]
     tables = arguments.only or ["c", "batch", "single", "inverse"]
     report = Report()
-    report.write("# Benchmarks\n\nWritten by `make bench`, on one core, competitors in turns.\n")
+    report.write("# Benchmarks\n\nWritten by `make bench`; competitors run in turns on one core.\n")
     report.write(f"{machine()}; {versions()}.")
     with tempfile.TemporaryDirectory() as folder:
         if "c" in tables:

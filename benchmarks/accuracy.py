@@ -1,11 +1,11 @@
 """``python -m benchmarks.accuracy``: the worst error of sincos and atan2 of the shared C header.
 
-``accuracy.c`` draws bit patterns uniformly by exponent, half of them over all finite numbers and
-half over the exponents where the answer is neither the argument nor a constant, and compares both
-float types, with fused and with separate multiply-adds, with the libm of the next wider type. Sine
-and cosine of a float are compared for every finite bit pattern. The worst arguments of each are
-then evaluated again in Arb balls, so the figures that are printed are upper bounds of the errors
-there, in units in the last place (the spacing of the type in the binade of the exact value).
+``accuracy.c`` draws bit patterns with uniform exponents: half of them over all finite numbers, and
+half over the exponents for which the answer is neither the argument nor a constant. It compares
+both float types, with fused and with separate multiply-adds, with the libm of the next wider type.
+Sine and cosine of a float are compared for every finite bit pattern. The worst arguments are then
+evaluated again in Arb balls, so the printed figures are upper bounds of the errors there. They are
+in units in the last place (the spacing of the type in the binade of the exact value).
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ FMA = (
 BUILDS = {"fused": [*FMA, "-ffp-contract=fast"], "separate": ["-ffp-contract=off"]}
 TYPES = {"double": ("<Q", "<d", 52, -1022), "float": ("<I", "<f", 23, -126)}
 
-# From so many samples on, sine and cosine of every float take no longer than a draw.
+# With this many samples, trying every float takes no longer than drawing samples.
 EXHAUSTIVE = 10**9
 
-# The reduction of the largest double leaves 1,077 bits of pi/2 to cancel before any is left.
+# The reduction of the largest double cancels 1,077 bits of pi/2.
 ctx.prec = 1400
 
 
 def build(real: str, folder: Path) -> Path:
-    """The program for ``double`` or ``float``, with both builds of the header in it."""
+    """The program for ``double`` or ``float``, which contains both builds of the header."""
     program = folder / f"accuracy_{real}"
     flags = [*FLAGS, f"-I{HEADER}", *(["-DCLOSEDFORM_FLOAT"] if real == "float" else [])]
     parts = []
@@ -68,11 +68,11 @@ def exact(output: str, x: float, y: float) -> arb:
 
 
 def ulps(got: float, value: arb, real: str) -> float:
-    """An upper bound of the error, in the spacing of the type at the ball's end nearer to 0."""
+    """An upper bound of the error, in units of the spacing at the ball's end nearer to 0."""
     _, _, mantissa, lowest = TYPES[real]
     size = value.abs_lower()
     exponent = math.frexp(float(size))[1] - 1 if float(size) else lowest
-    if arb(2) ** exponent > size:  # the conversion rounded it up to a power of two
+    if arb(2) ** exponent > size:  # the conversion to float rounded up to a power of two
         exponent -= 1
     unit = arb(2) ** (max(exponent, lowest) - mantissa)
     error = abs(arb(got) - value) / unit
@@ -80,7 +80,7 @@ def ulps(got: float, value: arb, real: str) -> float:
 
 
 def recheck(lines: list[str], real: str) -> tuple[dict[tuple[str, str], tuple[float, str]], float]:
-    """The worst bound of each output and build with its argument, and how much libm's differs."""
+    """The worst bound of each output and build, its argument, and the gap to libm's estimate."""
     worst: dict[tuple[str, str], tuple[float, str]] = {}
     gap = 0.0
     for line in lines:
@@ -95,7 +95,7 @@ def recheck(lines: list[str], real: str) -> tuple[dict[tuple[str, str], tuple[fl
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.accuracy", description=__doc__)
-    parser.add_argument("--samples", type=int, default=10**9, help="of each function and type")
+    parser.add_argument("--samples", type=int, default=10**9, help="for each function and type")
     parser.add_argument("--keep", type=int, default=1000, help="worst arguments to evaluate in Arb")
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
@@ -122,8 +122,8 @@ def main() -> int:
                         flush=True,
                     )
     seconds = time.monotonic() - start
-    print(f"\nAt the worst {arguments.keep} of each, the estimate of libm is within")
-    print(f"{differences:.2g} ulp of the bound in ball arithmetic. {seconds:.0f} s.")
+    print(f"\nAt the worst {arguments.keep} arguments of each function, the estimate of libm is")
+    print(f"within {differences:.2g} ulp of the bound in ball arithmetic. {seconds:.0f} s.")
     return 0 if limit < 2 else 1
 
 

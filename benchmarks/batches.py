@@ -1,4 +1,4 @@
-"""Peers that are called from Python: on a million postures, and on one."""
+"""Peers that are called from Python, on a million postures and on one."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from .cases import Case, NotApplicableError
 
 Values = Callable[[], Any]
 Peer = Callable[[Case, str, np.ndarray], tuple[timeit.Timer, Values | None]]
-"""What is timed, and its values if it computes any."""
+"""The call to time, and a function that gives its values, if it computes any."""
 NAMES = ("sin", "cos", "arctan2", "sqrt", "abs")
 
 
 def statement(code: str, **names: Any) -> timeit.Timer:
-    """A call as a user writes it, to be timed without another around it."""
+    """A call as a user writes it, timed without a wrapper around it."""
     return timeit.Timer(code, globals=names)
 
 
 def numpy_like(module: Any) -> dict[str, Any]:
-    """The names that SymPy prints, as functions of a module that is laid out as NumPy."""
+    """The names that SymPy prints, as functions of a module with NumPy's names."""
     found = {name: getattr(module, name) for name in NAMES}
     found["nonnegative"] = lambda x: module.where(x >= 0, 1.0, 0.0)
     return {**found, "atan2": found["arctan2"]}
 
 
 def planes_of(rows: np.ndarray) -> np.ndarray:
-    """Coordinate by coordinate in memory, shape (coordinates, N); no stride is a power of two."""
+    """The rows as planes, shape (coordinates, N); the stride is not a power of two."""
     memory = np.empty((rows.shape[1], len(rows) + 24))[:, : len(rows)]
     memory[:] = rows.T
     return memory
@@ -204,7 +204,7 @@ def jax(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values
 def of_planes(
     printed: Callable[[Case], str], case: Case, layout: str, rows: np.ndarray
 ) -> tuple[timeit.Timer, Values]:
-    """C for a structure of arrays."""
+    """Time C code for a structure of arrays."""
     if layout != "planes" or len(rows) == 1:
         raise NotApplicableError("takes planes")
     pointer, size = ctypes.c_void_p, ctypes.c_size_t

@@ -1,4 +1,4 @@
-"""What is timed: functions of the shipped mechanisms, on random postures within reach."""
+"""The functions that are timed, on random postures within reach of the shipped mechanisms."""
 
 from __future__ import annotations
 
@@ -62,14 +62,15 @@ class Case:
 
     @cached_property
     def width(self) -> int:
-        """How many numbers the outputs of all branches are."""
+        """The number of values in the outputs of all branches."""
         return sum(a.size for a in self.source.outputs) * len(list(self.source.cases()))
 
     @cached_property
     def program(self) -> tuple[Assignments, list[sp.Expr]]:
-        """Temporaries and outputs of every branch in the generic case: no statuses, no tests.
+        """Temporaries and outputs of every branch in the generic case, without statuses and tests.
 
-        The temporaries are the steps of the derivation, and what ``sympy.cse`` finds in common.
+        The temporaries are the steps of the derivation and the common subexpressions that
+        ``sympy.cse`` finds.
         """
         steps: dict[sp.Expr, sp.Symbol] = {}
         outputs: list[sp.Expr] = []
@@ -91,7 +92,7 @@ class Case:
         return in_order(assigned, outputs), outputs
 
     def inputs(self, n: int) -> np.ndarray:
-        """``n`` inputs as rows; an inverse gets the images of random joints, if they have any."""
+        """``n`` inputs as rows; an inverse gets the images of random joints, if they exist."""
         random = np.random.default_rng(7)
         drawn = self._drawn(n, random)
         while len(drawn) < n:
@@ -103,7 +104,7 @@ class Case:
         q = random.uniform(-3, 3, (n, len(module.JOINTS)))
         joints = [j for j in self.derivation.joints if j.name in module.JOINTS]
         for k, joint in enumerate(joints):
-            if joint.beside is not None:  # of two arms that work together, close to the other's
+            if joint.beside is not None:  # close to the joint of the other arm
                 q[:, k] = q[:, module.JOINTS.index(joint.beside.name)] + q[:, k] / 32
         if not self.inverse:
             return q
@@ -112,16 +113,16 @@ class Case:
         return x[np.isfinite(x).all(axis=1)]
 
     def values(self, inputs: np.ndarray) -> np.ndarray:
-        """The reference: the generated NumPy, which the tests hold against ball arithmetic."""
+        """The reference: the generated NumPy, which the tests compare with ball arithmetic."""
         core = self.source.inputs[0].shape
         result = self.ours("numpy")(inputs.reshape(-1, *core))
         result = result[0] if isinstance(result, tuple) else result
         return np.asarray(result).reshape(len(inputs), -1)
 
     def translate(self, names: Mapping[str, Any]) -> Callable[..., Any]:
-        """The source as a Python function over another library's ``sin``, ``cos``, ...
+        """The source as a Python function that uses another library's ``sin``, ``cos``, ...
 
-        ``nonnegative(x)`` among them is 1 or 0.
+        The names include ``nonnegative(x)``, which is 1 or 0.
         """
         temporaries, outputs = self.program
         plain = [(s, without_cases(e)) for s, e in temporaries], [*map(without_cases, outputs)]
@@ -132,7 +133,7 @@ class Case:
 
 
 def in_order(assigned: Mapping[sp.Symbol, sp.Expr], outputs: Sequence[sp.Expr]) -> Assignments:
-    """What the outputs need of the assignments, each after those it needs itself."""
+    """The assignments that the outputs need, each after those that it needs itself."""
     ordered: dict[sp.Symbol, sp.Expr] = {}
 
     def visit(expr: sp.Expr) -> None:
@@ -147,7 +148,7 @@ def in_order(assigned: Mapping[sp.Symbol, sp.Expr], outputs: Sequence[sp.Expr]) 
 
 
 def without_cases(expr: sp.Expr) -> sp.Expr:
-    """A choice by a sign as an expression of ``nonnegative``, which all libraries have."""
+    """The expression with ``nonnegative`` in place of a choice by a sign."""
 
     def arithmetic(first: tuple[sp.Expr, sp.Ge], second: tuple[sp.Expr, Any]) -> sp.Expr:
         (a, condition), (b, _) = first, second
@@ -157,7 +158,7 @@ def without_cases(expr: sp.Expr) -> sp.Expr:
 
 
 def check(case: Case, got: np.ndarray, expected: np.ndarray) -> None:
-    """Values agree, angles of an inverse modulo a turn; a missing branch is NaN in both."""
+    """Check that values agree, angles of an inverse modulo a turn; both have NaN for no branch."""
     gap = np.asarray(got, float) - expected
     if case.inverse:
         gap = np.remainder(gap + np.pi, 2 * np.pi) - np.pi

@@ -1,9 +1,9 @@
-"""The inverse of the Puma 560 beside other analytic solvers, on the same poses of the same arm.
+"""Compares the inverse of the Puma 560 with other analytic solvers, on the same poses.
 
-Each solver is first examined in a process of its own, so that none can stop the others by failing,
-crashing or hanging: are all branches there, how exact are they, which poses are lost at the
-singularities, what becomes of a matrix that is no pose. Those that pass are timed in turns.
-``python -m benchmarks.inverses EAIK`` examines one.
+Each solver is first examined in its own process, so that none can stop the others by failing,
+crashing or hanging: does it find all branches, how exact are they, which poses does it lose at the
+singularities, and what does it do with a matrix that is not a pose. Those that pass are timed in
+turns. ``python -m benchmarks.inverses EAIK`` examines one solver.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ from .solvers import (
     toolbox_run,
 )
 
-TOLERANCE = 1e-6  # m and rad: further away, a solution is none; a branch is recognised by it too
-SECONDS = 300  # for the examination of one solver
+TOLERANCE = 1e-6  # m and rad: a solution or a branch further away does not count
+SECONDS = 300  # time limit for the examination of one solver
 SINGULAR_POSES = 200
 SINGULARITIES = ("elbow", "shoulder", "wrist")
 BATCH = 50_000
@@ -62,7 +62,7 @@ def random_poses(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def singular_poses(name: str, near: bool) -> np.ndarray:
-    """On a singularity to the last digit of the joints, or within 1e-6 of it, at all scales."""
+    """Poses on a singularity to the last digit of the joints, or within 1e-6 at all scales."""
     rng = np.random.default_rng(5)
     q = rng.uniform(-np.pi, np.pi, (SINGULAR_POSES, 6))
     other = np.pi * (np.arange(len(q)) % 2)  # stretched or folded, before or behind, 0 or pi
@@ -83,7 +83,7 @@ def same(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def all_branches(q: np.ndarray, T: np.ndarray) -> np.ndarray:
-    """Eight different solutions of each pose, the most there are, verified by the table."""
+    """Eight different solutions of each pose (the maximum), verified with the table."""
     branches, _ = compiled.ik(T)
     distance, turn = residuals(branches, T)
     twins = same(branches[:, :, None], branches[:, None]).sum(axis=(1, 2)) != 8
@@ -109,8 +109,10 @@ def on_random_poses(solver: Solver) -> dict[str, Any]:
 
 
 def on_singularities(solver: Solver) -> dict[str, Any]:
-    """Poses without any answer that is a solution, and without one that is said to be exact; the
-    largest residuals of the best answers to the others."""
+    """The number of lost poses, and the largest residuals of the best answers to the others.
+
+    A second number in parentheses counts poses without a solution that is said to be exact.
+    """
     figures: dict[str, Any] = {"m, singular": 0.0, "rad, singular": 0.0}
     for kind, near in itertools.product(SINGULARITIES, ("", " near")):
         T = singular_poses(kind, bool(near))
@@ -126,7 +128,7 @@ def on_singularities(solver: Solver) -> dict[str, Any]:
 
 
 def verdicts(solver: Solver, T: np.ndarray) -> str:
-    """What a matrix that is no pose gives, and how often."""
+    """The results for matrices that are not poses, and how often each occurs."""
     counts: Counter[str] = Counter()
     for matrix in T:
         try:
@@ -135,7 +137,7 @@ def verdicts(solver: Solver, T: np.ndarray) -> str:
             counts["INVALID"] += 1
         except (KeyboardInterrupt, SystemExit):
             raise
-        except BaseException as error:  # a panic of Rust is no Exception
+        except BaseException as error:  # a Rust panic is not an Exception
             counts[type(error).__name__] += 1
         else:
             finite = np.isfinite(q).all(axis=-1)
@@ -180,7 +182,7 @@ def rows(report: Any, found: dict[str, dict[str, Any]], columns: dict[str, str])
 
 def clock(run: Callable[[], object], poses: int) -> Callable[[], float]:
     def timed() -> float:
-        run()  # brings its code and memory back after the others' turns
+        run()  # brings its code and data back into the caches after the others' turns
         start = time.perf_counter_ns()
         run()
         return (time.perf_counter_ns() - start) / poses / 1000
@@ -200,7 +202,7 @@ def from_c(report: Any, rounds: int, peer: bool) -> None:
             competitors[TOOLBOX_C] = lambda run=run, out=out: (
                 run(inputs, out, 16, 0, 512, 20) / 1000
             )
-        report.table(f"one call from C, {label}", "us a pose", competitors, rounds)
+        report.table(f"one call from C, {label}", "us per pose", competitors, rounds)
 
 
 def compare(report: Any, rounds: int) -> None:
@@ -214,18 +216,19 @@ def compare(report: Any, rounds: int) -> None:
         except Exception as error:
             failures.append(f"- {name}: {str(error)[:150]}")
     report.write(
-        "Random poses. A branch is missing if no answer comes within 1e-6 rad of it; an answer is "
-        "wrong if said to be exact, but further than 1e-6 m or rad from the pose. At "
-        "singularities: the best answer to each pose."
+        "Random poses: a branch is missing if no answer is within 1e-6 rad of it. An answer is "
+        "wrong if the solver says that it is exact, but it is more than 1e-6 m or rad away from "
+        "the pose. Singularities: the best answer to each pose."
     )
     columns = {"poses": "poses", "missing branches": "missing", "wrong answers": "wrong"}
     columns |= {"largest residual, m": "m", "rad": "rad"}
     columns |= {"at singularities, m": "m, singular", " rad": "rad, singular"}
     rows(report, found, columns)
     report.write(
-        f"\nPoses lost, of {SINGULAR_POSES}: no answer within 1e-6 m and rad, exactly on the "
-        "singularity and within 1e-6 rad of it; in brackets those without one that is said to be "
-        "exact, and is no least-squares answer. Then what a mirrored rotation and a NaN give."
+        f"\nLost poses, of {SINGULAR_POSES}, exactly on the singularity and within 1e-6 rad of it: "
+        "no answer is within 1e-6 m and rad. The number in brackets also counts poses for which "
+        "only least-squares answers are that close. The last columns show the result for a "
+        "mirrored rotation and for NaN."
     )
     kinds = [kind + near for kind in SINGULARITIES for near in ("", " near")]
     rows(report, found, {kind: kind for kind in [*kinds, "mirrored", "NaN"]})
@@ -246,7 +249,7 @@ def compare(report: Any, rounds: int) -> None:
                     competitors[name] = clock(solver.timed(T), len(T))
             except Exception as error:
                 report.write(f"- {name}: {error}")
-        report.table(title, "us a pose", competitors, rounds)
+        report.table(title, "us per pose", competitors, rounds)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Peers that print C or C++: one shared library each, timed by one loop in C."""
+"""Peers that print C or C++; each is a shared library, timed by a common loop in C."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TARGETS = {"AVX-512": "x86-64-v4", "AVX2": "x86-64-v3"}
 
 
 def widest() -> str:
-    """The target with the widest vectors of this machine, of which gcc may spare half by itself."""
+    """The target with the widest vectors of this machine; gcc may use only half their width."""
     info = Path("/proc/cpuinfo")
     wide = info.exists() and " avx512vl " in info.read_text()
     return TARGETS["AVX-512" if wide else "AVX2"]
@@ -67,7 +67,7 @@ __attribute__((noinline)) void evaluate(const double *in, double *out)
 
 
 def by_hand(case: Case) -> str:
-    """The body of a kernel written by hand for this function, without its trigonometry."""
+    """The body of the hand-written kernel for this function, without its trigonometry."""
     source = HERE / "limits" / f"{case.full}.c"
     if not source.exists():
         raise NotApplicableError("no kernel written by hand")
@@ -75,7 +75,7 @@ def by_hand(case: Case) -> str:
 
 
 def limit(case: Case) -> str:
-    """A kernel written by hand for one posture, with one eight-lane sincos."""
+    """A hand-written kernel for one posture, with one eight-lane sincos."""
     return f"""
 #define ARCTANGENTS cf_atan2_lanes
 {by_hand(case)}
@@ -91,15 +91,15 @@ __attribute__((noinline)) void evaluate(const double *in, double *out)
 
 
 def limit_of_planes(case: Case) -> str:
-    """The same for planes: in blocks, the sines and cosines first."""
+    """The hand-written kernel for planes: works in blocks, with the sines and cosines first."""
     n, width = len(case.source.symbols), case.width
     coordinates = [f"x[{k} * xs + at + i]" for k in range(n)]
     inputs = ", ".join([*coordinates, *(f"p[{k}]" for k in range(len(case.parameters)))])
     sines, cosines = (", ".join(f"{f}[{k}][i]" for k in range(8)) for f in "sc")
     angles = " ".join(f"a[{k}][i] = t[{k}];" for k in range(8))
-    # many planes written at once miss the address cache, so that they are written one by one
-    apart = width > 16
-    place = "r[{k}][i]" if apart else "y[{k} * ys + at + i]"
+    # writing many planes at once misses the address cache, so they are written one by one
+    one_by_one = width > 16
+    place = "r[{k}][i]" if one_by_one else "y[{k} * ys + at + i]"
     stores = " ".join(f"{place.format(k=k)} = out[{k}];" for k in range(width))
     copies = (
         f"for (int k = 0; k < {width}; ++k) memcpy(y + k * ys + at, r[k], length * sizeof **r);"
@@ -110,9 +110,9 @@ def limit_of_planes(case: Case) -> str:
 {by_hand(case)}
 void evaluate(size_t n, const double *p, const double *x, size_t xs, double *y, size_t ys)
 {{
-    enum {{ BLOCK = {512 if apart else 256} }};
+    enum {{ BLOCK = {512 if one_by_one else 256} }};
     double a[8][BLOCK], s[8][BLOCK], c[8][BLOCK];
-    {f"double r[{width}][BLOCK + 8];" if apart else ""}
+    {f"double r[{width}][BLOCK + 8];" if one_by_one else ""}
     for (size_t at = 0; at < n; at += BLOCK) {{
         const size_t length = n - at < BLOCK ? n - at : BLOCK;
         #pragma GCC ivdep
@@ -131,14 +131,14 @@ void evaluate(size_t n, const double *p, const double *x, size_t xs, double *y, 
             body(in, si, ci, out);
             {stores}
         }}
-        {copies if apart else ""}
+        {copies if one_by_one else ""}
     }}
 }}
 """
 
 
 def writing_of_planes(case: Case) -> str:
-    """Planes of as many results, written with nothing to compute: what memory allows."""
+    """Writes as many planes without computing anything: the limit that memory sets."""
     n = len(case.source.symbols)
     return f"""
 #include <stddef.h>
@@ -291,7 +291,7 @@ def compiled(
 def timer(
     name: str, case: Case, target: str, folder: Path, inputs: np.ndarray
 ) -> tuple[Callable[[], float], np.ndarray]:
-    """A function that returns nanoseconds a call, and the values of one pass."""
+    """A function that returns nanoseconds per call, and the values of one pass."""
     library = build(name, case, target, folder)
     run = library.run
     run.restype = ctypes.c_double

@@ -1,8 +1,8 @@
-"""Analytic solvers of the Puma 560: ours and the peers, each in its authors' way.
+"""Analytic solvers of the Puma 560: ours and the peers, each used as its authors intend.
 
-Each is given the arm in its own description, which has to yield the forward kinematics of one
-Denavit-Hartenberg table, and poses in its own type, made beforehand. A library is imported only
-where its solver is made.
+Each solver gets its own description of the arm, checked against the forward kinematics of one
+Denavit-Hartenberg table, and poses in its own type, prepared in advance. A library is imported only
+when its solver is made.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ D = np.array([0, 0, 0.15005, 0.4318, 0, 0])
 ALPHA = np.array([1, 0, -1, 1, -1, 0]) * np.pi / 2
 CASE = Case("6R inverse", "puma560", "ik")
 
-Answers = tuple[np.ndarray, np.ndarray]  # joints (k, 6), and which are said to be exact (k,)
+Answers = tuple[np.ndarray, np.ndarray]  # joints (k, 6), and whether each is said to be exact (k,)
 
 
 class InvalidPoseError(Exception):
@@ -38,10 +38,10 @@ class InvalidPoseError(Exception):
 
 @dataclass(frozen=True)
 class Solver:
-    """What is examined and what is timed.
+    """A solver to examine and to time.
 
-    ``many`` takes poses (n, 4, 4) to joints (n, k, 6), padded with NaN, and which of them are said
-    to be exact (n, k); ``timed`` takes poses to a function that solves them all.
+    ``many`` maps poses (n, 4, 4) to joints (n, k, 6), padded with NaN, and to flags (n, k) for
+    those that it says are exact.  ``timed`` maps poses to a function that solves them all.
     """
 
     many: Callable[[np.ndarray], Answers]
@@ -51,7 +51,7 @@ class Solver:
 
 
 def pose(q: np.ndarray) -> np.ndarray:
-    """The product of the table, for joints (..., 6): a route of its own to the pose."""
+    """The product of the table for joints (..., 6): an independent route to the pose."""
     T = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))
     for i in range(6):
         c, s, u, v = np.cos(q[..., i]), np.sin(q[..., i]), np.cos(ALPHA[i]), np.sin(ALPHA[i])
@@ -70,7 +70,7 @@ def agrees(forward: Callable[[np.ndarray], Any]) -> None:
     q = np.random.default_rng(3).uniform(-3, 3, (10, 6))
     gap = max(float(abs(np.asarray(forward(x)) - pose(x)).max()) for x in q)
     if not gap < 1e-12:
-        raise ValueError(f"another arm: its forward kinematics differ by {gap:.1g}")
+        raise ValueError(f"not the same arm: its forward kinematics differ by {gap:.1g}")
 
 
 def looped(
@@ -79,7 +79,7 @@ def looped(
     prepare: Callable[[np.ndarray], Any] = np.ascontiguousarray,
     poses: int = 2000,
 ) -> Solver:
-    """A solver that takes one pose a call."""
+    """A solver that takes one pose per call."""
 
     def one(T: np.ndarray, alone: bool) -> Answers:
         try:
@@ -87,7 +87,7 @@ def looped(
         except Exception:
             if alone:
                 raise
-            q, exact = [], []  # an exception on the way gives no solution
+            q, exact = [], []  # among many poses, an exception counts as no solution
         return np.asarray(q, float).reshape(-1, 6), np.asarray(exact, bool)
 
     def many(T: np.ndarray) -> Answers:
@@ -112,7 +112,7 @@ def looped(
 
 
 def statuses(result: Any) -> Answers:
-    """Our solutions; those of a free joint, SINGULAR, are exact too."""
+    """Our solutions; SINGULAR ones, with a free joint, are exact too."""
     q, status = result
     if (status == compiled.Status.INVALID).all():
         raise InvalidPoseError
@@ -162,7 +162,7 @@ __attribute__((noinline)) void evaluate(const double *in, double *out)
 
 
 def toolbox_run(target: str) -> Callable[..., float]:
-    """The timing loop of ``native`` over the C that the toolbox writes, with its own tolerance."""
+    """The timing loop of ``native`` over the C that the toolbox writes, with its tolerance."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         sources = {"toolbox.c": toolbox().generate("c") + TOOLBOX_CALL, "loop.c": native.LOOP}
@@ -202,7 +202,7 @@ def toolbox_c() -> Solver:
 
 
 def prebuilt_ssik() -> Solver:
-    """The module that ssik ships for this very arm; its limits would drop angles of pi."""
+    """The module that ssik ships for this arm; its joint limits would drop angles of pi."""
     from ssik.prebuilt import puma560_ik
 
     agrees(puma560_ik.fk)
@@ -240,7 +240,8 @@ def eaik_batch() -> Solver:
 
 
 def ik_geo_single() -> Solver:
-    """Its rotations are column by column; consecutive axes of the wrist meet without an offset."""
+    """The solver of ik-geo: rotations by columns; the axes of the wrist meet without offsets."""
+
     import ik_geo
 
     axes = np.array([[0, 0, 1], [0, -1, 0], [0, -1, 0], [0, 0, 1], [0, -1, 0], [0, 0, 1.0]])

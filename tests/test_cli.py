@@ -188,7 +188,7 @@ def test_a_broken_neighbour_does_not_hold_up_a_robot(
     printed = capsys.readouterr()
     assert printed.out.startswith("planar_2r")
     assert "warning: slider: not proved: step 'Position'" in printed.err
-    assert "the files that all robots share were left as they are" in printed.err
+    assert "the files that all robots share were not changed" in printed.err
     assert target.read_text("utf-8") == whole
     assert shared.read_text("utf-8") == "as it was"
 

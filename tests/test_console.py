@@ -140,7 +140,7 @@ def test_the_current_folder_is_gone(
     monkeypatch.chdir(folder)
     folder.rmdir()
     assert main(["derive", "planar_2r", "-o", "out"]) == 1
-    assert capsys.readouterr().err == "closedform: the current folder does not exist any more\n"
+    assert capsys.readouterr().err == "closedform: the current folder no longer exists\n"
 
 
 def test_a_file_is_not_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -161,9 +161,12 @@ def test_characters_in_ascii() -> None:
     [
         ({"sympy": "1.14.0", "python-flint": "0.8.0"}, []),
         ({"sympy": "1.14.0", "python-flint": "0.10.1"}, []),
-        ({"sympy": "1.13.3", "python-flint": "0.8"}, ["sympy 1.13.3 is installed, not 1.14.0: "]),
+        ({"sympy": "1.13.3", "python-flint": "0.8"}, ["sympy 1.13.3 is installed, not 1.14.0; "]),
         ({"sympy": "1.15.0.dev0", "python-flint": "1.0"}, ["sympy 1.15.0.dev0 is installed, not"]),
-        ({"sympy": "1.14.0", "python-flint": "0.7.1"}, ["python-flint 0.7.1 is installed, 0.8 or"]),
+        (
+            {"sympy": "1.14.0", "python-flint": "0.7.1"},
+            ["python-flint 0.7.1 is installed, but 0.8 or"],
+        ),
     ],
 )
 def test_another_algebra_is_mentioned(

@@ -174,7 +174,7 @@ Raises
 TypeError
     If an argument does not hold real numbers.
 ValueError
-    If an argument has another shape, or leading axes do not broadcast.
+    If an argument has the wrong shape, or leading axes do not broadcast.
 
 Notes
 -----

@@ -134,7 +134,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
         lambda a, b, c, e, f, g, t1, t2, t3: [(0, 0, a, t1), (0, pi / 2, e, t2), (b, 0, 0, t3)],
         modified=True,
     )
-    with pytest.raises(NoChainError, match=r"because the link 2 of .* has no length"):
+    with pytest.raises(NoChainError, match=r"because link 2 of .* has no length"):
         propose(serial)  # the tool is on the last axis
     a, b, c, e, *_ = (p.symbol for p in d.parameters)
     q = d.actuated
@@ -203,7 +203,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
         (
             "t1 t2 t3 t4 t5",
             lambda a, b, c, e, f, g, *t: [(a, pi / 2, b, x) for x in t],
-            "its joints, 5 in number, fit no task",
+            "its 5 joints do not fit any task",
         ),
     ],
 )

@@ -28,25 +28,29 @@ def complaint(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[
     [
         ("a, alpha, d\n0, 0, 1\n", "table, line 1: the column theta is missing"),
         ("a, alpha, d, theta\n0, 0, q1\n", "table, line 2: 3 entries in 4 columns"),
-        ("a, alpha, d, theta\n0, 0, 0, 0\n", "line 2: no joint"),
+        ("a, alpha, d, theta\n0, 0, 0, 0\n", "line 2: there is no joint"),
         ("a, alpha, d, theta\n1, 10, 0, t\n", "write pi/18 instead of 10"),
         ("a, alpha, d, theta\n1, 0, 0, t + 22.5\n", "write t + pi/8 instead of t + 22.5"),
-        ("a, alpha, d, theta\n0, 0, 0, t1 + t2\n", "line 2: t1, t2 stand in theta"),
+        ("a, alpha, d, theta\n0, 0, 0, t1 + t2\n", "line 2: theta has the symbols t1, t2"),
         ("a, alpha, d, theta\n0, 0, 0, t\n0, 0, 0, t\n", "line 3: two joints have the name t"),
         ("a, alpha, d, theta\n(, 0, 0, t\n", "line 2, column a: cannot read '('"),
-        ("# L = 1 m: x\na, alpha, d, theta\n0, 0, 0, t\n", "the parameter L stands nowhere"),
+        ("# L = 1 m: x\na, alpha, d, theta\n0, 0, 0, t\n", "the parameter L is not used"),
         ("", "the table is empty"),
-        ("a, alpha, d, theta\n", "the table has no rows"),
-        ("a; alpha; d; theta\n", "with commas between them"),
+        ("a, alpha, d, theta\n", "the table has only column names"),
+        ("a; alpha; d; theta\n", "separated by commas"),
         ("a, alpha, d, theta, m\n0, 0, 0, t, 1\n", "line 1: the column m is unknown"),
-        ("a, alpha, d, theta\n1, 90, 0, t\n", "column alpha: angles are in radians and"),
+        ("a, alpha, d, theta\n1, 90, 0, t\n", "column alpha: angles must be in radians and"),
         ("a, alpha, d, theta\n1, 1.5708, 0, t\n", "write pi/2 instead of 1.5708"),
         ("a, alpha, d, theta\n1, 0, 0, t + 90\n", "write t + pi/2 instead of t + 90"),
         ("a, alpha, d, theta\n1, 0, 0, 2*t\n", "as it is or with a constant added"),
         ("a, alpha, d, theta\n1/0, 0, 0, t\n", "column a: cannot read '1/0'; it divides by zero"),
         ("a, alpha, d, theta\n1, 0, 0, foo(t)\n", "column theta: cannot read 'foo(t)'"),
-        ("a, alpha, d, theta\nlambda, 0, 0, t\n", "lambda is a word of Python;"),
-        ("a, alpha, d, theta\nx, 0, 0, t\n", "the name x has a meaning"),
+        ("a, alpha, d, theta
+lambda, 0, 0, t
+", "lambda is a word of Python;"),
+        ("a, alpha, d, theta
+x, 0, 0, t
+", "the written script uses the name x"),
         ("# L = 1/0 m: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is '1/0'"),
         ("a, alpha, d, theta, a\n0, 0, 0, t, 0\n", "line 1: there are two columns a"),
         ("a, alpha, d, theta\nnan, 0, 0, t\n", "line 2, column a: nan is not a finite number"),
@@ -81,21 +85,21 @@ def axis(**given: str) -> str:
     ("text", "message"),
     [
         ("", "there are no [[axes]]"),
-        ("axes = 3 4", "table is no TOML: "),
+        ("axes = 3 4", "table is not valid TOML: "),
         ("axes = [1, 2]\n", "axis 1 must be a table of keys and values"),
         ("[parameters]\n", "there are no [[axes]]"),
-        ("[[axis]]\n", "the key axis is unknown; there are parameters, axes, home"),
+        ("[[axis]]\n", "the key axis is unknown; the keys are parameters, axes, home"),
         ("parameters = [1]\n" + axis(), "[parameters] must be a table of keys and values"),
         ("[parameters]\nL = nan\n" + axis(), "the value of L is 'nan'; it must be a number"),
         ("[parameters]\nL = [1]\n" + axis(), "the value of L is a list; it must be a number"),
         ("[parameters]\nL = 1e-400\n" + axis(), "the value of L is '1e-400'"),
         ("[parameters]\nL = { units = 1 }\n" + axis(), "there are value, unit, meaning"),
-        ("[parameters]\nL = { unit = 1 }\n" + axis(), "the unit of L is a text, not 1"),
+        ("[parameters]\nL = { unit = 1 }\n" + axis(), "the unit of L must be a text, not 1"),
         (
             '[parameters]\nL = { meaning = "a\\nb" }\n' + axis(),
             "must be one line of printable text",
         ),
-        ("[parameters]\nL = 1\nK = 1\n" + axis(), "the parameter K stands nowhere"),
+        ("[parameters]\nL = 1\nK = 1\n" + axis(), "the parameter K is not used"),
         (axis(direction=""), "axis 1: direction is missing"),
         (axis(joint=""), "axis 1: joint is missing"),
         (axis(joint="3"), 'axis 1: a joint has a name, such as "theta1", not 3'),
@@ -103,7 +107,7 @@ def axis(**given: str) -> str:
         (axis(joint='"my joint"'), "'my joint' is not a name"),
         (axis(joint='"while"'), "while is a word of Python and C and JavaScript"),
         (AXIS + axis(), "axis 2: two joints have the name t1"),
-        (axis(kind='"helical"'), "the kind is revolute or prismatic, not helical"),
+        (axis(kind='"helical"'), "kind must be revolute or prismatic, not helical"),
         (axis(pitch="3"), "axis 1: the key pitch is unknown"),
         (axis(direction="[0, 1, 1]"), "the length 1.41421, not 1; write (0, sqrt(2)/2, sqrt(2)/2)"),
         (axis(direction="[0, 0.7, 0.7]"), "write sqrt(2)/2, not 0.7071"),
@@ -118,7 +122,7 @@ def axis(**given: str) -> str:
         (AXIS, "[home]: position is missing"),
         (AXIS + "[home]\nposition = [0, 0]\n", "[home], position needs 3 coordinates"),
         (AXIS + '[home]\nposition = ["t1", 0, 0]\n', "at home all joints are zero"),
-        (axis() + "rotation = 3\n", "rotation has 3 rows of 3 entries, not 3"),
+        (axis() + "rotation = 3\n", "rotation must have 3 rows of 3 entries, not 3"),
         (axis() + "rotation = [[1, 0], [0, 1, 0], [0, 0, 1]]\n", "rotation, row 1 needs 3"),
         (
             axis() + "rotation = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]\n",
@@ -139,7 +143,7 @@ def test_a_table_that_is_no_text(tmp_path: Path, capsys: pytest.CaptureFixture[s
     table = tmp_path / "table.csv"
     table.write_bytes(b"\xff\xfe\x00a")
     assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
-    assert "is no text in UTF-8" in capsys.readouterr().err
+    assert "is not a text in UTF-8" in capsys.readouterr().err
     table.write_bytes(b"\xef\xbb\xbf" + (HEADER + "L, 0, 0, t\n").encode())
     assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 0
 
@@ -153,9 +157,9 @@ def test_a_table_that_is_no_text(tmp_path: Path, capsys: pytest.CaptureFixture[s
         ("Ärm", "is not a name of a module"),
         ("class", "the name class is taken"),
         ("closedform", "the name closedform is taken"),
-        ("sympy", "sympy is a module of Python"),
+        ("sympy", "sympy is a Python module"),
         ("math", "math.h is a header of the system"),
-        ("json", "json is a module of Python"),
+        ("json", "json is a Python module"),
     ],
 )
 def test_names_of_robots(
@@ -173,9 +177,9 @@ def test_files_and_options(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     table.write_text(axis(), "utf-8")
     for arguments, message in (
         (["screws", "nowhere.toml"], "there is no file nowhere.toml"),
-        (["screws", str(tmp_path)], "is no file"),
+        (["screws", str(tmp_path)], "is not a file"),
         (["urdf", str(table)], "--from dh TABLE.csv or --from screws FILE.toml, not urdf"),
-        (["screws", str(table), "--modified"], "--modified goes with --from dh"),
+        (["screws", str(table), "--modified"], "--modified needs --from dh"),
     ):
         assert main(["new", "arm", "-o", str(tmp_path), "--from", *arguments]) == 2
         assert message in capsys.readouterr().err

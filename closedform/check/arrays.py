@@ -1,6 +1,6 @@
 """Expressions evaluated at many points at once, in the widest float type that NumPy has.
 
-Nothing here is rigorous: it finds the points that are worth an evaluation in Arb.
+The values are not rigorous; they show which points are worth an evaluation in Arb.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ WIDE = np.longdouble
 
 
 class ArrayEvaluator:
-    """Values of expressions over what is ``known``; each part is evaluated once, if it is needed.
+    """Values of expressions in ``known`` symbols; each part is evaluated at most once.
 
-    The names of a function's body may be used too: its flags are false, and a bound that is
-    negative by rounding is zero, by more NaN.
+    The names of a function's body may be used too.  Its flags are false.  A bound that is negative
+    because of rounding counts as zero; one that is more negative is NaN.
     """
 
     def __init__(self, known: Mapping[sp.Symbol, Any], function: Function | None = None):
@@ -75,7 +75,7 @@ class ArrayEvaluator:
 
 
 def _power(base: Any, exponent: sp.Rational) -> Any:
-    """By roots and products, which are much faster than a power."""
+    """The power, from roots and products, which are much faster."""
     root = np.sqrt(base) if exponent.q == 2 else base
     if exponent.q > 2:
         return base ** (WIDE(int(exponent.p)) / int(exponent.q))
@@ -115,7 +115,7 @@ def columns(
     rows: Array,
     function: Function | None = None,
 ) -> Array:
-    """The expressions at each of ``rows``, a value for each of the symbols; NaN where undefined."""
+    """The expressions at each of ``rows``, which hold values of the symbols; NaN if undefined."""
     evaluate = ArrayEvaluator(dict(zip(symbols, rows.T, strict=True)), function)
     with np.errstate(all="ignore"):
         found = [np.broadcast_to(evaluate(e), len(rows)) for e in exprs]

@@ -1,4 +1,4 @@
-"""Generated C, compiled on the spot and called through ctypes: how single precision is checked."""
+"""Generated C, compiled and called through ctypes, to check single precision."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FLAGS = ("-std=c99", "-O3", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-
 
 
 def compiler() -> str:
-    """The C compiler: ``$CC``, or ``cc``, ``gcc``, ``clang``, whichever is found first."""
+    """The C compiler: ``$CC``, or the first of ``cc``, ``gcc`` and ``clang`` that is found."""
     for name in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
         if name and shutil.which(name):
             return name

@@ -1,9 +1,9 @@
 """Compares generated code with the symbolic source, evaluated in Arb balls.
 
 A function of the joints is compared value by value; its error is counted in ulps of the natural
-scale (see :func:`closedform.check.samples.Magnitudes`).  An inverse is compared four ways: its
-answers are put into the exact equations, and those on and near the singular set into the exact
-forward map; its statuses are compared with the exact bounds, and every posture whose image is the
+scale (see :func:`closedform.check.samples.Magnitudes`).  An inverse is compared in four ways.  Its
+answers are put into the exact equations; those on and near the singular set also into the exact
+forward map.  Its statuses are compared with the exact bounds.  Every posture whose image is the
 target must be among the branches.
 """
 
@@ -28,14 +28,14 @@ from closedform.model.functions import Function
 from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
 
 WELL_CONDITIONED = 3.0
-"""An error of more ulps is set against how much the value moves when its inputs do."""
+"""A larger error, in ulps, is compared with how far the value moves if the inputs do."""
 
 SUSPECTS = 5
-"""So many of the worst answers on and near the singular set are evaluated in Arb."""
+"""The number of worst answers on and near the singular set that are evaluated in Arb."""
 
 NESTED = 64.0
-"""The natural scale counts for at most so many times the largest value or parameter, or length that
-is a number: that of a long chain of steps, each with the scale of the one before, says nothing."""
+"""The natural scale is at most this many times the largest value, parameter or numerical length.
+In a long chain of steps it grows with every step and says nothing any more."""
 
 MENTIONED = 5
 """So many failures of a function are written down; then there is nothing left to find out."""
@@ -69,7 +69,7 @@ def float_backend(call: Callable[[str], Callable[..., Any]]) -> Backend:
 
 @dataclass
 class Finding:
-    """The worst error of one function in one backend, and where; ``failures`` should be empty."""
+    """The worst error of one function in one backend, and its place; no ``failures`` if right."""
 
     robot: str
     function: str
@@ -98,7 +98,7 @@ _singular_samples = kept(singular_samples)
 
 
 def crosscheck(derivation: Derivation, backend: Backend) -> list[Finding]:
-    """Every function of a derivation in one backend."""
+    """Check every function of a derivation in one backend."""
     inverses = {i.function: i for i in derivation.inverses}
     findings = []
     for function in derivation.functions:
@@ -123,7 +123,7 @@ def _round(sample: Sample, backend: Backend) -> Sample:
 
 
 def _thinned(sample: Sample, entries: int) -> Sample:
-    """Fewer rows of a function with many entries, which all are evaluated in Arb."""
+    """Fewer rows for a function with many entries, because each entry is evaluated in Arb."""
     return Sample(sample.name, sample.values[:: max(1, entries // 12)], sample.parameters)
 
 
@@ -210,7 +210,7 @@ def _ulp_bounds(
 
 
 def check_boolean(derivation: Derivation, function: Function, backend: Backend) -> Finding:
-    """Compare truth values with the exact bounds, where those are not within a tolerance of zero.
+    """Compare truth values with the exact bounds, except within a tolerance of zero.
 
     A condition in the output itself is compared in Arb as well.
     """
@@ -251,8 +251,8 @@ def check_inverse(
 ) -> Finding:
     """Put the answers into the exact equations; compare statuses; look for known postures.
 
-    Where the inputs are the images of the unknowns, they are made from postures, which must come
-    back; else (the assembly modes of a loop) inputs are sampled as they are.
+    If the inputs are images of the unknowns, they are made from postures, which the inverse must
+    return.  Otherwise (the assembly modes of a loop) the inputs are sampled directly.
     """
     finding = Finding(derivation.name, function.name, backend.name, unit="residual / eps")
     truth = solutions_of(derivation, function, inverse)
@@ -373,7 +373,7 @@ def _check_round_trips(
 ) -> None:
     """The exact forward map takes every answer that is OK to the target.
 
-    What seems to be off by more than half of what is allowed is evaluated in Arb, the worst first.
+    Answers that seem to miss by more than half of the tolerance are evaluated in Arb, worst first.
     """
     allowed, parameters = backend.tolerances.forward, postures.parameters
     images = truth.wide_images(postures.values, parameters)
@@ -392,7 +392,7 @@ def _check_round_trips(
             exact = truth.exact_miss(answers[k], given[k], parameters)
             if not exact <= allowed:
                 finding.fail(
-                    f"branch {branch[k]} is OK, and fk misses by {exact:.3g}; "
+                    f"branch {branch[k]} is OK, but fk misses by {exact:.3g}; "
                     f"{posed.name}: {given[k].tolist()}, parameters {parameters}"
                 )
 
@@ -405,7 +405,7 @@ def _contradiction(
     feasible: float,
     exact: bool,
 ) -> str:
-    """What is wrong with a status and the answer that goes with it."""
+    """What is wrong with a status and its answer; empty if nothing is."""
     if code in (UNREACHABLE, INVALID):
         if not np.isnan(solution).all():
             return f"has status {code} and an answer"
@@ -427,7 +427,7 @@ def _check_known(
     posture: NDArray[Any],
     where: str,
 ) -> None:
-    """The posture that made the input is among the branches, unless a joint is free."""
+    """Check that the posture behind the input is among the branches, unless a joint is free."""
     parameters = sample.parameters
     condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
     spread = _spread(parameters)
@@ -435,7 +435,7 @@ def _check_known(
     if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, sample):
         return
     allowed = backend.eps * spread / condition
-    if nearest > 1e3 * allowed:  # a joint that is nearly free turns far for an ulp of the target
+    if nearest > 1e3 * allowed:  # an ulp of the target turns a nearly free joint far
         allowed += _movement(truth, backend, sample, solutions)
     if not nearest <= 1e3 * allowed:
         finding.fail(f"{posture.tolist()} is not among {solutions.tolist()}; {where}")
@@ -450,7 +450,7 @@ def _spread(parameters: Sequence[float]) -> float:
 def _movement(truth: Solutions, backend: Backend, sample: Sample, solutions: NDArray[Any]) -> float:
     """How far the answers move when every coordinate of the target moves by an ulp.
 
-    An ulp may be lost in the rounding of what is computed first, so four count as well.
+    The first rounding may hide a single ulp, so four ulps are tried as well.
     """
     largest = 0.0
     for ulps in (1, 4):
@@ -463,7 +463,7 @@ def _movement(truth: Solutions, backend: Backend, sample: Sample, solutions: NDA
 def _leaves_the_workspace(truth: Solutions, backend: Backend, sample: Sample) -> bool:
     """Whether a target an ulp away is out of reach by more than the tolerance in all branches.
 
-    Where a large offset is taken from a large distance, an ulp of the target is far inside.
+    If a large offset is subtracted from a large distance, an ulp of the target moves far inside.
     """
     slack = backend.tolerances.feasibility
     margins = truth.margins(_nearby(backend, sample).values, sample.parameters, -slack)
@@ -471,7 +471,7 @@ def _leaves_the_workspace(truth: Solutions, backend: Backend, sample: Sample) ->
 
 
 def _nearby(backend: Backend, sample: Sample, ulps: int = 1) -> Sample:
-    """Targets that are off one target by some ulps of every coordinate."""
+    """Targets that differ from one target by some ulps in every coordinate."""
     columns = np.arange(sample.values.shape[1])
     signs = np.array([(-1) ** ((pattern >> (columns % 2)) & 1) for pattern in range(4)])
     moved = sample.values * (1 + ulps * signs * backend.eps)
@@ -479,7 +479,7 @@ def _nearby(backend: Backend, sample: Sample, ulps: int = 1) -> Sample:
 
 
 def table(findings: Sequence[Finding]) -> Iterator[str]:
-    """The worst errors as lines of text, a row a function and a column a backend."""
+    """The worst errors as lines of text: a row for each function, a column for each backend."""
     names = list(dict.fromkeys(f.backend for f in findings))
     rows: dict[tuple[str, str], dict[str, Finding]] = {}
     for f in findings:

@@ -1,4 +1,4 @@
-"""The cross-check of one robot's printed code, as a page to keep beside it."""
+"""The cross-check of one robot's printed code, as a page beside the code."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from closedform.model.derivation import Derivation
 
 
 def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> tuple[str, list[str]]:
-    """The page, and what should not be: errors above the tolerances.
+    """The page, and the errors above the tolerances.
 
     ``root`` is the folder that everything was printed to, each back end below its own name.  What
     cannot be run here is left out, and the page says so.

@@ -1,8 +1,8 @@
-"""Where generated code breaks: the postures and dimensions at which it is compared.
+"""The postures and dimensions at which generated code is compared: those at which it may break.
 
-Home, multiples of a right angle approached to 1e-15, huge angles, denormals, merging branches and
-the boundary of the workspace; then random ones.  All are ordinary arrays of doubles, the same on
-every run.
+They are home, multiples of a right angle approached to 1e-15, huge angles, denormals, merging
+branches, the boundary of the workspace, and random ones.  All are ordinary arrays of doubles, the
+same on every run.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ TINY = (5e-324, 2.2250738585072014e-308, 1e-160, 1e-20)
 
 @dataclass(frozen=True)
 class Sample:
-    """A named batch: one row of joint values (or other inputs) a posture, one set of parameters."""
+    """A named batch: a row of joint values (or inputs) for each posture, one set of parameters."""
 
     name: str
     values: Array
@@ -48,7 +48,7 @@ def with_parameters(values: Array, parameters: Sequence[float]) -> Array:
 
 
 def parameter_sets(derivation: Derivation, rng: np.random.Generator) -> Iterator[tuple[float, ...]]:
-    """The example dimensions, all equal, all random, very unequal."""
+    """The example dimensions, then equal, random and very unequal ones."""
     n = len(derivation.parameters)
     if not n:
         yield ()
@@ -87,7 +87,7 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
 def inverse_postures(
     derivation: Derivation, unknowns: Sequence[sp.Symbol], seed: int = 2
 ) -> list[Sample]:
-    """Joint values whose images are the targets of an inverse, singular ones among them."""
+    """Joint values, including singular ones, whose images are the targets of an inverse."""
     rng = np.random.default_rng(seed)
     n = len(unknowns)
     rows = {
@@ -103,7 +103,7 @@ def inverse_postures(
 
 
 def drawn_beside(derivation: Derivation, symbols: Sequence[sp.Symbol], values: Array) -> Array:
-    """A joint that stays beside another is drawn close to it."""
+    """Move each joint that stays beside another close to it."""
     values = values.copy()
     for joint in derivation.joints:
         if joint.beside is not None and joint.symbol in symbols:
@@ -115,20 +115,20 @@ def drawn_beside(derivation: Derivation, symbols: Sequence[sp.Symbol], values: A
 
 
 def perturbed(targets: Array, seed: int = 3) -> Array:
-    """Targets moved off by relative amounts down to an ulp: in and out across the boundary."""
+    """Targets moved by relative amounts down to an ulp, inwards and outwards over the boundary."""
     rng = np.random.default_rng(seed)
     steps = rng.choice((1e-16, 1e-14, 1e-9, 1e-3, 0.3), (len(targets), 1))
     return np.asarray(targets * (1 + steps * rng.choice((-1, 1), (len(targets), 1))))
 
 
 def _approaches(rng: np.random.Generator, n: int, rows: int) -> Array:
-    """Every joint a multiple of a right angle, up to a small or vanishing deviation."""
+    """Every joint at a multiple of a right angle, with a small or no deviation."""
     corners = rng.choice((-np.pi, -np.pi / 2, 0.0, np.pi / 2, np.pi), (rows, n))
     return np.asarray(corners + rng.choice(APPROACHES, (rows, n)) * rng.choice((-1, 1), (rows, n)))
 
 
 def _one_singular(rng: np.random.Generator, n: int) -> Array:
-    """All joints random but one, which approaches 0 or pi."""
+    """All joints random except one, which approaches 0 or pi."""
     rows = []
     for joint in range(n):
         for corner in (0.0, np.pi, -np.pi):
@@ -142,8 +142,8 @@ def _one_singular(rng: np.random.Generator, n: int) -> Array:
 class Magnitudes:
     """The natural scales of values: all signs positive, sines and cosines at their largest.
 
-    What is divided by keeps its value.  Nested expressions are gone through once for each of their
-    parts: as a tree they are far too large.
+    Divisors keep their value.  Each part of a nested expression is visited once, because as a tree
+    it would be far too large.
     """
 
     def __init__(self, symbols: Sequence[sp.Symbol], exprs: Sequence[sp.Expr]):

@@ -22,9 +22,9 @@ DISTANCES = (0.0, *10.0 ** np.arange(-15.0, 0.5))
 """How far the joints are moved off the singular set."""
 STEPS = 40
 SHARES = (1.0, 0.5, 0.25)
-"""Of a step of Newton's method: half of it where a factor is a root, as at the end of a reach."""
+"""Shares of a Newton step: half a step is right if a factor is a root, as at the end of a reach."""
 CLOSE = 1e-7
-"""What is left of a factor on the singular set: the root of a rounding, where it is a root."""
+"""How small a factor gets on the singular set: if it is a root, the root of a rounding."""
 STARTS, RANDOM = 8, 600
 
 
@@ -53,7 +53,7 @@ def _drawn(
     parameters: Sequence[float],
     rows: int,
 ) -> Array:
-    """Random postures; a slide reaches about as far as the links together."""
+    """Random postures; a slide reaches about as far as all links together."""
     slides = [j.symbol for j in derivation.joints if j.kind == "prismatic"]
     ends = [sum(map(abs, parameters)) if u in slides else np.pi for u in unknowns]
     values = rng.uniform(-1, 1, (rows, len(unknowns))) * ends
@@ -63,9 +63,9 @@ def _drawn(
 def _values(
     derivation: Derivation, factors: Function, unknowns: Sequence[sp.Symbol]
 ) -> list[Callable[[Array], Array]]:
-    """Each factor in each assembly mode, of rows of joint values and parameters.
+    """Each factor in each assembly mode, as a function of rows of joint values and parameters.
 
-    It is NaN where the mode does not exist.
+    Its value is NaN if the mode does not exist.
     """
     bounds = [s.symbol for s in factors.body if isinstance(s, Bound)]
     entries = [e for a in factors.outputs for e in a.entries]
@@ -86,7 +86,7 @@ def _on_and_near(
     sets: Sequence[Sequence[float]],
     rng: np.random.Generator,
 ) -> list[Array]:
-    """For each set of parameters the postures where a factor vanishes, and others beside them."""
+    """For each set of parameters, postures at which a factor vanishes, and others near them."""
     dimensions = np.array(sets, WIDE).reshape(len(sets), 1, -1)
     exist = [
         rows[np.isfinite(_at(value, rows, np.broadcast_to(size, (len(rows), size.shape[1]))))]
@@ -115,10 +115,11 @@ def _at(value: Callable[[Array], Array], q: Array, parameters: Array) -> Array:
 
 
 def _descended(value: Callable[[Array], Array], q: Array, parameters: Array) -> Array:
-    """Newton's method along the gradient, with the share of each step that leads farthest down.
+    """Newton's method along the gradient, with the share of each step that descends the most.
 
-    It ends at the lowest value found, a zero or not.
+    It ends at the lowest value that it finds, whether zero or not.
     """
+
     axes = np.eye(q.shape[1])[:, None, :]
     size = np.abs(_at(value, q, parameters)) + np.finfo(float).tiny
     q, moving = q.copy(), np.arange(len(q))

@@ -1,7 +1,7 @@
 """The command line: list, show, derive, check, new, errata.
 
-Results go to stdout, progress and errors to stderr.  The exit code is 0 on success, 1 where a proof
-or a comparison failed, 2 where the command was called wrongly.
+Results go to stdout, progress and errors to stderr.  The exit code is 0 on success, 1 if a proof or
+a comparison failed, and 2 if the command was called wrongly.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from closedform.pipeline.disk import locked
 
 DIFF_LINES = 20
 NAMED = 4
-"""Files that are named where many have changed."""
+"""At most this many changed files are named."""
 PRETTY = "─│⎡⎣√θ₁"
-"""What a formula in two dimensions is drawn with; a terminal without it gets ASCII."""
+"""Characters that draw a formula in two dimensions; a terminal without them gets ASCII."""
 
 
 class CommandError(Exception):
-    """The command did not succeed; the exit code and what to tell the user."""
+    """A command that failed: what to tell the user, and the exit code."""
 
     def __init__(self, message: str, code: int = 1):
         super().__init__(message)
@@ -61,7 +61,7 @@ def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
         return parser().parse_args(arguments)
     except SystemExit as stop:
         if not stop.code:
-            console.write("")  # argparse does not mind a help that could not be written
+            console.write("")  # argparse ignores a help text that could not be written
         raise
 
 
@@ -71,11 +71,11 @@ def _complain(message: str, code: int = 1) -> int:
 
 
 def _reason(error: OSError) -> str:
-    """What failed, and with which file."""
+    """What failed, and on which file."""
     try:
         os.getcwd()
     except OSError:
-        return "the current folder does not exist any more"
+        return "the current folder no longer exists"
     reason = error.strerror or str(error)
     return f"{error.filename}: {reason}" if error.filename else reason
 
@@ -105,7 +105,7 @@ def parser() -> argparse.ArgumentParser:
     derive.add_argument("names", metavar="NAME", nargs="*", help="all if none is given")
     derive.add_argument("-o", "--output", metavar="DIR", type=Path)
     derive.add_argument(
-        "--backend", action="append", choices=pipeline.BACKENDS, help="repeatable; all by default"
+        "--backend", action="append", choices=pipeline.BACKENDS, help="can be repeated; default all"
     )
     derive.add_argument(
         "--no-crosscheck",
@@ -128,7 +128,7 @@ def parser() -> argparse.ArgumentParser:
     )
     new.add_argument("--modified", action="store_true", help="the dh table is Craig's (proximal)")
     new.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, default=Path(), help="by default the current"
+        "-o", "--output", metavar="DIR", type=Path, default=Path(), help="default: current folder"
     )
     errata = command("errata", errata_command)
     errata.add_argument("paper", metavar="PAPER", nargs="?", help="the key of one paper")
@@ -150,7 +150,7 @@ def list_command(options: argparse.Namespace) -> None:
 
 
 def show_command(options: argparse.Namespace) -> None:
-    """Show one derivation, with what was proved if it has been."""
+    """Show one derivation, with its verdicts if it has been proved."""
     (source,) = _find([options.name])
     _require_extra()
     from closedform.emit.show import show
@@ -183,7 +183,7 @@ def derive_command(options: argparse.Namespace) -> None:
     for failure in result.neighbours:
         console.say(f"closedform: warning: {failure}")
     if result.neighbours:
-        console.say("closedform: warning: the files that all robots share were left as they are")
+        console.say("closedform: warning: the files that all robots share were not changed")
     if not own and not options.no_crosscheck:
         _crosscheck(root, chosen, backends)
     width = max(len(robot.name) for robot in result.robots)
@@ -195,7 +195,7 @@ def derive_command(options: argparse.Namespace) -> None:
 
 
 def _update(root: Path, printed: pipeline.Files, whole: Sequence[str]) -> None:
-    """Bring the generated package up to date; of the ``whole`` back ends, remove what is stale."""
+    """Bring the generated package up to date; remove stale files of the ``whole`` back ends."""
     with _alone():
         changed = _write(root, printed)
         for path in pipeline.extra_files(root, printed, whole):
@@ -210,7 +210,7 @@ def _update(root: Path, printed: pipeline.Files, whole: Sequence[str]) -> None:
 def _next(
     robot: pipeline.Printed, source: pipeline.Source, root: Path, backends: Sequence[str]
 ) -> str:
-    """What to do with one robot that was printed into a folder of the user's."""
+    """What to do next with a robot that was printed into a folder of the user."""
     if not robot.proof.inverses:
         return f"write the inverse in {source.path.name}; docs/adding-a-mechanism.md says how"
     from closedform.emit.backends import load
@@ -220,7 +220,7 @@ def _next(
 
 
 def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:
-    """Compare what was printed with the symbolic source, and write down what was found."""
+    """Compare what was printed with the symbolic source, and write the report."""
     from closedform.check.failures import FailedError
     from closedform.check.report import report
 
@@ -240,14 +240,14 @@ def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequenc
 
 
 def check_command(options: argparse.Namespace) -> None:
-    """Print everything anew and compare it, byte for byte, with what is in generated/."""
+    """Print everything again and compare it byte for byte with generated/."""
     root = pipeline.generated()
     printed = _run(options, pipeline.sources(), pipeline.BACKENDS, pipeline.sources()).files
     with _alone():
         differences = list(_differences(root, printed))
     if differences:
         console.write("\n".join(differences) + "\n")
-        raise CommandError(f"{root} is not what the derivations print: run make")
+        raise CommandError(f"{root} differs from what the derivations print; run make")
     console.write(f"{len(printed)} generated files are up to date\n")
 
 
@@ -257,9 +257,10 @@ def new_command(options: argparse.Namespace) -> None:
     if kind not in ("dh", "screws"):
         raise CommandError(f"--from dh TABLE.csv or --from screws FILE.toml, not {kind}", 2)
     if not path.is_file():
-        raise CommandError(f"{path} is no file" if path.exists() else f"there is no file {path}", 2)
+        problem = f"{path} is not a file" if path.exists() else f"there is no file {path}"
+        raise CommandError(problem, 2)
     if options.modified and kind != "dh":
-        raise CommandError("--modified goes with --from dh: axes have no convention", 2)
+        raise CommandError("--modified needs --from dh; axes have no convention", 2)
     _require_extra()
     from closedform.scaffold.new import check_name, new
 
@@ -267,7 +268,7 @@ def new_command(options: argparse.Namespace) -> None:
         check_name(options.name)
         target = options.output / f"{options.name}.py"
         if os.path.lexists(target):
-            raise CommandError(f"{target} exists already")
+            raise CommandError(f"{target} already exists")
         script = new(options.name, kind, path, modified=options.modified)
     except (ValueError, TypeError) as error:
         raise CommandError(str(error)) from error
@@ -278,14 +279,14 @@ def new_command(options: argparse.Namespace) -> None:
 
 
 def errata_command(options: argparse.Namespace) -> None:
-    """Print every claim of the papers, or of one, that is not simply proved."""
+    """Print every claim of all papers, or of one, that is not simply proved."""
     console.write(_errata_of(options) if options.paper else _errata())
 
 
 def _errata() -> str:
     path = pipeline.generated() / "errata.md"
     if not path.is_file():
-        raise CommandError(f"{path} is missing: run make")
+        raise CommandError(f"{path} is missing; run make")
     return path.read_text("utf-8")
 
 
@@ -303,7 +304,7 @@ def _require_extra() -> None:
     missing = [name for name in pipeline.EXTRA if importlib.util.find_spec(name) is None]
     if missing:
         raise CommandError(
-            f"this needs {', '.join(missing)}, not installed: pip install 'closedform[derive]'"
+            f"this command needs {', '.join(missing)}; run: pip install 'closedform[derive]'"
         )
     for difference in versions.warnings():
         console.say(f"closedform: warning: {difference}")
@@ -326,15 +327,15 @@ def _unknown(kind: str, name: str, known: Sequence[str]) -> str:
 
 
 def _require_checkout(chosen: Sequence[pipeline.Source]) -> None:
-    """The generated package is only written in a checkout, and only from its own scripts."""
+    """Refuse to write the generated package except in a checkout and from its own scripts."""
     if pipeline.checkout() is None:
         raise CommandError(
-            "this is an installed package, not a checkout: give a folder with -o DIR", 2
+            "this is an installed package, not a checkout; give a folder with -o DIR", 2
         )
     for source in chosen:
         if not source.module:
             raise CommandError(
-                f"{source.path} is not in {pipeline.scripts()}: give a folder with -o DIR", 2
+                f"{source.path} is not in {pipeline.scripts()}; give a folder with -o DIR", 2
             )
 
 
@@ -368,7 +369,7 @@ def _write(root: Path, printed: pipeline.Files) -> list[Path]:
 
 
 def _alone() -> contextlib.AbstractContextManager[None]:
-    """No other process changes the generated package."""
+    """Keep other processes from changing the generated package."""
     root = pipeline.checkout()
     return locked(root / "build" / "generated.lock") if root else contextlib.nullcontext()
 

@@ -1,4 +1,4 @@
-"""What the command line writes: any character to any terminal, errors of streams, progress."""
+"""Output of the command line: any character on any terminal, stream errors, progress."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from typing import TextIO
 PATIENCE = 1.0
 """Seconds of silence before progress is shown."""
 INTERVAL = 5.0
-"""Seconds between two lines of progress where the output is not a terminal."""
+"""Seconds between two lines of progress if the output is not a terminal."""
 ASCII = {"·": "*", "−": "-", "–": "-", "—": "-", "‘": "'", "’": "'", "“": '"', "”": '"'}
 ASCII |= {
     "≤": "<=",
@@ -34,14 +34,14 @@ ASCII |= {
 
 
 class StreamError(Exception):
-    """The standard output cannot be written to, and why."""
+    """The standard output cannot be written to; the message says why."""
 
 
 def open_streams() -> None:
     """Make the standard streams usable, whatever the caller has done to them.
 
-    A stream that was closed goes nowhere, and no file that is opened later takes its number.  What
-    the encoding of a stream does not have is written in ASCII.
+    The output of a closed stream is discarded, and no file that is opened later gets its number.
+    Characters that the encoding of a stream lacks are written in ASCII.
     """
     if None in (sys.stdout, sys.stderr):
         while os.open(os.devnull, os.O_RDWR) < 2:
@@ -55,7 +55,7 @@ def open_streams() -> None:
 
 
 def write(text: str) -> None:
-    """Write to the standard output.  A reader that has gone raises ``BrokenPipeError``."""
+    """Write to the standard output.  Raises ``BrokenPipeError`` if nobody reads it any more."""
     if sys.stdout is None:
         raise StreamError("the standard output is closed")
     try:
@@ -69,7 +69,7 @@ def write(text: str) -> None:
 
 
 def say(text: str) -> None:
-    """Write a line to the standard error; where that is impossible, nobody is told."""
+    """Write a line to the standard error; ignore a failure to do so."""
     _show(f"{text}\n")
 
 
@@ -92,13 +92,13 @@ def _show(text: str) -> None:
 
 
 def _discard(stream: TextIO) -> None:
-    """Let what is left in a stream go nowhere, so that Python does not fail on it at the end."""
+    """Discard what is left in a stream, so that Python does not fail on it when it exits."""
     with contextlib.suppress(OSError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _ascii(error: UnicodeError) -> tuple[str, int]:
-    """What a text has that an encoding has not, in ASCII: Greek letters by name, no accents."""
+    """Characters that an encoding lacks, in ASCII: Greek letters by name, no accents."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     text = error.object[error.start : error.end]
@@ -116,7 +116,7 @@ def _plain(character: str) -> str:
 
 
 class Progress:
-    """Says on stderr what is going on, once it takes long."""
+    """Shows on stderr what is going on, once it takes longer than :data:`PATIENCE`."""
 
     def __init__(self) -> None:
         self.start = time.monotonic()

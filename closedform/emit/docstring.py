@@ -1,7 +1,6 @@
-"""What is said of a function, after numpydoc's conventions, for Python and for C.
+"""The documentation of a function for Python and C, in numpydoc's conventions.
 
-Names, shapes and statuses follow from the function; what is special about it stands in its summary
-and its notes.
+Names, shapes and statuses follow from the function; its summary and notes say what is special.
 """
 
 from __future__ import annotations
@@ -31,20 +30,20 @@ TYPES = {
 }
 STATUS = {"python": "A `Status`", "c": "A CLOSEDFORM_ status"}
 STATUSES = (
-    ": OK (0) where {values} is a solution, UNREACHABLE (1) where there is none, SINGULAR (2) "
-    "where {values} is one of infinitely many or hardly determined (see the notes), and INVALID "
-    "(3) where an input is not finite or impossible. {values} is NaN where the status is "
+    ": OK (0) if {values} is a solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) "
+    "if {values} is one of infinitely many solutions or poorly determined (see the notes), and "
+    "INVALID (3) if an input is not finite or not possible. {values} is NaN if the status is "
     "UNREACHABLE or INVALID."
 )
 RAISES = (
     ("TypeError", "If an argument does not hold real numbers."),
-    ("ValueError", "If an argument has another shape, or leading axes do not broadcast."),
+    ("ValueError", "If an argument has the wrong shape, or leading axes do not broadcast."),
 )
 
 
 @dataclass(frozen=True)
 class Item:
-    """An argument or a result: its name, what it is, and a sentence or two."""
+    """An argument or a result: its name, its type, and a sentence or two."""
 
     name: str
     kind: str
@@ -196,7 +195,7 @@ def _output_text(derivation: Derivation, function: Function, array: Array) -> st
 
 
 def _matrix_text(derivation: Derivation, entries: Sequence[sp.Expr], shape: Sequence[int]) -> str:
-    """What a matrix is: what an inverse requires of one of its shape, or its columns."""
+    """What a matrix is: what an inverse requires of a matrix of this shape, or its columns."""
     for function in derivation.functions:
         for statement in function.body:
             if isinstance(statement, Require) and any(
@@ -214,7 +213,7 @@ def _matrix_text(derivation: Derivation, entries: Sequence[sp.Expr], shape: Sequ
 def _listed(
     names: Sequence[str], units: Mapping[str, str], shape: Sequence[int], angle: str
 ) -> str:
-    """Coordinates with their units, neighbours of one unit together."""
+    """Coordinates with their units; neighbours with the same unit are grouped."""
     parts = []
     for unit, group in groupby(names, lambda name: units.get(name, "")):
         shown = angle if unit == ANGLE else unit
@@ -230,7 +229,7 @@ def _listed(
 
 
 def _span(names: Sequence[str]) -> str:
-    """Names in words; theta1 to theta6 where they are numbered through."""
+    """Names in words; "theta1 to theta6" if they are numbered consecutively."""
     numbered = [re.fullmatch(r"(\D+)(\d+)", name) for name in names]
     if len(names) > 3 and all(numbered):
         found = [(m[1], int(m[2])) for m in numbered if m]
@@ -240,7 +239,8 @@ def _span(names: Sequence[str]) -> str:
 
 
 def _units(derivation: Derivation) -> dict[str, str]:
-    """The units of joints, of the task and of other angles, as far as they are known."""
+    """The units of joints, the task and other angles, as far as they are known."""
+
     units: dict[str, str] = {}
     angles = {str(s) for i in derivation.inverses for s in i.angles}
     for function in derivation.functions:

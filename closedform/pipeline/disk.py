@@ -1,4 +1,4 @@
-"""Files that are whole or not there, and locks that end with the process that holds them."""
+"""Files that are complete or absent, and locks that end with the process that holds them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 def replace(target: Path, content: bytes) -> None:
-    """Write a file as a whole or, where the disk is full or the process killed, not at all."""
+    """Write a file completely, or not at all if the disk is full or the process is killed."""
     target = Path(os.path.realpath(target))
     target.parent.mkdir(parents=True, exist_ok=True)
     unfinished = target.with_name(f".{target.name}.{os.getpid()}")
@@ -24,7 +24,7 @@ def replace(target: Path, content: bytes) -> None:
 
 @contextlib.contextmanager
 def locked(path: Path) -> Iterator[None]:
-    """Wait for other processes that hold this lock; without one where the system has none."""
+    """Hold a lock, after other processes release it; do nothing if the system has no locks."""
     with contextlib.ExitStack() as stack:
         with contextlib.suppress(ImportError, OSError):
             import fcntl

@@ -1,6 +1,6 @@
-"""What a derivation depends on: the modules that it imports, through all levels.
+"""The modules that a derivation imports, directly and indirectly.
 
-The files are read, not run, so that a proof that was kept is found without importing SymPy.
+The files are read, not run, so that a stored proof is found without importing SymPy.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from closedform.lazy import homes
 
 PACKAGE = "closedform"
 MAPPED = ("derivations", "generated", "templates")
-"""Packages below ``closedform`` that are folders beside it in a checkout."""
+"""Packages of ``closedform`` that are folders next to it in a checkout."""
 
 
 def package() -> Path:
@@ -23,9 +23,9 @@ def package() -> Path:
 
 
 def sources_of(scripts: Iterable[Path]) -> list[Path]:
-    """The files of these scripts and of every module of ours that they import, through all levels.
+    """These scripts, and our modules that they import directly and indirectly.
 
-    A module of ours is one of closedform, or one beside the script that imports it.
+    Our modules are those of closedform and those next to the script that imports them.
     """
     found: dict[Path, None] = {}
     pending = list(scripts)
@@ -44,7 +44,7 @@ def sources_of(scripts: Iterable[Path]) -> list[Path]:
 
 
 def _imported(tree: ast.Module) -> Iterator[tuple[str, int]]:
-    """The modules that may be imported, each with the number of its leading dots."""
+    """The modules that a file may import, each with the number of its leading dots."""
     known = homes([str(package())])
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -59,7 +59,7 @@ def _imported(tree: ast.Module) -> Iterator[tuple[str, int]]:
 
 
 def _files_of(names: Iterable[tuple[str, int]], folder: Path) -> Iterator[Path]:
-    """Where these modules, and the packages that they are in, would be."""
+    """The files that would hold these modules and the packages that they are in."""
     for name, level in names:
         parts = name.split(".")
         if level:

@@ -1,6 +1,6 @@
-"""From derivation scripts to files: find them, prove them, print them, write what changed.
+"""From derivation scripts to files: find, prove and print them, and write what changed.
 
-Nothing here imports SymPy before a derivation is loaded, so that listing works without it.
+SymPy is imported only when a derivation is loaded, so that listing works without it.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ Report = Callable[[str, str], None]
 
 
 class DerivationError(Exception):
-    """A derivation cannot be loaded or proved: its name, and what is wrong."""
+    """A derivation that cannot be loaded or proved: its name, and what is wrong."""
 
     def __str__(self) -> str:
         name, message = self.args
@@ -74,7 +74,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Printed:
-    """One robot: what was proved, in how many seconds, whether just now, and its files."""
+    """One robot: its proof, the seconds it took, whether it was stored, and the files."""
 
     name: str
     proof: Proof
@@ -92,8 +92,8 @@ class Printed:
 class Result:
     """Every robot that was printed, the files they share, and what failed.
 
-    A robot that was not chosen, but shares files with the chosen, is a neighbour.  If one fails,
-    nothing is shared.
+    A neighbour is a robot that was not chosen but shares files with those that were.  If any robot
+    fails, ``shared`` is empty.
     """
 
     robots: tuple[Printed, ...]
@@ -116,7 +116,7 @@ def generated() -> Path:
 
 
 def checkout() -> Path | None:
-    """The root of the repository, or None where the package was installed from a wheel."""
+    """The root of the repository, or None if the package was installed from a wheel."""
     root = generated().parent
     return root if (root / "pyproject.toml").is_file() else None
 
@@ -136,7 +136,7 @@ def sources() -> list[Source]:
 
 
 def find(names: Sequence[str]) -> list[Source]:
-    """The scripts of these names or paths; all of the package if none is given."""
+    """The scripts with these names or paths; all scripts of the package if none is given."""
     known = {source.name: source for source in sources()}
     if not names:
         return list(known.values())
@@ -159,7 +159,7 @@ def _find(name: str, known: Mapping[str, Source]) -> Source:
 
 
 def _defines_derivation(path: Path) -> bool:
-    """Whether a script assigns ``d``.  One that does not parse counts, to be reported later."""
+    """Whether a script assigns ``d``.  If it does not parse, True: the error is reported later."""
     try:
         statements = ast.parse(path.read_bytes()).body
     except SyntaxError:
@@ -190,7 +190,7 @@ def load(source: Source) -> Derivation:
     if derivation.name != source.name:
         raise DerivationError(
             source.name,
-            f"the derivation calls itself {derivation.name}: name the file {derivation.name}.py",
+            f"the derivation calls itself {derivation.name}; name the file {derivation.name}.py",
         )
     return derivation
 
@@ -214,11 +214,11 @@ def _module(source: Source) -> Any:
 
 
 _modules: dict[Path, tuple[str, Any]] = {}
-"""Scripts outside the package that were run, each with a digest of what it was run from."""
+"""Scripts outside the package that were run, each with a digest of its sources."""
 
 
 def _located(error: Exception, path: Path) -> str:
-    """An error, with the last line of the script that led to it."""
+    """An error with the last line of the script that led to it."""
     lines = [
         frame.lineno
         for frame in traceback.extract_tb(error.__traceback__)
@@ -242,13 +242,13 @@ def _proved(derivation: Derivation, report: Report) -> Proof:
 
 
 class Store:
-    """Proofs on disk, each with a digest of everything it depends on."""
+    """Proofs on disk, each with a digest of everything that it depends on."""
 
     def __init__(self, folder: Path | None):
         self.folder = folder
 
     def get(self, source: Source, mark: str | None = None) -> tuple[Proof, float] | None:
-        """The proof of a script and the seconds it took, if nothing changed since."""
+        """The proof of a script and the seconds it took, if nothing has changed since."""
         from closedform.proof.prove import Proof
 
         try:
@@ -260,9 +260,9 @@ class Store:
         return None
 
     def put(self, source: Source, mark: str, proof: Proof, seconds: float) -> None:
-        """Keep a proof.  Where the disk is read-only, it is proved again the next time.
+        """Keep a proof.  If the disk is read-only, the script is proved again the next time.
 
-        ``mark`` is the digest from before the proof: a script may be edited while it is proved.
+        ``mark`` is the digest from before the proof, because a script may be edited meanwhile.
         """
         data = {"digest": mark, "seconds": seconds, "proof": proof.as_dict()}
         with contextlib.suppress(OSError):
@@ -275,13 +275,13 @@ class Store:
 
 
 def default_store() -> Store:
-    """In a checkout ``build/proofs``; an installed package keeps nothing."""
+    """The store in ``build/proofs`` of a checkout; an installed package keeps nothing."""
     root = checkout()
     return Store(root / "build" / "proofs" if root else None)
 
 
 def digest(source: Source) -> str:
-    """A digest of the script, of all that it and the proof import, and of the algebra."""
+    """A digest of the script, of everything that it and the proof import, and of the algebra."""
     algebra = [f"{package} {version(package)}\n" for package in ("sympy", "python-flint")]
     return _digest(sources_of([source.path, package() / "proof" / "prove.py"]), algebra)
 
@@ -303,7 +303,7 @@ def _digest(paths: Iterable[Path], lines: Iterable[str] = ()) -> str:
 def print_robot(
     source: Source, backends: Sequence[str], store: Store, fresh: bool, report: Report
 ) -> Printed:
-    """Prove one robot, unless a kept proof still holds, and print its files."""
+    """Prove one robot, unless its stored proof is still valid, and print its files."""
     from closedform.emit.pages import pages
 
     report(source.name, "derivation")
@@ -335,7 +335,10 @@ def run(
     jobs: int = 1,
     report: Report = lambda _name, _what: None,
 ) -> Result:
-    """Print the chosen robots, and what all of ``together`` share (by default the chosen)."""
+    """Print the chosen robots, and the files that all of ``together`` share.
+
+    ``together`` is by default the chosen robots.
+    """
     from closedform.emit.pages import shared_files
 
     store = store or default_store()
@@ -404,7 +407,7 @@ def _in_processes(
 
 @contextlib.contextmanager
 def _uninterrupted() -> Iterator[None]:
-    """Processes that are started here do not see Ctrl-C: it is up to us to end them."""
+    """Processes that are started here ignore Ctrl-C, because this process ends them itself."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -417,7 +420,7 @@ def _uninterrupted() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _ending_at_once() -> Iterator[None]:
-    """Do not wait for the proofs that are under way where one was interrupted."""
+    """End the proofs that are still running if an exception interrupts the wait for them."""
     try:
         yield
     except BaseException:
@@ -430,7 +433,7 @@ _queue: Any = None
 
 
 def _prepare(queue: Any) -> None:
-    """In a process of the pool: it ends with the one that started it, however that ends."""
+    """Make a process of the pool end with the one that started it, however that ends."""
     global _queue
     _queue = queue
     parent = multiprocessing.parent_process()
@@ -448,7 +451,7 @@ def _reporting(job: Callable[..., Printed], source: Source) -> Printed:
 
 
 def default_jobs() -> int:
-    """As many processes as ``make -j`` allows; one a core where make does not run us."""
+    """As many processes as ``make -j`` allows; outside of make, one for each core."""
     flags = os.environ.get("MAKEFLAGS") if "MAKELEVEL" in os.environ else "-j"
     if match := re.search(r"(?:^|\s)-j ?(\d*)(?=\s|$)", flags or ""):
         return int(match[1]) if match[1] else os.cpu_count() or 1
@@ -466,7 +469,7 @@ def standalone(printed: Files) -> Files:
 
 
 def write(root: Path, printed: Files) -> list[Path]:
-    """Write what differs, and only that: make and the C build go by timestamps."""
+    """Write only the files that differ, because make goes by timestamps.  Return their paths."""
     written = []
     for path, text in sorted(printed.items()):
         target, content = root / path, text.encode()
@@ -477,7 +480,8 @@ def write(root: Path, printed: Files) -> list[Path]:
 
 
 def extra_files(root: Path, printed: Iterable[Path], backends: Sequence[str]) -> list[Path]:
-    """Files below ``generated/`` that no derivation prints any more."""
+    """Files in ``generated/`` that no derivation prints any more."""
+
     expected = set(printed)
     present = [
         path.relative_to(root)

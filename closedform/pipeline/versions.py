@@ -1,4 +1,4 @@
-"""Whether the installed algebra is the one that the project was proved and printed with."""
+"""Checks that the installed algebra is the one that the project was proved and printed with."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ REQUIREMENT = re.compile(r"([\w.-]+)\s*(==|>=)\s*([\d.]+)[^;]*;.*extra == ['\"]d
 
 
 def warnings() -> list[str]:
-    """A sentence for each package that is not as the extra ``derive`` asks for."""
+    """A sentence for each package whose version the extra ``derive`` does not allow."""
     try:
         return list(_warnings(requires("closedform") or []))
     except PackageNotFoundError:
@@ -26,11 +26,14 @@ def _warnings(requirements: Iterable[str]) -> Iterable[str]:
             continue
         if relation == "==" and installed != wanted:
             yield (
-                f"{name} {installed} is installed, not {wanted}: a proof may fail, and what is "
-                "printed may differ from the files in generated/"
+                f"{name} {installed} is installed, not {wanted}; a proof may fail, and the printed "
+                "files may differ from those in generated/"
             )
         elif relation == ">=" and _release(installed) < _release(wanted):
-            yield f"{name} {installed} is installed, {wanted} or later is needed: a proof may fail"
+            yield (
+                f"{name} {installed} is installed, but {wanted} or later is needed; "
+                "a proof may fail"
+            )
 
 
 def _release(text: str) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""Exact values near what a table gives in decimals: unit vectors, rotations, and named angles.
+"""Exact values for the decimals in a table: unit vectors, rotations, and named angles.
 
 Derivations compute with exact numbers.  (0, 0.7071, 0.7071) is not a unit vector, and cos(pi/18)
 has no form in square roots that the proofs could use.
@@ -18,7 +18,7 @@ from closedform.model.functions import real
 from closedform.model.tolerances import UNIT_LENGTH
 
 ROUNDED = 0.75
-"""Of the last decimal that is given: half for its rounding, the rest for that of the others."""
+"""Tolerance in units of the last decimal: half for its own rounding, the rest for the others'."""
 FINEST = 1e-15
 SIMPLE: tuple[sp.Expr, ...] = (
     *map(sp.Integer, (0, 1)),
@@ -27,16 +27,16 @@ SIMPLE: tuple[sp.Expr, ...] = (
     2 * sp.sqrt(5) / 5,
     *((sp.sqrt(6) + sign * sp.sqrt(2)) / 4 for sign in (1, -1)),
 )
-"""Sizes that a coordinate of a unit vector often has."""
+"""Absolute values that coordinates of unit vectors often have."""
 AXES = tuple(sp.eye(3)[:, i] for i in range(3))
 
 
 def unit_vector(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix | None:
-    """The exact unit vector that was rounded to the numbers given.
+    """The exact unit vector that was rounded to the given numbers.
 
-    It is one of the ``known`` vectors or normal to one of them where the decimals admit it, else
-    it has simple coordinates, else rational ones.  None where the length is not 1 within
-    :data:`~closedform.model.tolerances.UNIT_LENGTH`.
+    If the decimals allow it, it is one of the ``known`` vectors or normal to one of them.
+    Otherwise it has simple coordinates if possible, and rational ones if not.  None if the length
+    is not 1 within :data:`~closedform.model.tolerances.UNIT_LENGTH`.
     """
     if given.free_symbols:
         return None
@@ -57,7 +57,7 @@ def unit_vector(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix 
 
 
 def rotation(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix | None:
-    """The exact rotation that was rounded to the 3x3 matrix given; None where none is near."""
+    """The exact rotation that was rounded to the given 3x3 matrix; None if no rotation is near."""
     third = unit_vector(given[:, 2], known)
     if third is None or unit_vector(given[:, 0]) is None:
         return None
@@ -70,7 +70,7 @@ def rotation(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix | N
 
 
 def _last_place(given: sp.Matrix) -> float:
-    """The unit of the last decimal; of numbers that are not decimals, the tolerance."""
+    """The unit of the last decimal; 0.001 if the numbers are not decimals."""
     digits = [
         next((k for k in range(16) if (e * 10**k).is_Integer), None)
         for e in given
@@ -97,14 +97,14 @@ def _simple(u: Sequence[float], place: float) -> sp.Matrix | None:
 
 
 def _fractions(*values: float) -> Iterator[tuple[sp.Rational, ...]]:
-    """Ever closer fractions for some numbers."""
+    """Fractions that approximate the numbers more and more closely."""
     for k in range(2, 20):
         near = (Fraction(x).limit_denominator(2**k) for x in values)
         yield tuple(sp.Rational(f.numerator, f.denominator) for f in near)
 
 
 def _rational(u: Sequence[float], place: float) -> sp.Matrix:
-    """A rational point of the sphere, by the projection from the pole on the other side."""
+    """A rational point of the sphere, by stereographic projection from the opposite pole."""
     pole = max(range(3), key=lambda i: abs(u[i]))
     sign = 1 if u[pole] > 0 else -1
     a, b = (i for i in range(3) if i != pole)
@@ -118,7 +118,7 @@ def _rational(u: Sequence[float], place: float) -> sp.Matrix:
 
 
 def _normal_to(axis: sp.Matrix, u: Sequence[float], place: float) -> sp.Matrix:
-    """A unit vector that is exactly normal to an axis, and rational in a frame about it."""
+    """A unit vector that is exactly normal to an axis, and rational in a frame on that axis."""
     x, y, z = axis if axis[2] >= 0 else -axis
     across = sp.Matrix([1 - x**2 / (1 + z), -x * y / (1 + z), -x])
     along = sp.Matrix([-x * y / (1 + z), 1 - y**2 / (1 + z), -y])
@@ -134,14 +134,17 @@ def _normal_to(axis: sp.Matrix, u: Sequence[float], place: float) -> sp.Matrix:
 
 @dataclass
 class Angles:
-    """Names the angles whose cosine has no form in square roots."""
+    """Names for the angles whose cosine cannot be written with square roots."""
 
     taken: Callable[[str], bool]
     named: dict[sp.Expr, sp.Symbol] = field(default_factory=dict)
     places: dict[sp.Expr, str] = field(default_factory=dict)
 
     def read(self, entry: sp.Expr, where: str, *, angle: bool = False) -> sp.Expr:
-        """The entry with names for such angles: for itself, or where sin and cos are taken."""
+        """The entry with names for such angles in its sines and cosines.
+
+        With ``angle``, the entry is itself an angle and may get a name.
+        """
         functions = entry.atoms(sp.sin, sp.cos)
         held = {f: f.func(self._named(f.args[0], where)) for f in functions}
         entry = entry.xreplace(held)
@@ -161,7 +164,7 @@ class Angles:
 
 
 def _has_roots(term: sp.Expr) -> bool:
-    """Whether an angle of this size has a cosine in square roots; a joint or a parameter counts."""
+    """Whether the cosine can be written with square roots, or the angle has symbols."""
     if term.free_symbols or term == 0:
         return True
     factor, rest = term.as_coeff_Mul()
@@ -171,7 +174,7 @@ def _has_roots(term: sp.Expr) -> bool:
 
 
 def decimal(value: sp.Expr) -> str:
-    """A number as exact text, or to 20 digits where it is not rational."""
+    """A number as exact text, or to 20 digits if it is not rational."""
     return str(value) if value.is_Rational else str(value.evalf(20))
 
 

@@ -1,7 +1,7 @@
 """Writes the skeleton of a derivation from a table of joints.
 
-The skeleton has pose, Jacobians and determinant, and is proved and printed as it stands.  Where the
-structure of the arm is known, it holds the proposed inverse; else a place for it.
+The skeleton has pose, Jacobians and determinant, and can be proved and printed as it is.  If the
+structure of the arm is known, it also has the proposed inverse; otherwise a place for one.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ from closedform.scaffold.tables import (
 )
 
 LINE = 100
-"""Columns of a script."""
+"""The maximum length of a line in a script."""
 IMPORTS = frozenset({"numpy", "sympy", "flint", "jinja2"})
-"""Modules that a script beside them, of the same name, would hide."""
+"""Modules that a script of the same name would shadow."""
 
 
 @dataclass(frozen=True)
 class Script:
     """The source of a derivation, and a clause on the inverse that it proposes or lacks.
 
-    The ``notes`` say what of the table was read otherwise than it is written.
+    The ``notes`` say which entries of the table were not taken literally.
     """
 
     text: str
@@ -54,14 +54,14 @@ def check_name(name: str) -> None:
     """Raise ``ValueError`` unless a script may have this name."""
     check_robot(name)
     if name in IMPORTS or name in sys.stdlib_module_names:
-        raise ValueError(f"{name} is a module of Python; choose another name, such as {name}_arm")
+        raise ValueError(f"{name} is a Python module; choose another name, such as {name}_arm")
 
 
 def new(name: str, kind: str, path: Path, *, modified: bool = False) -> Script:
     """A derivation called ``name``, from a table of the given kind.
 
-    ``kind`` is ``"dh"`` (then ``modified`` rows are Craig's) or ``"screws"``.  Raises
-    ``ValueError`` where the name or the table cannot be used, with the place and the remedy.
+    ``kind`` is ``"dh"`` (with ``modified``, in Craig's convention) or ``"screws"``.  Raises
+    ``ValueError`` if the name or the table cannot be used; it says where and how to correct it.
     """
     check_name(name)
     table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
@@ -75,18 +75,18 @@ def new(name: str, kind: str, path: Path, *, modified: bool = False) -> Script:
 
 
 def _literal(text: str) -> str:
-    """A text as a literal of Python, in double quotes where it holds none."""
+    """A text as a Python literal, in double quotes if it contains none."""
     return repr(text) if '"' in text else f'"{repr(chr(39) + text)[2:]}'
 
 
 def _comment(text: str) -> str:
-    """A text as one line of comment."""
+    """A text as a comment of one line."""
     line = " ".join(text.split())
     return "# " + "".join(c if c.isprintable() else "?" for c in line)
 
 
 def skeleton(name: str, table: Table, origin: str) -> Script:
-    """The script, with the inverse that is proposed or a place for it."""
+    """The script, with the proposed inverse or a place for one."""
     origin = re.sub(r"[^\w .()-]", "_", origin)
     d = Derivation(name, name, Paper("own", "own", ()), "")
     negative = [
@@ -169,7 +169,7 @@ def _table_lines(table: Table) -> list[str]:
 
 
 def _inverse_lines(arm: Serial) -> tuple[list[str], str]:
-    """The lines for the inverse, and what there is of it."""
+    """The lines for the inverse, and a clause on what they contain."""
     task = arm.coordinates()
     angles = ', angles=["yaw"]' if task and "yaw" in task.names else ""
     chain = f"ik = Chain(d, forward{angles})"
@@ -180,7 +180,7 @@ def _inverse_lines(arm: Serial) -> tuple[list[str], str]:
         reason = f"No inverse is proposed, because {error.found}.  {error.needed}"
         return [
             *map(_comment, textwrap.wrap(reason, LINE - 2)),
-            "# Write it here, lemma by lemma, in the place of the last line of this file;",
+            "# Write it here, lemma by lemma, instead of the last line of this file;",
             "# docs/adding-a-mechanism.md says how:",
             f"# {chain}",
             "# ik.solve(turn, theta1, a, b, c, {+1: 'left', -1: 'right'})",
@@ -189,7 +189,7 @@ def _inverse_lines(arm: Serial) -> tuple[list[str], str]:
         ], outcome
     count = f"{found.branches} branch{'es' if found.branches > 1 else ''}"
     return [
-        _comment(f"Inverse, as proposed for: {found.structure}."),
+        _comment(f"The inverse proposed for this structure: {found.structure}."),
         "# Edit it as you like, and name the branches; the proof decides.",
         chain,
         *found.lines,
@@ -198,7 +198,7 @@ def _inverse_lines(arm: Serial) -> tuple[list[str], str]:
 
 
 def _imports(text: str) -> str:
-    """What the script uses, in the order that linters want."""
+    """The imports that the script needs, in the order that linters want."""
     code = "\n".join(line for line in text.splitlines() if not line.startswith("#"))
 
     def used(names: Sequence[str]) -> list[str]:
@@ -211,7 +211,7 @@ def _imports(text: str) -> str:
 
 
 def _folded(statement: str) -> list[str]:
-    """An import, over several lines where it is too long for one."""
+    """An import, on several lines if it is too long for one."""
     if len(statement) <= LINE:
         return [statement]
     start, _, names = statement.partition("import ")

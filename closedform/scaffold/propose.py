@@ -1,9 +1,8 @@
-"""Proposes the chain of lemmas for arms of known structure, as the lines that one would write.
+"""Proposes the chain of lemmas for arms of known structure, as the lines that you would write.
 
-What is recognised is geometry alone: which axes are parallel, meet or are normal to each other.
-The lines apply the lemmas of :mod:`closedform.lemmas.links` to a
-:class:`~closedform.lemmas.chain.Chain`; the engineer accepts or edits them, and the proof decides.
-Known are
+Only geometry decides: which axes are parallel, intersect or are normal to each other.  The lines
+apply the lemmas of :mod:`closedform.lemmas.links` to a :class:`~closedform.lemmas.chain.Chain`.
+You accept or edit them, and the proof decides.  The known structures are
 
 - planar arms of two or three revolute joints, also with a slide along their axes (SCARA);
 - gantries (three slides) and cylindrical arms (a turn, a slide along it, a slide across);
@@ -31,8 +30,8 @@ Z = sp.Matrix([0, 0, 1])
 class NoChainError(ValueError):
     """No chain of lemmas is known for an arm.
 
-    ``found`` is a clause, the property of this arm that stands in the way; ``needed`` is a sentence
-    on what the known chains need, and what can be done.
+    ``found`` is a clause that names the property of this arm that prevents it.  ``needed`` is a
+    sentence on what the known chains need and what you can do.
     """
 
     def __init__(self, found: str, needed: str):
@@ -42,7 +41,7 @@ class NoChainError(ValueError):
 
 @dataclass(frozen=True)
 class Proposal:
-    """The structure that was recognised, and the lines that solve the arm with ``ik`` a Chain."""
+    """The structure that was recognised, and the lines that solve the arm; ``ik`` is a Chain."""
 
     structure: str
     lines: tuple[str, ...]
@@ -55,7 +54,7 @@ class Proposal:
 
 
 def propose(arm: Serial) -> Proposal:
-    """The chain for an arm; raises :class:`NoChainError` where none is known."""
+    """The chain for an arm; raises :class:`NoChainError` if none is known."""
     maker = _Maker(arm)
     structure = maker.whole()
     lemmas = tuple(dict.fromkeys(maker.used))
@@ -64,7 +63,7 @@ def propose(arm: Serial) -> Proposal:
 
 @dataclass
 class _Maker:
-    """Writes lines; a vector is known by its name, and a rotation by the names of its pairs."""
+    """Writes lines that refer to a vector by its name and to a rotation by its pairs' names."""
 
     arm: Serial
     lines: list[str] = field(default_factory=list)
@@ -79,9 +78,9 @@ class _Maker:
         if task is None:
             joints = len(self.arm.joints)
             raise NoChainError(
-                f"its joints, {joints} in number, fit no task",
+                f"its {joints} joints do not fit any task",
                 "An inverse needs as many coordinates as joints: a pose needs 6 joints, and fewer "
-                "joints must move nothing of the tool but x, y, z or its turn about z.",
+                "joints may move only x, y and z of the tool and turn it about z.",
             )
         if "yaw" in task.names:
             return self._level(groups, task.names)
@@ -89,14 +88,14 @@ class _Maker:
             self._require(
                 len(groups) == 1,
                 "its axes are not parallel",
-                "The axes of an arm with the task x, y must be.",
+                "An arm with the task x, y needs parallel axes.",
             )
             return self._planar(groups[0], task.names)
         if task.names != ("x", "y", "z"):
             raise NoChainError(
                 f"it moves the tool in {' and '.join(task.names)}",
-                "The known tasks are x, y and x, y, z, both with or without the turn about z, and "
-                "the pose; a planar arm must have its axes along z.",
+                "The known tasks are the pose, and x, y or x, y, z, with or without the turn about "
+                "z; a planar arm must have its axes along z.",
             )
         self.add("p = Matrix(ik.x)")
         self._lead_away("p")
@@ -116,7 +115,7 @@ class _Maker:
         self.add(f"{result + ' = ' if result else ''}ik.solve({lemma}, {arguments})")
 
     def _require(self, condition: Any, found: str, needed: str) -> None:
-        """What was ``found`` where the condition does not hold, and what is ``needed``."""
+        """Raise :class:`NoChainError` unless the condition holds."""
         if not condition:
             raise NoChainError(found, needed)
 
@@ -141,18 +140,18 @@ class _Maker:
     def _two_links(
         self, joints: Sequence[Any], vectors: Sequence[Any], x: str, y: str, alone: bool = False
     ) -> None:
-        """Joints, with their signs, and link vectors; the names of what is to be reached.
+        """Solve two joints, given with their signs and link vectors, to reach the point x, y.
 
-        Where this is a target as it is, the links are ``alone`` the scale of its rounding.
+        With ``alone`` x and y are target coordinates, so the links set the scale of rounding.
         """
         (first, second), (u, v) = joints, vectors
         lengths = [_length(w) for w in (u, v)]
         self._require(
             0 not in lengths,
-            f"the link {lengths.index(0) + 1 if 0 in lengths else 0} of its planar two-link part "
+            f"link {lengths.index(0) + 1 if 0 in lengths else 0} of its planar two-link part "
             "has no length",
-            "Both need one.  If the last is missing, say where the tool is: by the last row of the "
-            "table, or for a modified table by tool= of from_dh.",
+            "Both links need one.  If the last is missing, say where the tool is, in the last row "
+            "of the table or, for a modified table, with tool= of from_dh.",
         )
         at = [sp.atan2(w[1], w[0]) for w in (u, v)]
         a = self.angle(first + at[0])
@@ -182,7 +181,7 @@ class _Maker:
         self._require(
             len(turns) == 2 == len(group.rows),
             f"{len(turns)} of its joints turn and {len(group.rows) - len(turns)} slide",
-            "A planar arm with the task x, y needs two that turn.",
+            "A planar arm with the task x, y needs two joints that turn.",
         )
         self._require_z("its first axis is not the z axis of the base")
         vectors = self._links(group, turns)
@@ -197,7 +196,7 @@ class _Maker:
         self._require(sp.eye(3) == self.arm.lead[:3, :3], found, needed)
 
     def _less_by(self, offset: sp.Matrix) -> tuple[str, str]:
-        """The names of x and y, less what lies between them and the two links."""
+        """The names of x and y, minus the offset between them and the two links."""
         if offset == sp.zeros(2, 1):
             return "x", "y"
         for name, value in zip("xy", offset, strict=True):
@@ -205,15 +204,15 @@ class _Maker:
         return "wx", "wy"
 
     def _tool(self, group: Group, vectors: list[sp.Matrix]) -> None:
-        """The tool is carried by the last link."""
+        """Add the tool to the vector of the last link."""
         vectors[-1] = vectors[-1] + (group.end * self.arm.last[:3, 3])[:2, 0]
 
     def _level(self, groups: Sequence[Group], names: Sequence[str]) -> str:
-        """Arms that turn about one axis: two links and a yaw, with or without a slide."""
+        """Solve an arm with parallel axes: two links and a yaw, with or without a slide."""
         self._require(
             len(groups) == 1,
             "its axes are not parallel",
-            "The axes of an arm with the task x, y (and z) and yaw must be.",
+            "An arm with the task x, y (and z) and yaw needs parallel axes.",
         )
         self._require_z("its first axis is not parallel to the z axis of the base")
         (group,) = groups
@@ -223,7 +222,7 @@ class _Maker:
         self._require(
             len(turns) == 3 and len(slides) < 2,
             f"{len(turns)} of its joints turn and {len(slides)} slide",
-            "An arm with a yaw in its task needs three that turn, and may have one that slides.",
+            "An arm with a yaw in its task needs three joints that turn, and may have a slide.",
         )
         vectors = self._links(group, turns)
         self._tool(group, vectors)
@@ -248,7 +247,7 @@ class _Maker:
     # Arms of three joints that carry a point
 
     def _position(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
-        """Solve for the joints that carry the point ``p``; the pairs by which each group turns."""
+        """Solve the joints that carry the point ``p``; return the pairs that turn each group."""
         kinds = ["".join("P" if row.slides else "R" for row in g.rows) for g in groups]
         if kinds == ["P", "P", "P"]:
             return self._gantry(groups)
@@ -259,7 +258,7 @@ class _Maker:
         raise NoChainError(
             f"the joints that carry its tool or wrist are {' | '.join(kinds)} (R turns, P slides, "
             "| where the direction changes)",
-            "Known are R | RR, R | R | P, RP | P, PR | P and P | P | P.",
+            "The known structures are R | RR, R | R | P, RP | P, PR | P and P | P | P.",
         )
 
     def _gantry(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
@@ -271,7 +270,7 @@ class _Maker:
         self._require(
             len(solved) == 1 and set(solved[0]) == set(joints),
             "the directions of its three slides lie in a plane",
-            "They must not.",
+            "A gantry needs three independent directions.",
         )
         for joint in joints:
             self.solve("slide", f"{joint}, {source(solved[0][joint])}")
@@ -287,13 +286,13 @@ class _Maker:
         self._require(
             direction[2] == 0,
             "its last slide is not at right angles to its first axis",
-            "In a cylindrical arm it must be.",
+            "A cylindrical arm needs a right angle.",
         )
         along, across, up = direction.dot(offset), Z.cross(direction).dot(offset), offset[2]
         self._require(
             sp.simplify(across) == 0,
             "the line of its last slide through the tool does not meet the first axis",
-            "In a cylindrical arm it must.",
+            "In a cylindrical arm they must intersect.",
         )
         lift, reach = (
             _symbol(self.arm, base.rows, slide),
@@ -321,7 +320,7 @@ class _Maker:
             self.solve("slide", f"{joint}, {source(solved)}")
 
     def _less(self, pair: str, v: Any) -> str:
-        """The pair without the direction of ``v``, which the auxiliary angle had as an offset."""
+        """The pair minus the direction of ``v``, which the auxiliary angle has as an offset."""
         length = _length(sp.Matrix(v[:2]))
         c, s = v[0] / length, v[1] / length
         if s == 0 and c == 1:
@@ -341,7 +340,7 @@ class _Maker:
             self._require(
                 (second.end * Z)[2] == 0,
                 "its slide is not at right angles to axis 2",
-                "In a polar arm it must be.",
+                "A polar arm needs a right angle.",
             )
             beside += along[2]
         links = self._links(second, [0, 1]) if kinds[1:] == ["RR"] else []
@@ -361,7 +360,7 @@ class _Maker:
         self._require(
             sideways == 0,
             "the line of its slide through the tool or wrist does not meet axis 2",
-            "In a polar arm it must.",
+            "In a polar arm they must intersect.",
         )
         slide = self.arm.joints[2]
         offset = sp.atan2(direction[1], direction[0])
@@ -383,9 +382,9 @@ class _Maker:
     def _turn_base(
         self, base: Group, beside: Any, links: Sequence[sp.Matrix] = (), wrist: str = ""
     ) -> str:
-        """The first joint, by the distance ``beside`` of the point from the plane it turns.
+        """Solve the first joint by the distance ``beside`` of the point from the plane it turns.
 
-        The ``links`` have to reach the point, with a ``wrist`` less an offset that this turns.
+        The ``links`` have to reach the point, minus an offset that the ``wrist`` turns, if any.
         """
         row, h = base.rows[0], base.end * Z
         p = _at("p")
@@ -414,7 +413,7 @@ class _Maker:
         self._require(
             along == 0,
             f"axes {first} and {second} are not at right angles",
-            "In the known chains they must be.",
+            "The known chains need a right angle there.",
         )
 
     def _pose(self, groups: list[Group]) -> str:
@@ -422,13 +421,13 @@ class _Maker:
             self._require(
                 len(group.rows) == 1,
                 f"axes {k - 1} and {k} are parallel",
-                "The last three axes must change direction.",
+                "Among the last three axes, no two neighbours may be parallel.",
             )
             self._require(
                 not group.rows[0].slides, f"joint {k} slides", "The last two joints must turn."
             )
         third = groups[-3]
-        if [row.slides for row in third.rows] == [True, False]:  # a slide along the axis 4
+        if [row.slides for row in third.rows] == [True, False]:  # a slide along axis 4
             slide, turn = third.rows
             groups[-3:-2] = [_plain(Group((slide,), sp.eye(3))), Group((turn,), third.end)]
         for k in (-2, -1):
@@ -437,7 +436,7 @@ class _Maker:
         self._require(
             wrist[0].rows[0].shift[:2] == (0, 0),
             "axes 5 and 6 do not intersect",
-            "In the known chains they do.",
+            "The known chains need axes 5 and 6 that intersect.",
         )
         offset = self._tool_behind(wrist[1])
         self.add(f"p = ik.vector('w', ik.p - ik.R * {source(offset)})")
@@ -451,7 +450,7 @@ class _Maker:
         self._require(
             len(groups[-3].rows) == 1,
             "axes 3 and 4 are parallel",
-            "They may be only where axes 2, 3 and 4 are parallel and turn, as in a UR arm.",
+            "This is known only if axes 2, 3 and 4 are parallel and turn, as in a UR arm.",
         )
         first = groups[-3]
         self._require(
@@ -476,17 +475,17 @@ class _Maker:
         return f"{structure}, with a spherical wrist"
 
     def _tool_behind(self, last: Group) -> sp.Matrix:
-        """From the origin of the last axis to the tool, seen from the tool."""
+        """The vector from the origin of the last axis to the tool, in the frame of the tool."""
         R = last.end * self.arm.last[:3, :3]
         return R.T * (sp.Matrix(last.rows[0].shift) + last.end * self.arm.last[:3, 3])
 
     def _wrist(
         self, lift: Any, first: Group, wrist: Sequence[Group], M: str, more: str
     ) -> tuple[str, Any]:
-        """ZYZ angles of ``lift``, of the fifth and the sixth joint, with their offsets."""
+        """Solve ``lift``, the fifth and the sixth joint, with their offsets, as ZYZ angles."""
         e, sense = first.end * Z, 1
         self._require_normal(e[2], 4, 5)
-        if e[1].is_negative:  # a turn about -y is one about y, backwards
+        if e[1].is_negative:  # a turn about -y is a turn about y in the other direction
             e, sense = -e, -1
         epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
         W = rotation("z", -epsilon) * first.end * wrist[0].end
@@ -547,13 +546,13 @@ class _Maker:
 
 
 def _plain(group: Group) -> Group:
-    """A slide of its own with a constant turn, the turn put into the frame that follows."""
+    """Move the constant turn of a single slide into the frame that follows it."""
     (row, *others) = group.rows
     if others or not row.slides:
         if any(row.slides and row.turn != 0 for row in group.rows[1:]):
             raise NoChainError(
                 "the row of a slide has a constant angle theta",
-                "Put this angle into the row before or after it, whose axis is parallel.",
+                "Move this angle to the row before or after it, whose axis is parallel.",
             )
         return group
     R = rotation("z", row.turn)
@@ -562,7 +561,7 @@ def _plain(group: Group) -> Group:
 
 
 def _at(name: str) -> Any:
-    """The vector of this name in the lines, entry by entry."""
+    """The entries of the vector with this name in the lines."""
     return sp.Matrix([sp.Symbol(f"{name}[{i}]") for i in range(3)])
 
 
@@ -571,7 +570,8 @@ def _times(R: sp.Matrix, value: str) -> str:
 
 
 def _length(v: sp.Matrix) -> Any:
-    """The length of a plane vector; of one along an axis without a root."""
+    """The length of a vector in the plane."""
+
     return sp.sqrt(sp.simplify(v.dot(v))) if v != sp.zeros(2, 1) else sp.S.Zero
 
 

@@ -9,7 +9,7 @@ import sympy as sp
 from sympy.printing.str import StrPrinter
 
 NAME = re.compile(r"[A-Za-z_]\w*(\[\d\]|\.[cs])?", re.ASCII)
-"""Of a symbol, of an entry of a vector, or of the sine or the cosine of a pair."""
+"""The name of a symbol, an entry of a vector, or the sine or cosine of a pair."""
 
 
 class _Source(StrPrinter):  # type: ignore[misc]
@@ -17,7 +17,7 @@ class _Source(StrPrinter):  # type: ignore[misc]
 
     def _print_Symbol(self, expr: Any) -> str:
         if not NAME.fullmatch(expr.name):
-            raise ValueError(f"{expr.name!r} is not a name that can stand in a line of Python")
+            raise ValueError(f"{expr.name!r} cannot be written as a name in Python")
         return str(expr.name)
 
     def _print_Rational(self, expr: Any) -> str:
@@ -29,6 +29,6 @@ class _Source(StrPrinter):  # type: ignore[misc]
 
 
 def source(e: Any) -> str:
-    """An exact expression or a matrix as Python, in the names of ``sympy``."""
+    """An exact expression or a matrix as Python code, with the names of ``sympy``."""
     text: str = _Source().doprint(sp.sympify(e, strict=True))
     return text

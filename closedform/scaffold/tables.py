@@ -1,11 +1,12 @@
 """Reads a table of joints: Denavit-Hartenberg rows from CSV, or axes at home from TOML.
 
 A table is data: nothing in it is run, and :mod:`closedform.algebra.formulas` says what a cell may
-hold.  Whatever cannot be read raises :class:`TableError`, which names the place and the remedy.
+contain.  Anything that cannot be read raises :class:`TableError`, which says where it is and how
+to correct it.
 
-A Denavit-Hartenberg table is CSV with the columns ``a, alpha, d, theta`` and, if wanted,
-``joint``, the name of the variable of a row: by default the symbol in ``theta``, or in ``d`` where
-``theta`` is a number.  A row without a variable is a fixed transform.  Screws are TOML with
+A Denavit-Hartenberg table is CSV with the columns ``a, alpha, d, theta`` and optionally ``joint``,
+the name of the variable of a row.  By default this is the symbol in ``theta``, or the one in ``d``
+if ``theta`` is a number.  A row without a variable is a fixed transform.  Screws are TOML with
 ``[[axes]]`` and ``[home]``.  Every other symbol is a parameter; its value, unit and meaning come
 from comment lines ``# name = value unit: meaning`` or from the table ``[parameters]``.
 """
@@ -30,9 +31,9 @@ from closedform.scaffold.source import source
 
 COLUMNS = ("a", "alpha", "d", "theta")
 LARGEST = 64_000
-"""Characters in a table, far more than any arm needs."""
+"""Maximum size of a table in bytes, far more than any arm needs."""
 LONGEST = 2000
-"""Characters in a line: the time to read one can grow with the square of its length."""
+"""Maximum length of a line: the time to read it can grow with the square of its length."""
 JOINTS = 16
 ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
@@ -44,16 +45,16 @@ AUTHOR = (
 SCRIPT = {"arm", "d", "forward", "links"}
 LINES = {"M", "ahead", "ik", "p", "q", "reaching", "turn1", "wx", "wy", "x", "y", "yaw", "z", "rho"}
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
-"""What the written script calls its own."""
+"""Names that the written script uses itself."""
 
 
 class TableError(ValueError):
-    """A table of joints that cannot be read, and where."""
+    """A table of joints that cannot be read; the message says where."""
 
 
 @dataclass
 class Table:
-    """What was read: joints in order with their kinds, parameters, and the rows or axes."""
+    """The content of a table: joints in order with their kinds, parameters, and rows or axes."""
 
     joints: dict[str, str] = field(default_factory=dict)
     parameters: dict[str, dict[str, str]] = field(default_factory=dict)
@@ -62,21 +63,21 @@ class Table:
     home: Any = None
     modified: bool = False
     notes: list[str] = field(default_factory=list)
-    """What was read otherwise than it is written, to be told to whoever wrote the table."""
+    """Entries that were not taken literally, in words for the author of the table."""
 
 
 def check_names(table: Table, where: str) -> None:
-    """Each joint and each parameter becomes a variable of the script, which has some of its own."""
+    """Refuse names that clash, because joints and parameters become variables of the script."""
     for name in (*table.parameters, *table.joints):
         _check_name(name, where)
     if both := [name for name in table.joints if name in table.parameters]:
-        raise TableError(f"{where}: {both[0]} is a joint and a parameter; name one of them anew")
+        raise TableError(f"{where}: {both[0]} is a joint and a parameter; rename one of them")
 
 
 def _check_name(name: str, where: str) -> None:
     if name in TAKEN or re.fullmatch(r"(alpha|link)\d+_?", name):
         raise TableError(
-            f"{where}: the name {name} has a meaning of its own in the script that is written; "
+            f"{where}: the written script uses the name {name} itself; "
             f"choose another, such as {name}_0"
         )
     try:
@@ -86,7 +87,7 @@ def _check_name(name: str, where: str) -> None:
 
 
 def _check_value(name: str, value: str, where: str) -> None:
-    """A value is printed as a floating-point number, so it must have one."""
+    """Refuse a value that floating point cannot represent, because it is printed as such."""
     try:
         given = number(value)
         if float(given) != 0 or given == 0:
@@ -100,7 +101,7 @@ def _check_value(name: str, value: str, where: str) -> None:
 
 
 def shown_name(name: str) -> str:
-    """A name in a message: quoted only where it is not one."""
+    """A name in a message, quoted only if it is not an identifier."""
     return name if name.isascii() and name.isidentifier() and len(name) < 60 else shown(name)
 
 
@@ -112,7 +113,7 @@ def _text(path: Path) -> str:
     except UnicodeDecodeError as error:
         if len(content) > LARGEST:
             raise _too_large(path) from error
-        raise TableError(f"{path.name} is no text in UTF-8: save it as plain text") from error
+        raise TableError(f"{path.name} is not a text in UTF-8; save it as plain text") from error
     except OSError as error:
         raise TableError(f"cannot read {path}: {error.strerror}") from error
     if len(content) > LARGEST:
@@ -120,13 +121,13 @@ def _text(path: Path) -> str:
     for i, line in enumerate(text.splitlines(), 1):
         if len(line) > LONGEST:
             raise TableError(
-                f"{path.name}, line {i}: a line has at most {LONGEST} characters, not {len(line)}"
+                f"{path.name}, line {i}: the line has {len(line)} characters, more than {LONGEST}"
             )
     return text
 
 
 def _too_large(path: Path) -> TableError:
-    return TableError(f"{path.name} is too large: a table of joints has at most {LARGEST} bytes")
+    return TableError(f"{path.name} is too large; a table of joints has at most {LARGEST} bytes")
 
 
 def _remark(line: str) -> tuple[str, str, str, str] | None:
@@ -158,11 +159,11 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
         where = f"{path.name}, line {i}"
         if remark := _remark(line.strip()):
             symbol, value, unit, meaning = remark
-            if not any(c.isdecimal() for c in value):  # not a value, perhaps a sentence
+            if not any(c.isdecimal() for c in value):  # perhaps a sentence, not a value
                 unread[symbol] = where, value
                 continue
             if symbol in table.parameters:
-                raise TableError(f"{where}: the parameter {symbol} has a value already")
+                raise TableError(f"{where}: the parameter {symbol} already has a value")
             _check_value(symbol, value, where)
             table.parameters[symbol] = {"value": value, "unit": unit, "meaning": meaning}
         elif line.strip() and not line.lstrip().startswith("#"):
@@ -171,15 +172,15 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
         raise TableError(f"{path.name}: the table is empty")
     header = _header(numbered[0][1], f"{path.name}, line {numbered[0][0]}")
     if len(numbered) == 1:
-        raise TableError(f"{path.name}: the table has no rows, only the names of its columns")
+        raise TableError(f"{path.name}: the table has only column names and no rows")
     if len(numbered) > ROWS + 1:
         raise TableError(f"{path.name}: the table has more than {ROWS} rows")
     for i, cells in numbered[1:]:
         where = f"{path.name}, line {i}"
         if len(cells) != len(header):
             raise TableError(
-                f"{where}: {len(cells)} entries in {len(header)} columns; there must be one for "
-                f"each of {', '.join(header)}"
+                f"{where}: {len(cells)} entries in {len(header)} columns; there must be one entry "
+                f"for each of {', '.join(header)}"
             )
         cell = dict(zip(header, (c.strip() for c in cells), strict=True))
         entries = {c: _expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
@@ -193,8 +194,8 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
         places.append(where)
     if not table.joints:
         raise TableError(
-            f"{places[0]}: no joint: neither theta nor d holds a symbol without a value; a "
-            f"revolute joint is a symbol in theta, such as theta1, a slide one in d"
+            f"{places[0]}: there is no joint, because neither theta nor d has a symbol without a "
+            f"value; a revolute joint is a symbol in theta, such as theta1, a slide one in d"
         )
     _other_symbols(table, [e for row in table.rows for e in row], path.name)
     for name in table.parameters:
@@ -220,7 +221,7 @@ def _angles(table: Table) -> exact.Angles:
 
 
 def _declare(table: Table, angles: exact.Angles) -> None:
-    """Each angle that got a name becomes a parameter."""
+    """Declare each angle that got a name as a parameter."""
     for angle, symbol in angles.named.items():
         where, value = angles.places[angle], exact.decimal(angle)
         table.parameters[symbol.name] = {
@@ -229,8 +230,8 @@ def _declare(table: Table, angles: exact.Angles) -> None:
             "meaning": f"the angle {angle} of the table",
         }
         table.notes.append(
-            f"{where}: the cosine of {angle} has no form in square roots, so this angle is the "
-            f"parameter {symbol.name} = {value} rad"
+            f"{where}: the cosine of {angle} cannot be written with square roots, so this angle "
+            f"is the parameter {symbol.name} = {value} rad"
         )
 
 
@@ -248,12 +249,12 @@ def _header(cells: Sequence[str], where: str) -> list[str]:
     if missing := [c for c in COLUMNS if c not in header]:
         raise TableError(
             f"{where}: the column {missing[0]} is missing; the first line must name the columns "
-            f"{names}, with commas between them"
+            f"{names}, separated by commas"
         )
     if unknown := [c for c in header if c not in (*COLUMNS, "joint")]:
         raise TableError(
-            f"{where}: the column {shown_name(unknown[0])} is unknown; there are {names} "
-            f"and, if wanted, joint"
+            f"{where}: the column {shown_name(unknown[0])} is unknown; the columns are {names} "
+            f"and optionally joint"
         )
     if twice := [c for i, c in enumerate(header) if c in header[:i]]:
         raise TableError(f"{where}: there are two columns {shown_name(twice[0])}")
@@ -261,7 +262,7 @@ def _header(cells: Sequence[str], where: str) -> list[str]:
 
 
 def _check_angle(angle: Any, text: str, where: str) -> None:
-    """Angles are in radians: a whole number is in degrees, 1.5708 stands for pi/2."""
+    """Refuse an angle in degrees (a whole number) or a rounded one (1.5708 for pi/2)."""
     value = angle.as_coeff_Add()[0]
     if not value.is_Rational or value == 0:
         return
@@ -271,7 +272,7 @@ def _check_angle(angle: Any, text: str, where: str) -> None:
         near = [value * sp.pi / 180]
     if near:
         raise TableError(
-            f"{where}: angles are in radians and exact, as multiples of pi: write "
+            f"{where}: angles must be in radians and exact, as multiples of pi; write "
             f"{source(angle - value + near[0])} instead of {text}"
         )
 
@@ -279,9 +280,9 @@ def _check_angle(angle: Any, text: str, where: str) -> None:
 def _joint(
     given: str, entries: Mapping[str, Any], where: str, parameters: Container[str]
 ) -> tuple[str, str] | None:
-    """The joint of a row and its kind; a symbol that has a value is a parameter.
+    """The joint of a row and its kind, or None if the row has no joint.
 
-    None where the row holds no joint.
+    A symbol that has a value is a parameter.
     """
     for column, kind in (("theta", "revolute"), ("d", "prismatic")):
         held = sorted(map(str, entries[column].free_symbols))
@@ -290,14 +291,14 @@ def _joint(
             return given or names[0], kind
         if names and not given:
             raise TableError(
-                f"{where}: {', '.join(names)} stand in {column}, and only one can be the joint: "
-                f"give the others their values in lines '# {names[-1]} = 0.1 m: what it is', or "
+                f"{where}: {column} has the symbols {', '.join(names)}, and only one can be the "
+                f"joint; give the others values in lines '# {names[-1]} = 0.1 m: what it is', or "
                 f"add a column joint with the name of the joint"
             )
     if given:
         raise TableError(
-            f"{where}: no joint: neither theta nor d holds {shown_name(given)}; a revolute joint "
-            f"is a symbol in theta, such as theta1, a slide one in d"
+            f"{where}: there is no joint, because neither theta nor d has {shown_name(given)}; "
+            f"a revolute joint is a symbol in theta, such as theta1, a slide one in d"
         )
     return None
 
@@ -310,7 +311,7 @@ def read_screws(path: Path) -> Table:
         raise
     except (ValueError, RecursionError) as error:
         why = "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
-        raise TableError(f"{path.name} is no TOML: {why}") from error
+        raise TableError(f"{path.name} is not valid TOML: {why}") from error
     _check_keys(data, ("parameters", "axes", "home"), path.name)
     table = Table()
     where = f"{path.name}, [parameters]"
@@ -329,9 +330,11 @@ def read_screws(path: Path) -> Table:
                 raise TableError(f"{where}: {key} is missing")
         joint, kind = axis["joint"], axis.get("kind", "revolute")
         if not isinstance(joint, str):
-            raise TableError(f'{where}: a joint has a name, such as "theta{i}", not {shown(joint)}')
+            raise TableError(
+                f'{where}: joint must be a name, such as "theta{i}", not {shown(joint)}'
+            )
         if kind not in ("revolute", "prismatic"):
-            raise TableError(f"{where}: the kind is revolute or prismatic, not {_plain(kind)}")
+            raise TableError(f"{where}: kind must be revolute or prismatic, not {_plain(kind)}")
         _add_joint(table, joint, kind, where)
         direction, point = (
             _vector(axis.get(key, [0, 0, 0]), f"{where}, {key}") for key in ("direction", "point")
@@ -345,7 +348,7 @@ def read_screws(path: Path) -> Table:
 
 
 def _use_exact(table: Table, file: str) -> None:
-    """Directions and rotations in decimals are made exact, and angles without roots get names."""
+    """Make directions and rotations in decimals exact, and name angles without square roots."""
     axes: list[tuple[Any, Any, Any]] = []
     directions: list[sp.Matrix] = []
     for i, (joint, direction, point) in enumerate(table.axes, 1):
@@ -355,7 +358,7 @@ def _use_exact(table: Table, file: str) -> None:
             if unit is not None and unit != given:
                 table.notes.append(
                     f"{file}, axis {i}: the direction {_decimals(given)} is rounded; the unit "
-                    f"vector {_listed(unit)} is taken for it"
+                    f"vector {_listed(unit)} is used instead"
                 )
                 given = unit
         directions.append(given)
@@ -367,7 +370,7 @@ def _use_exact(table: Table, file: str) -> None:
             table.home[:3, :3] = turned
             rows = ", ".join(_listed(turned.row(i)) for i in range(3))
             table.notes.append(
-                f"{file}, [home]: the rotation is rounded; the rows {rows} are taken for it"
+                f"{file}, [home]: the rotation is rounded; the rows {rows} are used instead"
             )
     angles = _angles(table)
     table.axes = [
@@ -391,7 +394,7 @@ def _check_keys(given: Any, known: Sequence[str] | None, where: str) -> None:
         raise TableError(f"{where} must be a table of keys and values, not {_plain(given)}")
     if known is not None and (unknown := [key for key in given if key not in known]):
         raise TableError(
-            f"{where}: the key {shown_name(unknown[0])} is unknown; there are {', '.join(known)}"
+            f"{where}: the key {shown_name(unknown[0])} is unknown; the keys are {', '.join(known)}"
         )
 
 
@@ -401,7 +404,7 @@ def _parameter(name: str, entry: Any, where: str) -> dict[str, str]:
     for key in ("unit", "meaning"):
         if not isinstance(given.get(key, ""), str):
             raise TableError(
-                f"{where}: the {key} of {shown_name(name)} is a text, not {_plain(given[key])}"
+                f"{where}: the {key} of {shown_name(name)} must be a text, not {_plain(given[key])}"
             )
     text = {key: given[key] for key in ("unit", "meaning") if key in given}
     if "value" in given:
@@ -416,7 +419,7 @@ def _parameter(name: str, entry: Any, where: str) -> dict[str, str]:
 
 
 def _plain(value: Any) -> str:
-    """A value of TOML as text: a text or a number as it is, anything else by its kind."""
+    """A TOML value as text: a text or a number as it is, anything else by its kind."""
     if isinstance(value, str):
         return value
     if isinstance(value, int) and value.bit_length() <= BITS:
@@ -425,16 +428,16 @@ def _plain(value: Any) -> str:
 
 
 def _home(given: Any, where: str) -> sp.Matrix:
-    """The pose of the tool, 4x4, where all joints are zero."""
+    """The pose of the tool, 4x4, when all joints are zero."""
     _check_keys(given, ("position", "rotation"), where)
     if "position" not in given:
         raise TableError(
-            f"{where}: position is missing; it is where the tool is while all joints are zero, "
+            f"{where}: position is missing; it is the place of the tool when all joints are zero, "
             f"such as [1, 0, 0]"
         )
     rows = given.get("rotation", [[1, 0, 0], [0, 1, 0], [0, 0, 1]])
     if not isinstance(rows, list) or len(rows) != 3:
-        raise TableError(f"{where}: rotation has 3 rows of 3 entries, not {_plain(rows)}")
+        raise TableError(f"{where}: rotation must have 3 rows of 3 entries, not {_plain(rows)}")
     R = sp.Matrix([_vector(row, f"{where}, rotation, row {i}") for i, row in enumerate(rows, 1)])
     p = sp.Matrix(_vector(given["position"], f"{where}, position"))
     return sp.Matrix.vstack(sp.Matrix.hstack(R, p), sp.Matrix([[0, 0, 0, 1]]))
@@ -448,7 +451,7 @@ def _vector(given: Any, where: str) -> list[Any]:
 
 
 def _expression(text: Any, where: str) -> Any:
-    """An exact expression; decimals are read as the fractions they are."""
+    """An exact expression; decimals are read as exact fractions."""
     if not isinstance(text, str | int) or isinstance(text, bool):
         raise TableError(f"{where}: {shown(text)} is not a number or formula")
     try:
@@ -463,13 +466,11 @@ def _symbol(name: str, where: str) -> Any:
 
 
 def _other_symbols(table: Table, entries: Sequence[Any], where: str) -> None:
-    """Whatever is no joint is a parameter, in the order of its first use."""
+    """Add every symbol that is not a joint as a parameter, in the order of first use."""
     for entry in entries:
         for name in sorted(map(str, entry.free_symbols)):
             if name not in table.joints:
                 table.parameters.setdefault(name, {})
     used = {str(s) for e in entries for s in e.free_symbols}
     if unused := [n for n in table.parameters if n not in used]:
-        raise TableError(
-            f"{where}: the parameter {shown_name(unused[0])} stands nowhere in the table"
-        )
+        raise TableError(f"{where}: the parameter {shown_name(unused[0])} is not used in the table")

@@ -1,4 +1,4 @@
-"""The H6AR of Rao and Raju, as published: the wrist moves with the averages of the arms' angles."""
+"""The H6AR of Rao and Raju as published: the wrist follows the averages of the arms' angles."""
 
 from functools import partial
 
@@ -67,14 +67,15 @@ d = Derivation(
     "h6ar",
     "H6AR, published model",
     RAO_RAJU,
-    "A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist "
-    "of two links and a gear set, which yaws (psi) and rolls (phi) as the arms move apart, and an "
-    "actuator that pitches (theta).  In this model, eqs. (1) to (9) as printed, the wrist hangs on "
-    "a virtual arm whose angles are the averages of the real ones, and yaw and roll are measured "
-    "against the base.  The average is that of the directions of the links, on the shorter arc.",
+    "A waist carries two equal arms of two links, each at the distance d from the mid-plane.  "
+    "Their tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the "
+    "arms move apart, and an actuator for the pitch (theta).  In this model, eqs. (1) to (9) as "
+    "printed, the wrist hangs on a virtual arm whose angles are the averages of the real ones.  "
+    "Yaw and roll are measured against the base.  Directions of links are averaged on the shorter "
+    "arc.",
     task=["x", "y", "z", "psi", "phi", "theta"],
     singularities=(
-        "the tip is above or below the waist axis",
+        "tip in the plane of the waist axis and the shoulders",
         "virtual arm with the wrist straight or folded",
         "virtual arm straight or folded",
         "upper arms half a turn apart",
@@ -98,8 +99,8 @@ by_frames = [
 ]
 d.step(
     "Tips of the fore-arms",
-    "The frames of Fig. 2 multiply to the tips; the mid-plane offset d is along the axes of the "
-    "shoulders, to the right of the mid-plane for one arm and to the left for the other.",
+    "The product of the frames of Fig. 2 gives the tips.  The offset d from the mid-plane is along "
+    "the axes of the shoulders, to the right for one arm and to the left for the other.",
     {"(x, y, z)_R": tips[0], "(x, y, z)_L": tips[1]},
     published=("(1)", "(2)"),
     equal=[(tips[0], by_frames[0]), (tips[1], by_frames[1])],
@@ -115,20 +116,21 @@ short_upper, short_fore = m.L1 * (1 - cos(alpha)), fore * (1 - cos(beta))
 bent = (m.L2 * sin(theta23A - theta2A) + m.a3 * cos(theta23A - theta2A)) / fore
 d.step(
     "Yaw and roll",
-    "Eqs. (3) to (5) compare the tips: half of what the right one is ahead of the left is "
-    "d tan(psi), and half of what it is above is d tan(phi).  In the averages of the angles and "
-    "half their differences both are linear in the sines of the half differences.",
+    "Eqs. (3) to (5) compare the tips: d tan(psi) is half the distance by which the right tip is "
+    "ahead of the left one, and d tan(phi) half the distance by which it is above.  In terms of "
+    "averages and half differences of the angles, both are linear in the sines of the half "
+    "differences.",
     {r"d \tan\psi": mean[0], r"d \tan\phi": mean[1]},
     published=("(3)", "(4)", "(5)"),
     equal=[(apart.xreplace(halves), mean)],
 )
 d.step(
     "Invariant point",
-    "The paper gives it twice: as the middle of the tips in (6), and with the averages of the "
-    "angles in (7), which this model takes.  The links of the middle are shortened by the cosines "
-    "of the half differences.  The error is the third side of a triangle, whose other sides are "
-    "e1 and e2 (f is the length of a fore-arm) and whose angle has a cosine of at most 1; so it is "
-    "at most e1 + e2: of second order.",
+    "The paper gives this point twice: as the middle of the tips in (6), and by the averages of "
+    "the angles in (7).  This model uses (7).  In (6) the links are shortened by the cosines of "
+    "the half differences.  The difference of the two points is one side of a triangle with the "
+    "other sides e1 and e2 (f is the length of a fore-arm).  So it is at most e1 + e2, which is of "
+    "second order.",
     {
         "(r, h)_I": invariant,
         "(r, h)_6": ((right + left) / 2).xreplace(halves),
@@ -162,17 +164,17 @@ orientation = (
 )
 d.step(
     "Tip",
-    "The wrist is a serial chain on the virtual fore-arm: roll about it, yaw about the x axis that "
-    "the roll leaves, the wrist, pitch about the y axis, the last link.  So the rotation of the "
-    "tip that belongs to (9) is R03 Rz(phi) Rx(psi) Ry(theta).",
+    "The wrist is a serial chain on the virtual fore-arm: roll about the fore-arm, yaw about the "
+    "rolled x axis, the wrist, pitch about the y axis, and the last link.  So the rotation of the "
+    "tip in (9) is R03 Rz(phi) Rx(psi) Ry(theta).",
     {"(x, y, z)_T": T, r"(L_\theta, L_{2W}, a_{3W})": sp.Matrix(extended(m, posture))},
     published=("(9)",),
     equal=[(serial[:3, 3], T), (serial[:3, :3], orientation)],
 )
 d.step(
     "Length of the wrist",
-    "Half the base line less half the gears, the wrist and a wrist link form a right triangle; "
-    "half the base line is d / cos(psi) in (8).",
+    "The wrist, a wrist link, and half the base line minus half the gears form a right triangle.  "
+    "In (8) half the base line is d / cos(psi).",
     {"l_W^2": wrist_squared(m, m.d / cos(psi))},
     published=("(8)",),
     equal=[
@@ -188,8 +190,8 @@ a = real("ahead")
 half_base = sqrt(m.d**2 + a**2)
 d.step(
     "Yaw and wrist without the angle",
-    "The forward map takes cosine and sine of yaw (and of roll alike) from the tips, and the "
-    "angles only at the output: psi = atan2(d tan(psi), d).",
+    "The forward map computes the cosines and sines of yaw and roll directly from the tips.  It "
+    "needs the angles only as outputs: psi = atan2(d tan(psi), d), and likewise for roll.",
     {r"\cos\psi": m.d / half_base, r"\sin\psi": a / half_base},
     equal=[
         (cos(atan2(a, m.d)), m.d / half_base),
@@ -206,7 +208,7 @@ d.step(
 
 
 def averages(p: Program) -> tuple[Pair, Pair]:
-    """The directions of the virtual arm: averages on the shorter arc."""
+    """The directions of the virtual arm: averages of the real ones on the shorter arc."""
     upper, fore = (
         Pair(p.let(f"c{n}", side * cos(mean)), p.let(f"s{n}", side * sin(mean)))
         for n, mean, half in (
@@ -219,7 +221,7 @@ def averages(p: Program) -> tuple[Pair, Pair]:
 
 
 def stand(p: Program) -> tuple[Posture, sp.Matrix]:
-    """The posture of the joints: averages, yaw, roll and the wrist."""
+    """The posture, and by how much the right tip is ahead of the middle and above it."""
     upper, fore = averages(p)
     gap = mean.subs(means, simultaneous=True)
     ahead, above = (p.let(n, e) for n, e in zip(("ahead", "higher"), gap, strict=True))
@@ -236,7 +238,7 @@ def stand(p: Program) -> tuple[Posture, sp.Matrix]:
 p = Program()
 here, gap = stand(p)
 fk = [*tip(m, here), *(atan2(a.s, a.c) for a in (here.yaw, here.roll)), turned(theta)]
-too_wide = "NaN where the tips are farther apart than the wrist links can span."
+too_wide = "NaN if the tips are farther apart than the wrist links can span."
 
 d.function(
     "fk",
@@ -268,7 +270,7 @@ p = Program()
 mid_arm = reach(m, *averages(p), m.L2, m.a3)
 d.function(
     "invariant_point",
-    "The invariant point, by the averages of the angles.",
+    "The invariant point, computed from the averages of the angles.",
     {"q": q},
     {"p": in_space(m, pair(theta1), mid_arm, sp.S.Zero)},
     program=p,
@@ -296,7 +298,8 @@ area = sp.Matrix([mean[0], mean[1]]).jacobian([alpha, beta]).det()
 d.step(
     "Jacobian by the chain rule",
     "The task depends on the joints through theta1, the averages, yaw, roll and pitch.  The outer "
-    "factor holds the position by these, the inner one these by the joints.",
+    "factor is the derivative of the task by these quantities, and the inner factor is their "
+    "derivative by the joints.",
     {"J": outer[:3, :3]},
     equal=[
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
@@ -336,7 +339,7 @@ d.function(
     {"J": J},
     program=p,
     source="derivative of eqs. (1) to (9)",
-    notes=(too_wide, "Unbounded where the wrist links are stretched: there l_W turns over."),
+    notes=(too_wide, "Unbounded near stretched wrist links: the slope of l_W is infinite there."),
 )
 p = Program()
 here, _ = stand(p)
@@ -370,14 +373,14 @@ middle = solve_mid_plane(p, m, q, length, base)
 upper, elbow = middle.upper, middle.elbow
 gap = p.let("ahead", m.d * sin(psi) / cos(psi)), p.let("higher", m.d * sin(phi) / cos(phi))
 size = p.let("size", m.L1 + sqrt(m.L2**2 + m.a3**2))
-# seen from the upper arm, whose sine multiplies (0, L1)
+# in the axes of the upper arm: there sin(alpha) multiplies (0, L1)
 seen = (
     p.let("p_1", upper.c * gap[0] + upper.s * gap[1]),
     p.let("p_2", upper.c * gap[1] - upper.s * gap[0]),
 )
 v = p.let("v_1", m.L2 * elbow.c - m.a3 * elbow.s), p.let("v_2", m.L2 * elbow.s + m.a3 * elbow.c)
 free = free_turn(p, m, elbow, size)
-# in exact numbers nothing turns here
+# in exact arithmetic every turn and lean is zero
 turns, leans = [], []
 for sine in ("alpha", "beta"):
     # by Cramer's rule sin(alpha) = (p x v) / (u x v) and sin(beta) = (u x p) / (u x v)
@@ -427,14 +430,16 @@ d.function(
     source="eqs. (11), (13) and (14), with the exact half differences",
     notes=(
         "UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist "
-        "axis than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.",
-        "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm "
-        "with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm "
-        "straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta), "
-        "or their difference where it is folded, is determined by yaw and roll, alpha and beta "
-        "being half the differences of the arms' angles; sines of equal size are returned.",
-        "SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al): "
-        "rounded joints do not hold the tip to 1e-12 there.",
+        "axis than L_theta, the virtual arm cannot reach the tip, or the tips of the arms cannot "
+        "be so far apart.",
+        "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned); the tip of the virtual arm "
+        "with the wrist is on its shoulder (a horizontal upper arm is returned); or the virtual "
+        "arm without the wrist is straight or folded.  In the last case yaw and roll determine "
+        "only the sum of L1 sin(alpha) and f sin(beta) (straight) or their difference (folded); "
+        "alpha and beta are half the differences of the arms' angles, and sines of equal size are "
+        "returned.",
+        "SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): "
+        "rounded joints do not determine the tip to 1e-12 there.",
         "INVALID: d, L1, or both L2 and a3 are zero.",
     ),
 )

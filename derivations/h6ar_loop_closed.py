@@ -1,4 +1,4 @@
-"""The H6AR as a mechanism whose loop closes: the wrist spans the tips of the arms."""
+"""The H6AR with a loop that closes: the wrist spans the tips of the arms."""
 
 import sympy as sp
 from closedform.derivations.h6ar_mechanism import (
@@ -57,17 +57,16 @@ d = Derivation(
     "h6ar_loop_closed",
     "H6AR, loop-closed model",
     RAO_RAJU,
-    "A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist "
-    "of two links and a gear set, which yaws (psi) and rolls (phi) as the arms move apart, and an "
-    "actuator that pitches (theta).  In this model the loop closes: the base line of "
-    "the wrist joins "
-    "the tips, and the invariant point is its middle.  A virtual arm in the mid-plane, bent to the "
-    "side of the right arm, reaches that point; yaw and roll are measured against "
-    "its fore-arm, roll "
-    "with the sign of (9): the right tip goes down.",
+    "A waist carries two equal arms of two links, each at the distance d from the mid-plane.  "
+    "Their tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the "
+    "arms move apart, and an actuator for the pitch (theta).  In this model the loop closes: the "
+    "base line of the wrist joins the tips, and the invariant point is its middle.  A virtual arm "
+    "in the mid-plane, bent to the same side as the right arm, reaches that point.  Yaw and roll "
+    "are measured against the virtual fore-arm; as in (9), the right tip goes down if the roll is "
+    "positive.",
     task=["x", "y", "z", "psi", "phi", "theta"],
     singularities=(
-        "the tip is above or below the waist axis",
+        "tip in the plane of the waist axis and the shoulders",
         "virtual arm with the wrist straight or folded",
         "right arm straight or folded",
         "left arm straight or folded",
@@ -89,8 +88,9 @@ means, halves = half_sums(q), by_half_sums(q)
 midway, gap_half = (e(m).subs(means, simultaneous=True) for e in (midpoint, half_gap))
 d.step(
     "Middle and distance of the tips",
-    "In half sums A and half differences of the angles of both arms (alpha of the upper arms, beta "
-    "of the fore-arms) the distance of the tips keeps its digits where they are close.",
+    "They are written in half sums A and half differences of the angles of both arms (alpha for "
+    "the upper arms, beta for the fore-arms).  This form keeps the digits of the distance of the "
+    "tips if the tips are close together.",
     {"(r, h)_I": midpoint(m), "(r, h)_R - (r, h)_I": half_gap(m)},
     published=("(6)",),
     equal=[(middle.xreplace(halves), midpoint(m)), (apart.xreplace(halves), half_gap(m))],
@@ -104,17 +104,18 @@ base = m.d / (cos(psi) * cos(phi))
 wrist_line = base * rotation("z", phi) * rotation("x", psi) * sp.Matrix([0, 1, 0])
 d.step(
     "Base line in fore-arm axes",
-    "The line from the middle of the tips to the right tip, half of what the tips are apart, seen "
-    "in the axes x (up at home), y (right) and z (along) of the fore-arm of the virtual arm.",
+    "The line from the middle of the tips to the right tip is half the base line.  Here it is "
+    "given in the axes of the virtual fore-arm: x (up at home), y (to the right) and z (along it).",
     {r"R_{03}^T (p_R - p_I)": line},
     published=("(3)", "(4)", "(5)", "(6)"),
     equal=[(forearm.T * sp.Matrix([ahead, -m.d, higher]), line)],
 )
 d.step(
     "Yaw and roll from the tips",
-    "The base line of the wrist is the y axis after roll and yaw.  Its component across the "
-    "mid-plane is d, so that half of it is d / (cos(psi) cos(phi)), which replaces d / cos(psi) in "
-    "(8); the other components give tan(phi) = -x / d and tan(psi) = cos(phi) z / d.",
+    "The base line of the wrist is along the y axis after roll and yaw.  Half of it has the "
+    "component d across the mid-plane, so its length is d / (cos(psi) cos(phi)), which replaces d "
+    "/ cos(psi) in (8).  The other components give tan(phi) = -x / d and tan(psi) = cos(phi) z / "
+    "d.",
     {r"b\,R_z R_x e_y": wrist_line},
     published=("(3)", "(4)", "(8)"),
     equal=[(wrist_line, sp.Matrix([-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)]))],
@@ -124,9 +125,9 @@ length = real("wrist", positive=True)
 link = axis * sp.Matrix([0, m.gs, length]) - wrist_line
 d.step(
     "The four-bar of the wrist closes",
-    "The gears are g_s beside the axis of the wrist and l_W along it; a wrist link "
-    "joins each to its "
-    "tip.  Its length is al if l_W^2 = al^2 - (b - g_s)^2, on the right as on the left.",
+    "The gears are at the distance g_s beside the axis of the wrist and l_W along it.  A wrist "
+    "link joins each gear to its tip.  The length of both links is al if l_W^2 = al^2 - (b - "
+    "g_s)^2.",
     {"b": base, "l_W^2": m.al**2 - (base - m.gs) ** 2},
     published=("(8)",),
     equal=[
@@ -143,8 +144,8 @@ given_ahead = m.d * (s23 * tan(psi) / cos(phi) - c23 * tan(phi))
 given_higher = -m.d * (c23 * tan(psi) / cos(phi) + s23 * tan(phi))
 d.step(
     "Tips from yaw and roll",
-    "The other way round, yaw, roll and the fore-arm of the virtual arm give how far the tips are "
-    "apart.",
+    "Conversely, yaw, roll and the direction of the virtual fore-arm give the distance of the "
+    "tips.",
     {"(r_R - r_L) / 2": given_ahead, "(h_R - h_L) / 2": given_higher},
     equal=[
         (line.subs({ahead: given_ahead, higher: given_higher}), wrist_line),
@@ -153,10 +154,10 @@ d.step(
 reaches = [e.dot(e) for e in (right, left, middle)]
 d.step(
     "How far the virtual arm is bent",
-    "The square of the reach of the virtual arm is the mean of those of both arms less half the "
-    "distance of the tips squared.  So N = (L1 + f)^2 - R^2 of the virtual arm, whose f is the "
-    "length of a fore-arm, is a sum of terms that are not negative and keeps its digits where the "
-    "arms are straight.",
+    "The square of the reach R of the virtual arm is the mean of the squares for both arms, minus "
+    "the square of half the distance of the tips.  So N = (L1 + f)^2 - R^2 of the virtual arm, "
+    "where f is the length of a fore-arm, is a sum of terms that are not negative.  It keeps its "
+    "digits if the arms are straight.",
     {"R_I^2": (reaches[0] + reaches[1]) / 2 - apart.dot(apart)},
     equal=[
         (reaches[2], (reaches[0] + reaches[1]) / 2 - apart.dot(apart)),
@@ -174,8 +175,8 @@ half_line = sqrt(m.d**2 + width**2 + beyond**2)
 cosine_roll = m.d / sqrt(m.d**2 + width**2)
 d.step(
     "Yaw and wrist without the angle",
-    "The forward map takes cosines and sines of yaw and roll from the tips, and the angles only at "
-    "the output; half the base line is half the distance of the tips.",
+    "The forward map computes the cosines and sines of yaw and roll directly from the tips, and "
+    "needs the angles only as outputs.  Half the base line is half the distance of the tips.",
     {
         r"\cos\phi": cosine_roll,
         r"\cos\psi": sqrt(m.d**2 + width**2) / half_line,
@@ -193,7 +194,7 @@ d.step(
 
 
 def stand(p: Program) -> Posture:
-    """The posture of the joints: the middle of the tips, the virtual arm, yaw, roll, wrist."""
+    """The posture of the joints, from the middle of the tips and the virtual arm."""
     second = p.let("fore", forearm_length, nonnegative=True)
     squares, bent = {}, {}
     for name, angle in (("right", theta3R), ("left", theta3L)):
@@ -233,10 +234,10 @@ p = Program()
 here = stand(p)
 fk = [*tip(m, here), *(atan2(a.s, a.c) for a in (here.yaw, here.roll)), turned(theta)]
 notes = (
-    "NaN where the tips are farther apart than the wrist links can span, or where the virtual arm "
-    "cannot reach their middle.",
-    "Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of "
-    "yaw and roll.",
+    "NaN if the tips are farther apart than the wrist links can span, or if the virtual arm cannot "
+    "reach the middle of the tips.",
+    "Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against its "
+    "fore-arm.",
 )
 d.function(
     "fk",
@@ -289,9 +290,10 @@ arm_by = arm(m, theta2R, theta2R + theta3R).jacobian([theta2R, theta3R])
 d.step(
     "Jacobian by the chain rule",
     "The task depends on the joints through theta1, the virtual arm, yaw, roll and pitch.  The "
-    "virtual arm follows the middle of the tips by the inverse of its own Jacobian; yaw and roll "
-    "follow the base line in the axes of its fore-arm.  The determinant is the product of those of "
-    "the parts: both real arms stand in the numerator, the virtual one in the denominator.",
+    "virtual arm follows the middle of the tips by the inverse of its own Jacobian.  Yaw and roll "
+    "follow the base line in the axes of the virtual fore-arm.  The determinant is the product of "
+    "the determinants of the factors: those of both real arms are in the numerator, that of the "
+    "virtual arm is in the denominator.",
     {"J": outer[:3, :3]},
     equal=[
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
@@ -310,7 +312,7 @@ d.step(
 
 
 def bend_of(p: Posture) -> tuple[sp.Expr, sp.Expr]:
-    """The distance of the tip from the waist axis, and the bend of the virtual arm with wrist."""
+    """Distance of the tip from the waist axis, and bend of the virtual arm with the wrist."""
     _, along, across = extended(m, p)
     return reach(m, p.upper, p.fore, along, across)[0], straight(along, across, p.upper, p.fore)
 
@@ -351,7 +353,7 @@ d.function(
     {"J": J},
     program=p,
     source="derivative of the forward map",
-    notes=(*notes, "Unbounded where the wrist links are stretched: there l_W turns over."),
+    notes=(*notes, "Unbounded near stretched wrist links: the slope of l_W is infinite there."),
 )
 p = Program()
 here = stand(p)
@@ -359,7 +361,7 @@ f = factors(here)
 turning = m.d / (tilted * here.base**2)
 d.function(
     "determinant",
-    "Determinant of the Jacobian; it has a pole where the virtual arm is straight.",
+    "Determinant of the Jacobian; it has a pole if the virtual arm is straight or folded.",
     {"q": q},
     {"det": m.L1**2 * Rational(1, 4) * f[0] * f[1] * f[2] * f[3] * turning / f[4]},
     program=p,
@@ -396,8 +398,8 @@ shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pai
 gap = p.let("gap", shift.dot(shift))
 cross = p.let("twice", 2 * point.dot(shift))
 
-# Joints tell the direction of a virtual arm from where the tips are, unless it is nearly folded or
-# ends close to the shoulder, and the length of the wrist from how far they are apart.
+# The middle of the tips determines the virtual arm, unless it is nearly folded or ends close to the
+# shoulder; the distance of the tips determines the length of the wrist.
 size = p.let("size", m.L1 + second)
 square = p.let("square_mid", M + (m.L1 - second) ** 2)
 p.determined(M * square, gap * size**2, "the virtual arm is folded", squares=True)
@@ -448,28 +450,26 @@ sides = branches(WAIST, ELBOW, LEFT)
 d.branches = sides.labels
 d.function(
     "ik",
-    "All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other "
-    "side.",
+    "All postures of the mechanism that reach a tip; in a mixed one the elbows are on opposite "
+    "sides.",
     {"x": target},
     {"q": [joints[s].xreplace(solution) for s in q]},
     program=p,
     branches=sides,
     result="Solutions",
-    source="eqs. (11), (13) and (14), then each arm by itself",
+    source="eqs. (11), (13) and (14), then each arm separately",
     notes=(
-        "UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer "
-        "to the waist "
-        "axis than L_theta, or an arm is out of reach.",
-        "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder "
-        "(its upper arm is returned beside that of the virtual arm).",
-        "SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a "
+        "UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the "
+        "waist axis than L_theta, or an arm cannot reach its tip.",
+        "SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on "
+        "its own shoulder (its upper arm is returned parallel to that of the virtual arm).",
+        "SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a "
         "folded virtual arm (its reach times its bend is less than 2^-10 of its size times half "
-        "the distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and "
-        "stretched wrist links (l_W is less than 2^-10 al).",
+        "the distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and "
+        "near stretched wrist links (l_W is less than 2^-10 al).",
         "INVALID: d, L1, or both L2 and a3 are zero.",
-        "A straight right arm is returned bent by a few units in the last place, so that "
-        "fk can read "
-        "the side.",
+        "A straight right arm is returned bent by a few units in the last place, so that fk can "
+        "tell the side.",
     ),
 )
 half_row = Rational(1, 2)
@@ -497,7 +497,7 @@ d.inverses.append(
             joints,
             sp.diag(MID_PLANE_ROWS, sp.Matrix.vstack(closure, turned_line * difference)),
             kept_of=2,
-            because="the virtual arm is bent to the side of the right arm",
+            because="the virtual arm is bent to the same side as the right arm",
         ),
     )
 )

@@ -1,8 +1,8 @@
-"""What both models of the H6AR share: dimensions, frames, the tip, the wrist and the chain rule.
+"""Dimensions, frames, the tip, the wrist and the chain rule for both models of the H6AR.
 
-Angles of the mid-plane: ``theta2A`` is the upper arm of the virtual arm and ``theta23A`` its
-fore-arm, both against the horizontal; ``alpha`` and ``beta`` are half the differences of the real
-arms' angles, right minus left.
+Angles in the mid-plane: ``theta2A`` is the angle of the virtual upper arm and ``theta23A`` that of
+the virtual fore-arm, both against the horizontal.  ``alpha`` and ``beta`` are half the differences
+of the real arms' angles, right minus left.
 """
 
 from collections.abc import Iterable
@@ -40,7 +40,7 @@ EXAMPLE = "example; the paper gives no dimensions"
 
 
 class Dimensions(NamedTuple):
-    """The parameters, in the contract's order."""
+    """The parameters, in the order of the generated functions."""
 
     L1: sp.Symbol
     L2: sp.Symbol
@@ -54,7 +54,7 @@ class Dimensions(NamedTuple):
 
 
 class Joints(NamedTuple):
-    """The joint variables, in the contract's order."""
+    """The joint variables, in the order of the generated functions."""
 
     theta1: sp.Symbol
     theta2R: sp.Symbol
@@ -72,7 +72,7 @@ class Pair(NamedTuple):
 
 
 class Posture(NamedTuple):
-    """Everything the tip depends on, as names of a program or as expressions."""
+    """All quantities that the tip depends on, as names of a program or as expressions."""
 
     waist: Pair
     upper: Pair
@@ -115,12 +115,12 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
 
 
 def product(transforms: Iterable[sp.Matrix]) -> sp.Matrix:
-    """The product as it comes, for comparison with a form that is written by hand."""
+    """The product without simplification, for comparison with a form written by hand."""
     return reduce(sp.Matrix.__mul__, transforms)
 
 
 def reach(m: Dimensions, upper: Pair, fore: Pair, along: sp.Expr, across: sp.Expr) -> sp.Matrix:
-    """Distance from the waist axis and height above the shoulder, of an arm in its plane."""
+    """Distance of the end of an arm from the waist axis, and its height above the shoulder."""
     return sp.Matrix(
         [
             m.L1 * upper.c + along * fore.s + across * fore.c,
@@ -130,25 +130,25 @@ def reach(m: Dimensions, upper: Pair, fore: Pair, along: sp.Expr, across: sp.Exp
 
 
 def arm(m: Dimensions, upper: sp.Expr, fore: sp.Expr) -> sp.Matrix:
-    """The tip of a fore-arm in the plane of its arm, for absolute angles."""
+    """The tip of a fore-arm in the plane of its arm, from absolute angles."""
     return reach(m, pair(upper), pair(fore), m.L2, m.a3)
 
 
 def in_space(m: Dimensions, waist: Pair, planar: sp.Matrix, side: sp.Expr) -> sp.Matrix:
-    """A point of an arm's plane, ``side`` to the right of the mid-plane, in the base frame."""
+    """A point of a plane at the distance ``side`` right of the mid-plane, in the base frame."""
     r, h = planar
     return sp.Matrix([waist.s * side + waist.c * r, -waist.c * side + waist.s * r, m.d1 + h])
 
 
 def half_sums(q: Joints) -> dict[sp.Symbol, sp.Expr]:
-    """Averages and half differences of the arms' angles, in the joints."""
+    """Averages and half differences of the arms' angles, in terms of the joints."""
     upper, bend = (q.theta2R + q.theta2L) / 2, (q.theta3R + q.theta3L) / 2
     apart, bent = (q.theta2R - q.theta2L) / 2, (q.theta3R - q.theta3L) / 2
     return {theta2A: upper, theta23A: upper + bend, alpha: apart, beta: apart + bent}
 
 
 def by_half_sums(q: Joints) -> dict[sp.Symbol, sp.Expr]:
-    """The joints of the arms in averages and half differences."""
+    """The joints of the arms in terms of averages and half differences."""
     return {
         q.theta2R: theta2A + alpha,
         q.theta2L: theta2A - alpha,
@@ -158,7 +158,7 @@ def by_half_sums(q: Joints) -> dict[sp.Symbol, sp.Expr]:
 
 
 def half_gap(m: Dimensions) -> sp.Matrix:
-    """Half of what the right tip is ahead of the left one and above it."""
+    """Half the distances by which the right tip is ahead of the left one and above it."""
     upper, fore = pair(theta2A), pair(theta23A)
     return sp.Matrix(
         [
@@ -175,7 +175,7 @@ def midpoint(m: Dimensions) -> sp.Matrix:
 
 
 def arm_frames(m: Dimensions, theta1: sp.Expr, theta2: sp.Expr, theta3: sp.Expr, d: sp.Expr):
-    """The frames (X, Y, Z)_3 of an arm by Denavit-Hartenberg, as in the paper's Fig. 2."""
+    """The frames of an arm up to (X, Y, Z)_3 by Denavit-Hartenberg, as in the paper's Fig. 2."""
     return [
         denavit_hartenberg(0, pi / 2, m.d1, theta1),
         denavit_hartenberg(m.L1, 0, d, theta2),
@@ -184,7 +184,7 @@ def arm_frames(m: Dimensions, theta1: sp.Expr, theta2: sp.Expr, theta3: sp.Expr,
 
 
 def wrist_frames(m: Dimensions, length: sp.Expr, psi: sp.Expr, phi: sp.Expr, theta: sp.Expr):
-    """From the tip of the virtual fore-arm: roll, yaw, the wrist, pitch and the last link."""
+    """The frames from the virtual fore-arm to the tip: roll, yaw, wrist, pitch, last link."""
     along_z = [homogeneous(sp.eye(3), (0, 0, e)) for e in (m.L2, length, m.lp)]
     return [
         along_z[0],
@@ -197,7 +197,7 @@ def wrist_frames(m: Dimensions, length: sp.Expr, psi: sp.Expr, phi: sp.Expr, the
 
 
 def extended(m: Dimensions, p: Posture) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """L_theta, L_2W and a_3W of eq. (9): the virtual arm together with the wrist."""
+    """L_theta, L_2W and a_3W of eq. (9), the lengths of the virtual arm with the wrist."""
     hand = p.wrist + m.loff + m.lp * p.pitch.c
     return (
         hand * p.roll.c * p.yaw.s - m.lp * p.pitch.s * p.roll.s,
@@ -213,13 +213,13 @@ def tip(m: Dimensions, p: Posture) -> sp.Matrix:
 
 
 def straight(along: sp.Expr, across: sp.Expr, upper: Pair, fore: Pair) -> sp.Expr:
-    """Vanishes where an arm is straight or folded: its fore-arm across its upper arm."""
+    """The component of the fore-arm across the upper arm: zero if the arm is straight or folded."""
     bend = Pair(upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
     return along * bend.c - across * bend.s
 
 
 def turned(angle: sp.Expr) -> sp.Expr:
-    """An angle as it stands in (-pi, pi]."""
+    """An angle, moved to (-pi, pi]."""
     return atan2(sin(angle), cos(angle))
 
 
@@ -237,22 +237,22 @@ def pose_matrix(m: Dimensions, program: Program, p: Posture) -> sp.Matrix:
 
 
 def wrist_let(program: Program, m: Dimensions, base: sp.Symbol) -> sp.Symbol:
-    """The length l_W of eq. (8) for half a base line; the triangle must close."""
+    """Define l_W of eq. (8) for half a base line, with the conditions that the triangle closes."""
     near = program.bound("near", m.al + m.gs - base, m.al + m.gs, "the wrist links are long enough")
     far = program.bound("far", m.al - m.gs + base, m.al + m.gs, "the wrist links meet the gears")
     return program.let("wrist", sqrt(near) * sqrt(far), nonnegative=True)
 
 
 def wrist_length(m: Dimensions, level: sp.Expr) -> sp.Expr:
-    """l_W of eq. (8) where half the base line is d / level."""
+    """l_W of eq. (8) if half the base line is d / level."""
     return sqrt((m.al + m.gs) * level - m.d) * sqrt((m.al - m.gs) * level + m.d) / level
 
 
 def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
-    """l_W and half the base line d / level, where ``level`` is the cosine it is tilted by.
+    """Define l_W and half the base line, d / level; ``level`` is the cosine of its tilt.
 
-    The scale of the bounds is at most half of that in ``wrist_let``, times ``level``: what counts
-    as within reach here does so there.
+    The scale of the bounds is at most ``level / 2`` times that in ``wrist_let``.  So a posture that
+    is within reach here is also within reach there.
     """
     size = m.d / 2
     program.bound("upright", cos(phi), sp.S.One, "the roll is less than a right angle")
@@ -265,25 +265,25 @@ def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Sym
 
 
 class MidPlane(NamedTuple):
-    """The first part of either inverse: waist and virtual arm from the tip."""
+    """The first part of both inverses: waist and virtual arm from the tip."""
 
     lemmas: tuple[Lemma, ...]
     upper: Pair
     fore: Pair
     elbow: Pair
-    """Of the angle from the upper arm to the fore-arm."""
+    """Cosine and sine of the angle from the upper arm to the fore-arm."""
 
 
 def solve_mid_plane(
     program: Program, m: Dimensions, q: Joints, wrist: sp.Symbol, base: sp.Symbol
 ) -> MidPlane:
-    """Pitch, waist and virtual arm of a target, whose wrist has a known length."""
+    """Solve for pitch, waist and virtual arm; the length of the wrist is known."""
     given = (pair(psi), pair(phi), pair(pitch))
     program.let("extent", m.d * m.L1 * (m.L2 + m.a3))
     program.require(
         [sp.Piecewise((0, real("extent") > 0), (1, True))],
         1,
-        "the arms stand apart, and neither upper arms nor fore-arms are without length",
+        "the arms are apart, and upper arms and fore-arms have a length",
     )
     nothing = Pair(sp.S.Zero, sp.S.Zero)
     known = Posture(nothing, nothing, nothing, *given, wrist, base)
@@ -310,7 +310,7 @@ def solve_mid_plane(
 
 
 def tip_system(m: Dimensions, q: Joints, level: sp.Expr) -> tuple[tuple, tuple]:
-    """Targets and forward expressions of pitch and tip, with yaw, roll and pitch as given."""
+    """Targets and forward expressions of pitch and tip, for given yaw, roll and pitch."""
     angles = (q.theta1, theta2A, theta23A, psi, phi, pitch)
     there = Posture(*map(pair, angles), wrist_length(m, level), m.d / level)
     return (sp.S.Zero, x, y, z), (sin(q.theta - pitch), *tip(m, there))
@@ -318,12 +318,12 @@ def tip_system(m: Dimensions, q: Joints, level: sp.Expr) -> tuple[tuple, tuple]:
 
 @dataclass(frozen=True)
 class FreeTurn:
-    """The turn of the virtual fore-arm that its tip with the wrist does not feel.
+    """The turn of the virtual fore-arm that leaves the tip where it is.
 
-    Where the virtual arm with the wrist is straight, the rounding of the target decides how far it
-    is bent, and real arms that are at their own limit may seem beyond it.  Among the postures that
-    reach the target alike, which differ by a turn of the virtual fore-arm, one that exists is
-    taken.  For exact numbers the turn is zero.
+    If the virtual arm with the wrist is straight, rounding of the target decides how far it bends,
+    and real arms at their own limit may seem to be beyond it.  All postures that differ by a small
+    turn of the virtual fore-arm then reach the target equally well, and one that exists is taken.
+    In exact arithmetic the turn is zero.
     """
 
     program: Program
@@ -335,17 +335,17 @@ class FreeTurn:
     drawn: sp.Symbol
 
     def swing(self, turn: sp.Expr) -> sp.Expr:
-        """How far the elbow goes aside, beyond what it does as the arm turns as a whole."""
+        """How far the elbow moves aside, in addition to the turn of the whole arm."""
         return -self.drawn * turn
 
     def easing(
         self, name: str, room: sp.Symbol, slope: sp.Symbol, meaning: str
     ) -> tuple[sp.Symbol, sp.Expr]:
-        """The turn that makes up for what an area ``room`` lacks, and grows by ``slope`` of it.
+        """Return a flag and the turn that brings a negative area ``room`` back to zero.
 
-        Returns a flag too, without which there is none.
+        ``slope`` is the derivative of ``room`` by the turn.  Without the flag the turn is zero.
         """
-        # a turn that is free where tilt is zero: its square is below rounding
+        # so small a turn does not move the tip if tilt is zero: its square is below rounding
         nothing = Rational(1, 10**5) * self.size
         no_room = f"no room: {meaning}"
         spent = self.program.vanishes(f"spent_{name}", used_up(room), self.scale, no_room)
@@ -358,13 +358,13 @@ class FreeTurn:
 
 
 def bent_whole(m: Dimensions, bend: Pair) -> tuple[sp.Expr, sp.Expr]:
-    """Of the virtual arm with the wrist: its fore-arm across its upper arm, and all along it."""
+    """The virtual arm with the wrist: its extent across and along the upper arm."""
     along, across = real("L_2W"), real("a_3W")
     return along * bend.c - across * bend.s, m.L1 + along * bend.s + across * bend.c
 
 
 def free_turn(program: Program, m: Dimensions, bend: Pair, size: sp.Symbol) -> FreeTurn:
-    """The free turn of a virtual arm from the angle of its elbow and its length when stretched."""
+    """The free turn of a virtual arm, from the angle of its elbow and its stretched length."""
     tilt, drawn = bent_whole(m, bend)
     return FreeTurn(
         program, size, size * m.d, program.let("tilt", tilt), program.let("drawn", drawn)
@@ -372,17 +372,17 @@ def free_turn(program: Program, m: Dimensions, bend: Pair, size: sp.Symbol) -> F
 
 
 def turn_step(d: Derivation, m: Dimensions) -> None:
-    """The step of the derivation that says what the free turn is for."""
+    """Add the step of the derivation that explains the free turn."""
     tilt, drawn = bent_whole(m, pair(theta23A - theta2A))
     p = reach(m, pair(theta2A), pair(theta23A), real("L_2W"), real("a_3W"))
     rate = p.diff(theta23A) + (1 - drawn / m.L1) * p.diff(theta2A)
     d.step(
-        "Arms at their limit under a straight virtual arm",
-        "As the fore-arm of the virtual arm turns by t and its upper arm by (1 - drawn / L1) t, "
-        "the tip moves by tilt t, along the upper arm.  Where tilt is zero, the virtual arm with "
-        "the wrist being straight, rounding the target turns the arm by as much as the root of "
-        "the rounding, and a real arm at its own limit may seem beyond it.  There it is turned "
-        "back; in exact numbers no arm lacks anything, and nothing turns.",
+        "Arms at their limit while the virtual arm is straight",
+        "If the virtual fore-arm turns by t and the virtual upper arm by (1 - drawn / L1) t, the "
+        "tip moves by tilt t along the upper arm.  If the virtual arm with the wrist is straight, "
+        "tilt is zero.  An error of the target by rounding then turns the arm by as much as the "
+        "root of that error, and a real arm at its own limit may seem to be beyond it.  In that "
+        "case the virtual arm is turned back.  In exact arithmetic this turn is zero.",
         {r"\mathrm{drawn}": drawn, r"\mathrm{tilt}": tilt},
         equal=[(rate, tilt * sp.Matrix(pair(theta2A)))],
     )
@@ -390,7 +390,7 @@ def turn_step(d: Derivation, m: Dimensions) -> None:
 
 MID_PLANE_ROWS = sp.Matrix(
     [
-        # of sin(theta - pitch), x, y, z; columns: pitch, waist, virtual arm r and h
+        # rows: sin(theta - pitch), x, y, z; columns: pitch, waist, r and h of the virtual arm
         [1, 0, 0, 0],
         [0, sin(real("theta1")), cos(real("theta1")), 0],
         [0, -cos(real("theta1")), sin(real("theta1")), 0],
@@ -407,8 +407,7 @@ def wrist_squared(m: Dimensions, base: sp.Expr) -> sp.Expr:
 def outer_jacobian(m: Dimensions, q: Joints, base: sp.Expr, wrist: sp.Symbol) -> sp.Matrix:
     """Derivative of the task by (theta1, theta2A, theta23A, psi, phi, theta).
 
-    ``base`` is half the base line as a function of psi and phi; ``wrist`` stands for l_W, whose
-    derivative is that of its square divided by 2 l_W.
+    ``base`` is half the base line as a function of psi and phi; ``wrist`` is the symbol for l_W.
     """
     state = (q.theta1, theta2A, theta23A, psi, phi, q.theta)
     p = Posture(*map(pair, state), wrist, base)
@@ -419,7 +418,7 @@ def outer_jacobian(m: Dimensions, q: Joints, base: sp.Expr, wrist: sp.Symbol) ->
 
 
 def named(expr, p: Posture, q: Joints):
-    """An expression in the angles of the mid-plane, over the named pairs of a program."""
+    """An expression in the angles of the mid-plane, rewritten in the named pairs of a posture."""
     state = (q.theta1, theta2A, theta23A, psi, phi, q.theta)
     names = {
         f: n for s, t in zip(state, p[:6], strict=True) for f, n in zip(pair(s), t, strict=True)
@@ -428,12 +427,12 @@ def named(expr, p: Posture, q: Joints):
 
 
 def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
-    """The wrist's dimensions and angles, where half the base line is d / ``level``."""
+    """Add the functions for the design of the wrist; half the base line is d / ``level``."""
     p = Program()
     length = wrist_given(p, m, level)[0]
     d.function(
         "wrist_length",
-        "The variable length l_W of the wrist; NaN where the links are too short.",
+        "The variable length l_W of the wrist; NaN if the links are too short.",
         {"psi": psi, "phi": phi},
         {"l_W": length},
         program=p,
@@ -446,9 +445,10 @@ def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
     room, w = real("room", positive=True), real("w", positive=True)
     d.step(
         "Wrist design",
-        "The separation angle beta stands between a wrist link and the base line, so that "
-        "al cos(beta) spans half the base line but for half the gears.  It is smallest at the "
-        "largest angles, which gives the length of the links, or for given links the largest yaw.",
+        "The separation angle beta is the angle between a wrist link and the base line, so half "
+        "the base line is al cos(beta) plus half the distance of the gears.  beta is smallest at "
+        "the largest yaw and roll.  This gives the shortest links, or the largest yaw for given "
+        "links.",
         {r"a_{l,\min}": needed, r"\cos\psi_{max}": m.d / (span * (cos(phi) if rolls else 1))},
         published=("(10)",),
         equal=[(cos(2 * atan2(sqrt(room), sqrt(room + 2 * w))), w / (w + room))],
@@ -465,7 +465,7 @@ def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
     room = p.bound("room", w - m.d, m.al + m.gs, "the links are long enough for that roll")
     d.function(
         "largest_yaw",
-        "The largest yaw at a roll that keeps the separation angle; NaN where there is none.",
+        "The largest yaw at a roll that keeps the separation angle; NaN if there is none.",
         {"phi": phi, "beta_min": beta_min},
         {"psi": 2 * atan2(sqrt(room), sqrt(w + m.d))},
         program=p,
@@ -476,7 +476,7 @@ def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
     adjacent = sqrt(w) + sqrt(m.d) if rolls else sqrt(w + m.d)
     d.function(
         "largest_angle",
-        "The largest angle that yaw and roll may both have; NaN where there is none.",
+        "The largest angle that yaw and roll may both have; NaN if there is none.",
         {"beta_min": beta_min},
         {"angle": 2 * atan2(sqrt(room), adjacent)},
         program=p,

@@ -32,11 +32,11 @@ d = Derivation(
     "hybrid_five_bar",
     "Five-bar linkage on a revolute",
     CHABLAT_WENGER_ANGELES,
-    "The pivots A, the origin, and B lie L0 apart on the y axis.  The bars AC and BD of length L1 "
-    "are driven at the angles theta2 and theta3, the bars CP and DP of length L2 follow at theta4 "
-    "and theta5; all four angles are measured from the y axis.  theta1 turns the linkage about AB; "
-    "at theta1 = 0 it lies in the plane of x and y, and a bar at the angle t points along "
-    "(-sin(t), cos(t), 0).",
+    "The pivots A (the origin) and B lie on the y axis at the distance L0.  The bars AC and BD of "
+    "length L1 are driven at the angles theta2 and theta3.  The bars CP and DP of length L2 follow "
+    "at theta4 and theta5.  All four angles are measured from the y axis.  theta1 turns the "
+    "linkage about AB.  At theta1 = 0 it lies in the plane of x and y, and a bar at the angle t "
+    "points along (-sin(t), cos(t), 0).",
     task=["x", "y", "z"],
     singularities=("P on AB", "A, C, P in line", "B, D, P in line", "C, D, P in line"),
 )
@@ -50,7 +50,7 @@ q = (theta1, theta2, theta3)
 
 
 def in_space(along: sp.Expr, off: sp.Expr) -> sp.Matrix:
-    """A vector of the linkage, along AB and at right angles to it, turned by theta1."""
+    """A vector in the plane of the linkage, from its components along AB and across AB."""
     return rotation("y", theta1) * sp.Matrix([-off, along, 0])
 
 
@@ -74,8 +74,8 @@ rho = L1 * sin(theta2) + L2 * sin(theta4)
 leg_c, leg_d = (dict(zip(p, point, strict=True)) for point in (by_c, by_d))
 d.step(
     "The loop",
-    "P lies in the plane of the linkage, whose normal is k, and L2 away from C and from D.  Seen "
-    "along the leg over C it is rho off the axis, a distance with a sign; the leg over D must lead "
+    "P lies in the plane of the linkage, whose normal is k, at the distance L2 from C and from D.  "
+    "By the leg over C, the signed distance of P from the axis is rho.  The leg over D must lead "
     "to the same point.",
     {
         r"\mathbf k": k,
@@ -117,11 +117,12 @@ h, e = real("h", nonnegative=True), real("e", nonnegative=True)
 to_p = sp.Matrix([meeting[u].subs({chord.distance: 2 * h, height: e}) for u in CP])
 d.step(
     "Forward: P from two circles",
-    "In the plane of the linkage, P is where the circles of radius L2 about C and D meet: to the "
-    "left or to the right of CD, the two assembly modes.  Let n be the unit vector from C to D and "
-    "h half of their distance; from the middle of CD, P is e away at right angles to n, to either "
-    "side.  The loop stays open where CD is longer than 2*L2.  If C and D coincide, P is free on a "
-    "circle; we return the limit of C and D parting along the y axis.",
+    "In the plane of the linkage, P is an intersection of the circles of radius L2 about C and D.  "
+    "It is to the left or to the right of CD: these are the two assembly modes.  Let n be the unit "
+    "vector from C to D and h half of their distance.  P is at the distance e from the middle of "
+    "CD, at right angles to n, on either side.  The loop cannot close if CD is longer than 2*L2.  "
+    "If C and D coincide, P is free on a circle; we return the limit for C and D that part along "
+    "the y axis.",
     {
         "h": sqrt(CD[0] ** 2 + CD[1] ** 2) / 2,
         "e": sqrt(L2 - h) * sqrt(L2 + h),
@@ -147,7 +148,7 @@ d.function(
     result="Positions",
     source="the loop closure of section 2.3",
     notes=(
-        "UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.",
+        "UNREACHABLE: C and D are more than 2*L2 apart, so the loop cannot close.",
         "SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the "
         "point at theta4 = theta5 = +90 or -90 degrees is returned.",
         "Ill-conditioned near the parallel singularities, where both modes meet or P is free.",
@@ -163,7 +164,7 @@ d.function(
     branches=modes,
     notes=(
         "NaN for an assembly mode that does not exist.",
-        "Free, but equal, where C and D coincide: +90 and -90 degrees are returned.",
+        "If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.",
     ),
 )
 
@@ -175,7 +176,7 @@ at_p = dict(zip(p, in_space(real("P_y"), P_r), strict=True))
 
 
 def on_the_loop(M: sp.Matrix) -> sp.Matrix:
-    """Row by row at P on the axis plane, over C and over D."""
+    """The matrix with P replaced in its rows: by its plane, by the leg over C, by that over D."""
     rows = [M[i, :].subs(place, simultaneous=True) for i, place in enumerate((at_p, on_c, on_d))]
     return sp.Matrix.vstack(*rows).applyfunc(normal)
 
@@ -191,9 +192,10 @@ passive = dict(
 by_angles = merge_angles(B_q.subs(passive).expand())
 d.step(
     "Velocity: A and B",
-    "The loop equations, differentiated.  The rows of A are L2*k, p - c and p - d; B is diagonal, "
-    "because the two legs do not know of each other and a turn about AB moves P at right angles to "
-    "both bars.  CP_y is the component of CP along AB and CP_r that away from it, and so for DP.",
+    "These are the derivatives of the loop equations.  The rows of A are L2*k, p - c and p - d.  B "
+    "is diagonal because each leg depends on its own motor only and a turn about AB moves P at "
+    "right angles to both bars.  CP_y is the component of CP along AB and CP_r the one away from "
+    "it; DP likewise.",
     {"A": A_p, "B": B_q, r"B(\theta)": by_angles},
     published=("(2)", "(3)", "(4)"),
     equal=[
@@ -213,9 +215,9 @@ over_d = dict(zip(p, by_d.subs(unequal), strict=True))
 general = sp.Matrix.hstack(A_other, B_other).subs(over_d, simultaneous=True).applyfunc(normal)
 d.step(
     "Velocity: unequal legs",
-    "With bars L3 and L4 over D only the last rows change.  L1 = L3, L2 = L4 is used from here on: "
-    "for the isosceles triangle over CD, for the one factor L2^2 of A*A^T and so for the condition "
-    "number, and for the two hollow spheres of the workspace being of one size.",
+    "With bars of lengths L3 and L4 over D only the last rows change.  From here on L1 = L3 and "
+    "L2 = L4.  Then the triangle over CD is isosceles, L2^2 is a common factor of A*A^T, which the "
+    "condition number uses, and the two hollow spheres of the workspace have the same size.",
     {r"B_{33}": L3 * L4 * sin(theta5 - theta3)},
     equal=[
         (general[:, :3], bar(L4, theta5).T),
@@ -223,14 +225,14 @@ d.step(
     ],
 )
 
-# Inverse of A: CP x DP is 2 sigma h e by the circles, without the cancellation of the product
+# Inverse of A: the circles give CP x DP = 2 sigma h e, without the cancellation of the product.
 
 product = CP[0] * DP[1] - CP[1] * DP[0]
 side = sigma * height * chord.distance
 
 
 def across(h: sp.Expr, e: sp.Expr) -> sp.Expr:
-    """CP x DP of the vectors that the circles give, for n at any angle."""
+    """CP x DP from the intersection of the circles, for n at any angle."""
     n = sp.Matrix([cos(theta4), sin(theta4)])
     normal_to_n = sp.Matrix([-n[1], n[0]])
     return sp.Matrix.hstack(h * n + e * normal_to_n, -h * n + e * normal_to_n).det()
@@ -245,12 +247,13 @@ det_b = L1**2 * L2**3 * rho * sin(theta4 - theta2) * sin(theta5 - theta3)
 det_j = L1**2 * rho * sin(theta4 - theta2) * sin(theta5 - theta3) / sin(theta5 - theta4)
 d.step(
     "Velocity: J and the determinants",
-    "J = A^-1*B.  All determinants factor: det(A) holds the sine between CP and DP alone, det(B) "
-    "holds rho and the sine between the bars of each leg.  A parallel singularity, det(A) = 0, is "
-    "a posture with C, D, P in line, or with C = D: P can give way though the motors stand still, "
-    "at right angles to CP or all around D.  At a serial one, det(B) = 0, a motor turns and P "
-    "stands still: theta1 with P on AB, where rho = 0, the one that section 2.6 does not name; "
-    "theta2 with A, C, P in line and theta3 with B, D, P in line, a leg stretched or folded.",
+    "J = A^-1*B.  All determinants factor: det(A) contains the sine of the angle between CP and "
+    "DP, det(B) contains rho and the sine of the angle between the bars of each leg.  At a "
+    "parallel singularity, det(A) = 0, either C, D, P are in line or C = D: P can move although "
+    "the motors stand still, at right angles to CP or on a circle about D.  At a serial "
+    "singularity, det(B) = 0, a motor turns and P stands still.  For theta1 this happens with P on "
+    "AB (rho = 0), which section 2.6 does not mention; for theta2 with A, C, P in line; for theta3 "
+    "with B, D, P in line.  In the last two cases a leg is stretched or folded.",
     {
         r"\bigl(\overrightarrow{CP}\times\overrightarrow{DP}\bigr) A^{-1}": (
             A_inverse * product
@@ -278,10 +281,10 @@ for name, summary, outputs, notes in (
     ("jacobian_parallel", "A of A*dp = B*dq; its rows are L2*k, p - c and p - d.", {"A": A_p}, ()),
     (
         "jacobian_serial",
-        "The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and "
-        "L1*L2*sin(theta5 - theta3).",
+        "The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 "
+        "- theta3).",
         {"B": [L2 * P_r, along_c, along_d]},
-        ("Its signs tell the working modes apart, in the order of BRANCHES.",),
+        ("Its signs distinguish the working modes; BRANCHES lists them in the same order.",),
     ),
     (
         "jacobian",
@@ -298,7 +301,7 @@ for name, summary, outputs, notes in (
     (
         "singularities",
         "Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and "
-        "L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.",
+        "L1*L2*sin(theta5 - theta3) (serial), and L2^2*sin(theta5 - theta4) (parallel).",
         {"factors": [P_r, along_c, along_d, sideways]},
         (),
     ),
@@ -307,8 +310,8 @@ for name, summary, outputs, notes in (
         "Ratio of the largest to the smallest singular value of A.",
         {"kappa": choose(chord.flag, 1, sp.Max(half, height)) / sp.Min(half, height)},
         (
-            "Infinite at a parallel singularity; it does not depend on theta1, and both modes have "
-            "the same.",
+            "Infinite at a parallel singularity.  It does not depend on theta1 and is the same for "
+            "both modes.",
         ),
     ),
 ):
@@ -358,7 +361,7 @@ Products = tuple[sp.Expr, sp.Expr]
 
 
 def products(u: sp.Matrix, v: sp.Matrix) -> Products:
-    """The inner and the cross product of two vectors of the plane."""
+    """The inner and the cross product of two vectors in the plane."""
     return u.dot(v), sp.Matrix.hstack(u, v).det()
 
 
@@ -382,7 +385,7 @@ driven_angles = [choose(at_a, 0, bearing_c[theta2]), choose(at_b, 0, bearing_d[t
 
 
 def spelled(name: str, square: sp.Expr, along: sp.Expr, sign: sp.Symbol) -> dict[str, sp.Expr]:
-    """What a leg turns by: the distance of P from its pivot, N, M and the angle of its bar."""
+    """The formulas of one leg: distance of P from its pivot, N, M and the angle of its bar."""
     N, M = (real(f"{n}_{name}", nonnegative=True) for n in "NM")
     distance = real(name) ** 2
     return {
@@ -396,11 +399,11 @@ def spelled(name: str, square: sp.Expr, along: sp.Expr, sign: sp.Symbol) -> dict
 
 d.step(
     "Inverse: the eight working modes",
-    "rho is the distance of P from the axis with either sign, and turns theta1 by half a turn.  In "
-    "the plane, A, C, P and B, D, P are triangles with known sides; each has two mirror images, "
-    "told apart by the sign of the angle between its bars.  So the three signs are those of the "
-    "diagonal of B.  If P is on the axis, theta1 is free and we return 0; if it is at A, for "
-    "which L1 = L2, so is theta2, and at B theta3.",
+    "rho is the distance of P from the axis with either sign; the other sign turns theta1 by half "
+    "a turn.  In the plane of the linkage, A, C, P and B, D, P are triangles with known sides.  "
+    "Each has two mirror images, which differ in the sign of the angle between the bars.  So the "
+    "three signs are those of the diagonal of B.  If P is on the axis, theta1 is free and we "
+    "return 0.  P can be at A or at B only if L1 = L2; then theta2 or theta3 is free as well.",
     {
         "r": sqrt(x**2 + z**2),
         r"\theta_1": turn[theta1],
@@ -413,14 +416,14 @@ ap, bp = sp.Matrix([y, off_axis]), sp.Matrix([y - L0, off_axis])
 cp, dp = (L2 * sp.Matrix([cos(t), sin(t)]) for t in (theta4, theta5))
 d.step(
     "Inverse: what the joints determine",
-    "Rounded joints miss the lengths of the bars by a few units in the last place of L0 + L1 + L2. "
-    "The point where the bars CP and DP meet is missed by that over the sine of the angle between "
-    "them: near a parallel singularity, where C, D and P are in line or C and D coincide, fk does "
-    "not find P from the joints, however they are computed.  Where the sine is less than 2^-10, "
-    "the status is SINGULAR.  The inverse has the cross product of the bars, without their angles, "
-    "from those of each with the line from its pivot to P: the inner product of AP and CP is half "
-    "of AP^2 - L1^2 + L2^2, and the cross product half of the root of N_a M_a, with the sign of "
-    "the leg.",
+    "Rounded joints miss the lengths of the bars by a few units in the last place of L0 + L1 + "
+    "L2.  The error of P, where the bars CP and DP meet, is this error divided by the sine of the "
+    "angle between them.  So near a parallel singularity, with C, D and P in line or with C = D, "
+    "fk cannot recover P from the joints, however they are computed.  The status is SINGULAR if "
+    "the sine is less than 2^-10.  The inverse computes the cross product of the bars without "
+    "their angles, from the products of each bar with the line from its pivot to P.  The inner "
+    "product of AP and CP is half of AP^2 - L1^2 + L2^2, and their cross product is half the root "
+    "of N_a M_a, with the sign of the leg.",
     {
         r"\overrightarrow{AP}": ap,
         r"\overrightarrow{BP}": bp,
@@ -452,14 +455,16 @@ d.function(
     notes=(
         "BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly "
         "modes.",
-        "UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.",
-        "SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is "
-        "free; L1 = 0, both are.  0 is returned for theta1, and for the others unless L1 = 0.",
-        "SINGULAR as well near a parallel singularity, where the sine of the angle between CP and "
-        "DP is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than "
-        "1e-12 of the lengths.  If L0 = 0, equal signs of the last two entries put C on D.",
-        "Ill-conditioned near the boundary of the workspace: the angles lose half the digits "
-        "there, the loop still closes.",
+        "UNREACHABLE: the distance of P from A or from B is more than L1 + L2 or less than "
+        "|L1 - L2|.",
+        "SINGULAR: theta1 is free if P is on the axis; theta2 or theta3 is free if L1 = L2 and P "
+        "is at A or at B; both are free if L1 = 0.  0 is returned for theta1, and for the others "
+        "unless L1 = 0.",
+        "SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is "
+        "less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of "
+        "the lengths.  If L0 = 0, C coincides with D for equal signs of the last two entries.",
+        "Ill-conditioned near the boundary of the workspace: the angles lose half their digits, "
+        "but the loop still closes.",
     ),
 )
 d.function(
@@ -478,7 +483,7 @@ def cosine_rule(square: sp.Expr, angle: sp.Expr) -> sp.Expr:
 
 
 def toward(theta: sp.Symbol, along: sp.Expr, passive_angle: sp.Symbol) -> sp.Expr:
-    """The moment of the bars about the pivot, which vanishes along the line to P."""
+    """Zero if the end of the bars, as seen from their pivot, is in the direction of P."""
     elbow = passive_angle - theta
     reach = sp.Matrix([L1 + L2 * cos(elbow), L2 * sin(elbow)])
     off = z * sin(theta1) - x * cos(theta1)

@@ -11,7 +11,7 @@ L0, L1, L2 = lengths = tuple(real(name, positive=True) for name in ("L0", "L1", 
 y, rho = plane = real("y"), real("rho")
 kappa = real("kappa", positive=True)
 m, M = real("m", positive=True), real("M", positive=True)
-"""The shorter and the longer of L1 and L2."""
+"""The smaller and the larger of L1 and L2."""
 R, r = M + m, M - m
 AP, BP = sp.Matrix([y, rho]), sp.Matrix([y - L0, rho])
 alpha, beta = (v.dot(v) + L2**2 - L1**2 for v in (AP, BP))
@@ -20,7 +20,7 @@ alpha, beta = (v.dot(v) + L2**2 - L1**2 for v in (AP, BP))
 def conditioning(
     d: Derivation, A: sp.Matrix, psi: sp.Expr, CD: sp.Matrix, theta2: sp.Symbol, theta3: sp.Symbol
 ) -> None:
-    """Singular values of A, given in the angles; ``psi`` is the angle from CP to DP."""
+    """Add the singular values of A, a matrix of the angles; ``psi`` is the angle from CP to DP."""
     c = cos(psi)
     gram = L2**2 * sp.Matrix([[1, 0, 0], [0, 1, c], [0, c, 1]])
     lam = real("lambda")
@@ -28,11 +28,11 @@ def conditioning(
     by_chord = [(cos(psi), (e**2 - h**2) / L2**2), (L2, sqrt(h**2 + e**2))]
     d.step(
         "Singular values and condition number of A",
-        "k is at right angles to CP and DP, so A*A^T has one entry off its diagonal, the scalar "
-        "product of CP and DP.  With h half of CD and e the distance of P from CD it is "
-        "e^2 - h^2, and L2^2 = h^2 + e^2: the singular values are L2, sqrt(2)*h and sqrt(2)*e.  "
-        "L2 lies between the others, and the condition number is the larger of h/e and e/h, for "
-        "either sign of the cosine.",
+        "k is at right angles to CP and DP, so the only entry of A*A^T off its diagonal is the "
+        "scalar product of CP and DP.  Let h be half of CD and e the distance of P from CD.  The "
+        "scalar product is e^2 - h^2, and L2^2 = h^2 + e^2, so the singular values are L2, "
+        "sqrt(2)*h and sqrt(2)*e.  L2 lies between the other two, and the condition number is the "
+        "larger of h/e and e/h, for either sign of the cosine.",
         {
             r"A A^T": gram,
             r"\sigma^2": sp.Matrix([L2**2 * (1 - c), L2**2, L2**2 * (1 + c)]),
@@ -54,21 +54,20 @@ def conditioning(
     range_of_CD(d, CD, theta2, theta3)
     d.step(
         "Isotropy",
-        "kappa = 1 where CP and DP are at right angles: h = e, so CD = sqrt(2)*L2.  By the range "
-        "of CD, A can be isotropic if and only if L2 is positive and sqrt(2)*L2 lies between the "
-        "two ends.",
+        "kappa = 1 if CP and DP are at right angles: h = e, so CD = sqrt(2)*L2.  By the range of "
+        "CD, A can be isotropic if and only if L2 is positive and sqrt(2)*L2 is in that range.",
         {"d_{min}": sp.Max(0, L0 - 2 * L1), "d_{max}": L0 + 2 * L1},
         equal=[(gram.subs(cos(psi), 0), L2**2 * sp.eye(3))],
     )
     d.step(
         "Designs without parallel singularities",
-        "det(A) vanishes where C = D (h = 0) and where C, P, D are in line (e = 0, CD = 2*L2).  "
-        "By the range of CD, the first is possible if and only if L0 <= 2*L1, and the second if "
-        "and only if 2*L2 lies in the range.  So a linkage that can be assembled at all has no "
-        "parallel singularity if and only if both of these hold; for a 2*L2 below the range the "
-        "loop never closes.  Of the two conditions of section 3.2, 2*L1 > L0 ensures the "
-        "opposite of what it is meant for, that C can meet D; 2*L2 - 2*L1 > L0 is the second one "
-        "here: C, P, D are never in line, while C may still meet D.",
+        "det(A) vanishes if C = D (h = 0) and if C, P, D are in line (e = 0, CD = 2*L2).  By the "
+        "range of CD, the first is possible if and only if L0 <= 2*L1, and the second if and only "
+        "if 2*L2 is in the range.  If 2*L2 is below the range, the loop never closes.  So a "
+        "linkage that can be assembled has no parallel singularity if and only if both conditions "
+        "below hold.  Section 3.2 has two conditions.  The first, 2*L1 > L0, ensures the opposite "
+        "of its purpose: C can meet D.  The other, 2*L2 - 2*L1 > L0, is the second one below: C, "
+        "P, D are never in line, but C may still meet D.",
         {
             r"\text{C and D stay apart}": sp.Gt(L0, 2 * L1),
             r"\text{C, P, D are never in line}": sp.Gt(2 * L2, L0 + 2 * L1),
@@ -77,14 +76,14 @@ def conditioning(
 
 
 def longest(CD: sp.Matrix, theta2: sp.Expr, theta3: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """(L0 + 2 L1)^2 - CD^2, and a form of it that is a sum of nonnegative terms."""
+    """(L0 + 2 L1)^2 - CD^2, and the same as a sum of nonnegative terms."""
     slack = (1 - cos(theta3)) + (1 + cos(theta2))
     rest = 2 * L0 * L1 * slack + 2 * L1**2 * (1 + cos(theta3 - theta2))
     return (L0 + 2 * L1) ** 2 - CD.dot(CD), rest
 
 
 def shortest(CD: sp.Matrix, theta2: sp.Expr, theta3: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """CD^2 - (L0 - 2 L1)^2 for L0 = 2 L1 + w, and a sum of terms that are nonnegative with w."""
+    """CD^2 - (L0 - 2 L1)^2 for L0 = 2 L1 + w, and the same as a sum, nonnegative for w >= 0."""
     w = real("w", nonnegative=True)
     along = (1 + cos(theta3)) + (1 - cos(theta2))
     rest = 2 * w * L1 * along + L1**2 * along**2 + L1**2 * (sin(theta3) - sin(theta2)) ** 2
@@ -98,9 +97,9 @@ def range_of_CD(d: Derivation, CD: sp.Matrix, theta2: sp.Symbol, theta3: sp.Symb
     d.step(
         "The range of CD",
         "theta2 and theta3 are independent, so CD takes every value between its smallest and its "
-        "largest.  The largest is L0 + 2*L1, with both bars along AB and away from each other.  "
-        "The smallest is L0 - 2*L1, with the bars towards each other, if L0 = 2*L1 + w with a w "
-        "that is not negative; otherwise it is 0: the circles of C and D meet.",
+        "largest.  The largest is L0 + 2*L1: both bars are along AB and point away from each "
+        "other. If L0 = 2*L1 + w with w >= 0, the smallest is L0 - 2*L1: the bars point towards "
+        "each other.  Otherwise it is 0: the circles of C and D meet.",
         {
             r"(L_0 + 2 L_1)^2 - CD^2": bounds[0][1],
             r"CD^2 - (L_0 - 2 L_1)^2": bounds[1][1],
@@ -115,7 +114,7 @@ def range_of_CD(d: Derivation, CD: sp.Matrix, theta2: sp.Symbol, theta3: sp.Symb
 
 
 class Locus(NamedTuple):
-    """Where P may be for an angle psi from CP to DP: a curve, and what elimination added."""
+    """The curve of P for an angle psi from CP to DP, and the factors that elimination added."""
 
     curve: sp.Expr
     degree: int
@@ -147,7 +146,7 @@ def by_cramer(
     alpha: sp.Expr = alpha,
     beta: sp.Expr = beta,
 ) -> sp.Expr:
-    """The same curve by a second route: two equations are linear in CP, the third is its length."""
+    """The same curve by Cramer's rule: two equations are linear in CP, the third is its length."""
     turned = sp.Matrix([[c, s], [-s, c]]) * BP
     beta = denominator * beta
     numerator = alpha * turned - beta * AP
@@ -155,7 +154,7 @@ def by_cramer(
 
 
 def distinct(c: sp.Expr, s: sp.Expr, denominator: sp.Expr) -> int:
-    """How many curves there are for all signs of the cosine and the sine."""
+    """The number of distinct curves for all signs of the cosine and the sine."""
     signs = ((a, b) for a in (1, -1) for b in (1, -1))
     return len(
         {
@@ -173,7 +172,7 @@ class Loci(NamedTuple):
 
 
 def loci(d: Derivation) -> Loci:
-    """The parallel singularities, the isotropic postures and those of equal condition number."""
+    """Add the loci of parallel singularities, of isotropy and of equal condition number."""
     k2 = kappa**2
     found = Loci(
         locus(sp.S.One, sp.S.Zero),
@@ -187,15 +186,15 @@ def loci(d: Derivation) -> Loci:
     mirror = {rho: -rho}
     d.step(
         "Locus of the parallel singularities",
-        "DP is CP turned by psi; the vector CP is eliminated from its length and the lengths of AC "
-        "and BD by resultants.  For psi = 0, C = D, there remain the circles of radius L2 about "
-        "the two points where C and D can meet, real for L0 <= 2*L1.  For psi = pi, C, P, D in "
-        "line, there remains the curve of the midpoint of the coupler of a four-bar linkage.  "
-        "Both are found again by Cramer's rule, without the powers of rho that resultants add; so "
-        "every real point of a curve is the P of such a posture, but for isolated points on AB.  "
-        "If L0 = 0, the two driven circles are one, and every point of the workspace is reached "
-        "with C = D as well; C, P, D are in line on the circle of squared radius L1^2 - L2^2 "
-        "about A, and at A if L1 = L2.",
+        "DP is CP turned by psi.  Resultants eliminate the vector CP from the equations for the "
+        "lengths of CP, AC and BD.  For psi = 0, C = D, the result is the two circles of radius L2 "
+        "about the points where C and D can meet; they are real for L0 <= 2*L1.  For psi = pi, C, "
+        "P, D in line, the result is the curve of the midpoint of the coupler of a four-bar "
+        "linkage.  Cramer's rule gives both again, without the powers of rho that resultants add.  "
+        "So every real point of a curve, except isolated points on AB, is the P of such a "
+        "posture.  If L0 = 0, the two driven circles coincide, and every point of the workspace "
+        "can also be reached with C = D.  C, P, D are then in line on the circle about A with the "
+        "squared radius L1^2 - L2^2, and at A if L1 = L2.",
         {
             r"\psi = 0": sp.Eq(circles, 0, evaluate=False),
             r"\psi = \pi": sp.Eq(opposite.curve, 0, evaluate=False),
@@ -223,10 +222,10 @@ def loci(d: Derivation) -> Loci:
         "Isoconditioning loci",
         "kappa is the cotangent of psi/2 or its inverse, so cos(psi) = (kappa^2 - 1)/(kappa^2 + 1) "
         "and sin(psi) = 2*kappa/(kappa^2 + 1), up to their signs.  F vanishes on the curve of one "
-        "psi, the coupler curve of a four-bar linkage.  The two signs of psi, the two assembly "
-        "modes, are mirror images about AB; the two signs of the cosine are the postures with e "
-        "above and below h.  For L0 = 0 a curve consists of circles about A.  The curves do not "
-        "hold theta1: in space they are surfaces of revolution about AB.",
+        "psi, the coupler curve of a four-bar linkage.  The curves for the two signs of psi, the "
+        "two assembly modes, are mirror images about AB.  The two signs of the cosine belong to "
+        "postures with e > h and with e < h.  For L0 = 0 a curve consists of circles about A.  The "
+        "curves do not depend on theta1: in space they are surfaces of revolution about AB.",
         {
             r"\alpha": alpha,
             r"\beta": beta,
@@ -244,9 +243,10 @@ def loci(d: Derivation) -> Loci:
     )
     d.step(
         "Degrees of the loci",
-        "In the coordinates y and rho of P in the plane of the linkage.  The factors are those "
-        "over the rationals with all lengths symbolic, and kappa as well; that of C = D splits "
-        "into its two circles once the square root of 4*L1^2 - L0^2 is added.",
+        "The curves are polynomials in the coordinates y and rho of P in the plane of the "
+        "linkage.  The factors are those over the rationals, with all lengths and kappa symbolic.  "
+        "The factor of C = D splits into two circles if the square root of 4*L1^2 - L0^2 is "
+        "adjoined.",
         {},
         rows=[
             ("locus of P", "of", "factors", "degree"),
@@ -270,17 +270,17 @@ def loci(d: Derivation) -> Loci:
 
 
 class Regime(NamedTuple):
-    """A range of L0, from and to, and the volume there."""
+    """A range of L0, and the volume of the workspace in that range."""
 
     start: sp.Expr
     end: sp.Expr
     volume: sp.Expr
     pieces: sp.Expr
-    """The same by inclusion and exclusion."""
+    """The same volume by inclusion and exclusion."""
 
 
 def regimes() -> dict[str, Regime]:
-    """The outer balls, less the inner ones, plus what the inner ones share."""
+    """The lens of the outer balls, minus the inner balls in it, plus the part these share."""
     ball = sp.Rational(4, 3) * pi * r**3
     outer, mixed, inner = lens(R, R, L0), lens(r, R, L0), lens(r, r, L0)
     cut = pi * (L0 + 4 * r) * (L0 - 2 * r) ** 2 / 12
@@ -312,7 +312,7 @@ SEAMS = (
 
 
 def decrease(found: dict[str, Regime]) -> list[tuple[sp.Expr, sp.Expr]]:
-    """Minus the derivative by L0, and a form of it with positive coefficients, by regime."""
+    """For each regime, minus the derivative by L0, and the same with positive coefficients."""
     s, t = real("s", positive=True), real("t", positive=True)
     slack = {
         "inner balls inside, overlapping": [(M, m + t), (m, (L0 + s) / 2)],
@@ -329,7 +329,7 @@ def decrease(found: dict[str, Regime]) -> list[tuple[sp.Expr, sp.Expr]]:
 
 
 def workspace(d: Derivation) -> dict[str, Regime]:
-    """Section 3.1: the volume for all lengths, and where it is largest."""
+    """Add section 3.1: the volume for all lengths, and the lengths with the largest volume."""
     found = regimes()
     reach, inner = real("R", positive=True), real("r", positive=True)
 
@@ -340,10 +340,11 @@ def workspace(d: Derivation) -> dict[str, Regime]:
 
     d.step(
         "Workspace: two hollow spheres",
-        "P is reached if it is between |L1 - L2| and L1 + L2 away from A and from B; theta1 turns "
-        "the plane section into the intersection of two hollow spheres.  Its volume is that of the "
-        "outer balls' lens, less the inner balls inside it, plus what those share.  M and m are "
-        "the larger and the smaller of L1 and L2, R = M + m and r = M - m their sum and "
+        "P can be reached if its distances from A and from B are between |L1 - L2| and L1 + L2.  "
+        "theta1 turns this plane section about AB, so the workspace is the intersection of two "
+        "hollow spheres.  Its volume is that of the lens of the outer balls, minus that of the "
+        "inner balls inside the lens, plus that of the part the inner balls share.  M and m are "
+        "the larger and the smaller of L1 and L2; R = M + m and r = M - m are their sum and "
         "difference.",
         {
             r"V_{lens}(R, R)": lens(reach, reach, L0),
@@ -365,8 +366,8 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     )
     d.step(
         "Workspace: the regimes meet",
-        "At each seam both volumes agree, and their derivatives by L0 as well, so the formula "
-        "holds for all lengths, the limits included.",
+        "At each seam the volumes of both regimes agree, and so do their derivatives by L0.  So "
+        "the formula holds for all lengths, including the limits.",
         {"L_0": [seam for _, _, seam in SEAMS]},
         equal=[
             (g(found[a].volume).subs(L0, at), g(found[b].volume).subs(L0, at))
@@ -377,12 +378,12 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     whole = sp.Rational(4, 3) * pi * (R**3 - r**3)
     d.step(
         "Workspace: where it is largest",
-        "In each regime minus the derivative by L0 has positive coefficients, once the lengths are "
-        "written in L0 and the slacks s and t of the regime's inequalities (the regimes as above, "
-        "without the last); so the volume falls "
-        "as L0 grows and is largest at L0 = 0.  For a given reach L1 + L2 it then grows as the "
-        "inner radius |L1 - L2| shrinks, and is largest at L1 = L2: the whole ball.  Without such "
-        "a bound on the lengths there is no largest workspace.",
+        "The lengths are written in L0 and the slacks s and t of the inequalities of each regime "
+        "(in the order above, without the last).  Then minus the derivative by L0 has positive "
+        "coefficients, so the volume falls as L0 grows and is largest at L0 = 0.  For a given "
+        "reach L1 + L2 the volume at L0 = 0 grows as the inner radius |L1 - L2| shrinks; it is "
+        "largest at L1 = L2, the whole ball.  Without such a bound on the lengths there is no "
+        "largest workspace.",
         {"V(L_0 = 0)": whole, r"-V'(L_0)": sp.Matrix([form for _, form in decrease(found)])},
         equal=[
             (found["inner balls inside, overlapping"].volume.subs(L0, 0), whole),
@@ -410,6 +411,6 @@ def workspace(d: Derivation) -> dict[str, Regime]:
         {"volume": volume},
         program=v,
         source="section 3.1, in closed form",
-        notes=("NaN for a length that is negative or not finite.",),
+        notes=("NaN if a length is negative or not finite.",),
     )
     return found

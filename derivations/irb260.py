@@ -1,4 +1,4 @@
-"""The ABB IRB 260 palletiser of Shi, Zhu and Li, by products of exponentials."""
+"""The ABB IRB 260 palletiser of Shi, Zhu and Li, by the product of exponentials."""
 
 from itertools import accumulate
 
@@ -29,12 +29,12 @@ d = Derivation(
     "irb260",
     "ABB IRB 260 palletiser",
     SHI_ZHU_LI,
-    "A turret (theta1, about z) carries a lower arm (theta2) and an upper arm (theta3, against the "
-    "lower one), which turn about -x at home.  Two parallelograms along the arms keep the wrist "
-    "bracket level; they act as a virtual joint theta4 = -(theta2 + theta3).  The hand turns by "
-    "theta5 about z.  At home all angles are 0: the lower arm is upright, the upper arm points "
-    "along y.  The default dimensions are those of public models of the IRB 260; the paper gives "
-    "none.",
+    "A turret (theta1, about z) carries a lower arm (theta2) and an upper arm (theta3, measured "
+    "against the lower arm).  At home both turn about -x.  Two parallelograms along the arms keep "
+    "the wrist bracket level; they act as a virtual joint theta4 = -(theta2 + theta3).  The hand "
+    "turns by theta5 about z.  At home all angles are 0: the lower arm is upright and the upper "
+    "arm points along y.  The default dimensions are those of public models of the IRB 260; the "
+    "paper gives none.",
     task=["x", "y", "z", "yaw"],
     singularities=("base axis", "elbow"),
 )
@@ -71,8 +71,8 @@ points = [
 twists = [revolute_twist(w, p) for w, p in zip(axes, points, strict=True)]
 d.step(
     "Screws",
-    "The axis of each joint at home, by its direction and a point on it, and its twist "
-    "(v; omega) with v = -omega × q.  A point of the axis does not move.",
+    "A direction and a point q define the axis of each joint at home, and its twist (v; omega) "
+    "with v = -omega × q.  A point on the axis does not move.",
     {rf"\xi_{i}": twist.T for i, twist in enumerate(twists, 1)},
     published=("(1)", "(2)", "(3)", "(4)", "(5)", "(8)", "(9)"),
     equal=[
@@ -88,8 +88,8 @@ e = exponential(sp.Matrix([*v, *w]), theta)
 d.step(
     "Exponential",
     "Rodrigues' formula is the exponential of a twist with a unit axis, because it solves the "
-    "differential equation that defines the exponential, and starts at the identity.  The axis "
-    "here is any unit vector, given by its polar angles.",
+    "differential equation of the exponential and starts at the identity.  The axis is an "
+    "arbitrary unit vector, given by its polar angles.",
     {
         r"e^{\hat\xi\theta}": r"\begin{bmatrix} R & (I - R)(\omega \times v) + \omega\omega^T v"
         r"\theta \\ 0 & 1 \end{bmatrix}",
@@ -104,7 +104,7 @@ d.step(
 
 lower, upper, M = double_parallelogram(d, l3, l4, theta2, theta3)
 motors = sp.Matrix([real(f"m{i}") for i in (1, 2, 3, 5)])
-turns = ("The map is linear and counts turns: its angles are not reduced to (-pi, pi].",)
+turns = ("The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].",)
 d.function(
     "joint4",
     "Angle theta4 of the virtual joint, which keeps the wrist bracket level.",
@@ -114,14 +114,14 @@ d.function(
 )
 d.function(
     "joints_from_motors",
-    "Joint angles of motor angles: theta3 = m3 - m2.",
+    "Joint angles from motor angles: theta3 = m3 - m2.",
     {"motors": motors},
     {"q": M * motors},
     notes=turns,
 )
 d.function(
     "motors_from_joints",
-    "Motor angles of joint angles: m3 = theta2 + theta3.",
+    "Motor angles from joint angles: m3 = theta2 + theta3.",
     {"q": q},
     {"motors": M.inv() * sp.Matrix(q)},
     notes=turns,
@@ -137,7 +137,7 @@ pose = simplest(moves[0] * arm * moves[4] * home)
 free = sp.prod([*moves, home])
 d.step(
     "Pose by the product of exponentials",
-    "The three parallel axes with the virtual constraint only translate the wrist; the other two "
+    "With the virtual constraint, the three parallel axes only translate the wrist.  The other two "
     "axes turn the hand about z.",
     {
         r"g_{st}(0)": home,
@@ -157,7 +157,8 @@ rows = [
 links = [denavit_hartenberg(a, alpha, offset, turn) for a, alpha, offset, turn in rows]
 d.step(
     "Pose by Denavit-Hartenberg",
-    "A standard (distal) chain along the links: the same pose, also for five independent joints.",
+    "A standard (distal) chain along the links gives the same pose, also for five independent "
+    "joints.",
     {r"(a, \alpha, d, \vartheta)": sp.Matrix(rows)},
     equal=[(sp.prod(links), free), (d.couple(sp.prod(links)), pose)],
 )
@@ -166,8 +167,8 @@ rho = simplest(position[1] * cos(theta1) - position[0] * sin(theta1))
 yaw = atan2(sin(turn), cos(turn))
 d.step(
     "Task coordinates",
-    "The hand is level, so its pose is its position and its angle about z.  rho is the distance "
-    "of the hand from the base axis, negative where the arm reaches over this axis.",
+    "The hand is level, so its position and its angle about z describe its pose.  rho is the "
+    "distance of the hand from the base axis; it is negative if the arm reaches over this axis.",
     {r"\rho": rho, r"\psi": turn},
     equal=[
         (pose[:3, :3] * up, up),
@@ -196,9 +197,9 @@ J = simplest(sp.Matrix([*position, turn]).jacobian(q))
 J_motors = simplest(J * M)
 d.step(
     "Spatial Jacobian",
-    "The twist of each axis as it stands, by the adjoint of the motions before it.  The virtual "
-    "joint moves with theta2 and theta3, so its twist is subtracted from theirs.  Differentiating "
-    "the pose gives the same.",
+    "The adjoint of the motions before an axis gives its twist in the present posture.  The "
+    "virtual joint moves with theta2 and theta3, so its twist is subtracted from theirs.  The "
+    "derivative of the pose gives the same.",
     {
         **{rf"\xi_{i}'": xi.T for i, xi in enumerate(moved, 1)},
         r"J^s_{st} = [\xi_1', \xi_2' - \xi_4', \xi_3' - \xi_4', \xi_5']": J_space,
@@ -210,8 +211,9 @@ d.step(
 )
 d.step(
     "Body Jacobian and task Jacobian",
-    "The body Jacobian is the same twist seen from the hand.  The task Jacobian is the derivative "
-    "of (x, y, z, yaw); its first rows are the velocity of the hand's origin, v + omega × p.",
+    "The body Jacobian gives the same twist in the frame of the hand.  The task Jacobian is the "
+    "derivative of (x, y, z, yaw); its first three rows are the velocity of the origin of the "
+    "hand, v + omega × p.",
     {"J_b": J_body, "J": J},
     equal=[(J_body[:, i], twist_of(inverse(pose) * pose.diff(angle))) for i, angle in enumerate(q)]
     + [(J[:3, i], J_space[:3, i] + J_space[3:, i].cross(position)) for i in range(4)]
@@ -226,8 +228,8 @@ along = dict(zip(q, paths, strict=True))
 speeds = dict(zip(rates, (path.diff(time) for path in paths), strict=True))
 d.step(
     "Velocity of the hand's origin",
-    "The spatial velocity, applied to the point where the origin is now.  It is the derivative in "
-    "time of the position in eq. (13), along any path.",
+    "This is the spatial velocity applied to the present position of the origin.  It is the time "
+    "derivative of the position in eq. (13) along any path.",
     {r"v = \hat V^s_{st} q_5": velocity},
     published=("(23)",),
     equal=[
@@ -240,11 +242,11 @@ stuck = sp.Matrix([-sin(theta1) * sin(theta2), cos(theta1) * sin(theta2), cos(th
 det = determinant(J)
 d.step(
     "Determinant and singular set",
-    "The determinant of the task Jacobian vanishes, for links that have a length, where the hand "
+    "If the links have a length, the determinant of the task Jacobian vanishes exactly if the hand "
     "is on the base axis or the arm is straight or folded.  On the base axis the hand cannot move "
     "across the plane of the arm; with cos(theta3) = 0 it cannot move along the arm.  The products "
-    "of the lost directions with the Jacobian have the factor that vanishes.  The same holds of "
-    "the twists, whose rows (v; omega_z) have the same determinant.",
+    "of these lost directions with the Jacobian contain the factor that vanishes.  The same holds "
+    "for the twists, because their rows (v; omega_z) have the same determinant.",
     {
         r"\det J": det,
         r"n_{\rho}": lost.T,
@@ -269,14 +271,14 @@ d.function(
 )
 d.function(
     "jacobian_space",
-    "Twist (v; omega) of the hand in the base frame per joint rate.",
+    "Twist (v; omega) of the hand in the base frame, per joint rate.",
     {"q": q},
     {"J": J_space},
     source="eq. (18)",
 )
 d.function(
     "jacobian_body",
-    "Twist (v; omega) of the hand in its own frame per joint rate.",
+    "Twist (v; omega) of the hand in its own frame, per joint rate.",
     {"q": q},
     {"J": J_body},
 )
@@ -301,7 +303,7 @@ d.function(
     source="eq. (23)",
 )
 
-# The inverse, which the paper leaves out, and the workspace
+# The inverse, which the paper does not give, and the workspace
 
 lengths = (l1, l2, l3, l4, l5, l6)
 inverse_kinematics(d, lengths, position)

@@ -9,12 +9,12 @@ from closedform import Derivation, Table, real
 def experiment(
     d: Derivation, position: sp.Matrix, velocity: sp.Matrix, rates: sp.Matrix, M: sp.Matrix
 ) -> None:
-    """The velocity of the hand over time, for either reading of the rate of motor 3."""
+    """Add the velocity of the hand over time, for both readings of the rate of motor 3."""
     time = real("t")
     omega = sp.Matrix([-30, 10, 5, 0]) * pi / 180
 
     def moving(speeds: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
-        """Position and velocity at a time, from all angles 0 at constant rates."""
+        """Position and velocity over time at constant rates, from all angles 0."""
         along = dict(zip(d.actuated, speeds * time, strict=True))
         at_rates = dict(zip(rates, speeds, strict=True))
         return position.subs(along), velocity.subs(at_rates).subs(along)
@@ -23,8 +23,8 @@ def experiment(
     p_grounded, v_grounded = moving(M * omega)
     d.step(
         "The experiment of section V",
-        "From theta = 0 with the rates -30, 10, 5 and 0 degrees per second (t in seconds).  These "
-        "are the derivatives in time of the position along the path.",
+        "The motion starts at theta = 0 with the rates -30, 10, 5 and 0 degrees per second (t in "
+        "seconds).  The velocity v is the time derivative of the position along the path.",
         {"v": v_relative},
         equal=[(v_relative, p_relative.diff(time))],
     )
@@ -32,10 +32,11 @@ def experiment(
     start, first, second = (difference.diff(time, k).subs(time, 0) for k in range(3))
     d.step(
         "Relative or grounded",
-        "If 5 degrees per second were the rate of a motor 3 on the turret, the joint would turn "
-        "by theta3 = (5 - 10) t, and the velocity be w.  All three components tell the readings "
-        "apart, but not equally soon: at t = 0 only the vertical one differs, threefold; the "
-        "difference of the others grows from 0, that of y with t and that of x with t^2.",
+        "If 5 degrees per second were the rate of a motor 3 on the turret, the joint would turn by "
+        "theta3 = (5 - 10) t, and the velocity would be w.  All three components distinguish the "
+        "two readings, but not equally early.  At t = 0 only the vertical component differs, by a "
+        "factor of three.  The differences of the others grow from 0: that of y with t, that of x "
+        "with t^2.",
         {
             "w": v_grounded,
             r"(v - w)_{t = 0}": start.T,

@@ -1,4 +1,4 @@
-"""The inverse kinematics of the IRB 260, which the paper leaves out, and its workspace."""
+"""The inverse kinematics of the IRB 260, which the paper does not give, and its workspace."""
 
 import sympy as sp
 from sympy import atan2, cos, pi, sin, sqrt
@@ -20,7 +20,7 @@ TARGET = (real("px"), real("py"), real("pz"), real("psi"))
 
 
 def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: sp.Matrix) -> None:
-    """All postures of a position and a yaw: turret, elbow, shoulder, hand."""
+    """Add the inverse: all postures for a position and a yaw."""
     l1, l2, l3, l4, l5, l6 = lengths
     theta1, theta2, theta3, theta5 = d.actuated
     px, py, pz, psi = TARGET
@@ -71,9 +71,10 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
     ]
     d.step(
         "Inverse: the turret",
-        "The hand is in the plane of the arm, at the distance r from the base axis: the arm faces "
-        "it (front, sigma_side = 1), rho = r, or reaches over the axis (back, sigma_side = -1), "
-        "rho = -r.  On the axis itself theta1 is free; we return 0.",
+        "The hand is in the plane of the arm, at the distance r from the base axis.  Either the "
+        "arm faces the hand (front, sigma_side = 1) and rho = r, or it reaches over the axis "
+        "(back, sigma_side = -1) and rho = -r.  If the hand is on the axis, theta1 is free; we "
+        "return 0.",
         {
             r"\rho": side * sqrt(px**2 + py**2),
             r"\theta_1": atan2(-side * px, side * py),
@@ -83,9 +84,9 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
     )
     d.step(
         "Inverse: the elbow and the shoulder",
-        "Seen from the shoulder the wrist is at u forward and h up.  The two arms and the line "
-        "between these joints form a triangle, in which the angle of the elbow is theta3 + 90 "
-        "degrees: elbow_up (sigma_elbow = 1) is cos(theta3) >= 0, as at home, and elbow_down is "
+        "The wrist is u ahead of the shoulder and h above it.  The two arms and the line between "
+        "these joints form a triangle.  In it the angle of the elbow is theta3 + 90 degrees, so "
+        "elbow_up (sigma_elbow = 1) means cos(theta3) >= 0, as at home, and elbow_down means "
         "cos(theta3) <= 0.  If the arms are equal and the wrist is on the shoulder, theta2 is "
         "free; we return 0.",
         {
@@ -100,28 +101,28 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
     )
     d.step(
         "Inverse: the hand",
-        "What the turret leaves of the yaw, by sine and cosine.",
+        "theta5 is the yaw minus the turn of the turret, computed by sine and cosine.",
         {r"\theta_5": r"\psi - \theta_1"},
     )
     d.function(
         "ik",
-        "All four configurations of a position and a yaw.",
+        "All four configurations for a position and a yaw.",
         {"x": TARGET},
         {"q": [solution[angle] for angle in d.actuated]},
         program=p,
         branches=choices,
         result="Solutions",
-        source="solved from eq. (13); the paper leaves the inverse out",
+        source="solved from eq. (13); the paper does not give the inverse",
         notes=(
             "front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= "
-            "0, where rho = y*cos(theta1) - x*sin(theta1).  elbow_up: cos(theta3) >= 0, as at "
+            "0, with rho = y*cos(theta1) - x*sin(theta1).  elbow_up: cos(theta3) >= 0, as at "
             "home; elbow_down: cos(theta3) <= 0.",
-            "SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) "
-            "and 0 is returned; equal arms folded with the wrist on the shoulder, theta2 is free "
-            "and 0 is returned; an arm without length, its angle is free and theta3 = -pi/2 is "
-            "returned.",
-            "Ill-conditioned where the arm is straight or folded: the angles lose half the digits "
-            "there, the position does not.",
+            "SINGULAR: if the hand is on the base axis, theta1 is free (theta1 + theta5 is "
+            "determined) and 0 is returned; if equal arms are folded with the wrist on the "
+            "shoulder, theta2 is free and 0 is returned; if an arm has no length, its angle is "
+            "free and theta3 = -pi/2 is returned.",
+            "Ill-conditioned if the arm is straight or folded: the angles lose half their digits, "
+            "the position does not.",
         ),
     )
     beta = real("beta")
@@ -156,16 +157,17 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
 def workspace(
     d: Derivation, lengths: tuple[sp.Symbol, ...], position: sp.Matrix, rho: sp.Expr
 ) -> None:
-    """The limits of what the hand can reach, which do not depend on its yaw."""
+    """Add the limits of the positions of the hand; they do not depend on its yaw."""
     l1, l2, l3, l4, l5, l6 = lengths
     theta3, (px, py, pz, _) = d.actuated[2], TARGET
     inner, outer = sp.Abs(l3 - l4), l3 + l4
     square = l3**2 + l4**2 - 2 * l3 * l4 * sin(theta3)
     d.step(
         "Workspace",
-        "In the plane of the arm the hand reaches an annulus about the point at rho = l1 + l6 and "
-        "z = l2 - l5, with the arms' difference and sum as radii; all around the base axis, this "
-        "annulus and its mirror image.  At the radii the arm is folded and straight.",
+        "In the plane of the arm the hand can reach an annulus about the point at rho = l1 + l6 "
+        "and z = l2 - l5; its radii are the difference and the sum of the arms.  With the turns of "
+        "the turret, the workspace is this annulus and its mirror image, turned about the base "
+        "axis.  The arm is folded at the inner radius and straight at the outer one.",
         {
             r"\rho_0": l1 + l6,
             "z_0": l2 - l5,
@@ -205,10 +207,10 @@ def workspace(
     inside.bound("margin", margin, sum(lengths), "the front or the back of the arm reaches it")
     d.function(
         "workspace_contains",
-        "Whether some configuration reaches a position, whatever the yaw.",
+        "Whether any configuration reaches a position; the yaw does not matter.",
         {"p": (px, py, pz)},
         {"inside": sp.true},
         program=inside,
-        notes=("True exactly where ik has a branch that is OK or SINGULAR.",),
+        notes=("True if and only if ik has a branch that is OK or SINGULAR.",),
         boolean=True,
     )

@@ -1,4 +1,4 @@
-"""The double parallelogram of the IRB 260, which is behind its virtual joint, and its motors."""
+"""The double parallelogram of the IRB 260, the source of its virtual joint, and the motors."""
 
 import sympy as sp
 from sympy import cos, pi, sin
@@ -9,7 +9,7 @@ from closedform import Derivation, Lemma, parallelogram, real
 def double_parallelogram(
     d: Derivation, l3: sp.Symbol, l4: sp.Symbol, theta2: sp.Symbol, theta3: sp.Symbol
 ) -> tuple[Lemma, Lemma, sp.Matrix]:
-    """Derive theta4 from the loops; the lower and the upper loop, and the map of the motors."""
+    """Derive theta4; return the lower and the upper loop and the map from motors to joints."""
     sigma = real("sigma")
     m1, m2, m3, m5 = motors = [real(f"m{i}") for i in (1, 2, 3, 5)]
     a1, a2, a3 = (real(f"a{i}", positive=True) for i in (1, 2, 3))
@@ -30,13 +30,14 @@ def double_parallelogram(
     folded = {a1: l3, theta2: gamma1, beta1: gamma1 + phi1}
     d.step(
         "The lower loop and its assemblies",
-        "In the plane of the arm, with angles from the vertical: the lower arm and a rod of the "
-        "same length join the turret to a plate at the elbow, over a distance a1 in the direction "
-        "gamma1 on both.  The loop equations have two solutions for the turn phi1 of the plate and "
-        "the angle beta1 of the rod.  In the parallelogram the plate does not turn, whatever a1 "
-        "and gamma1; crossed, as an antiparallelogram, it does.  The assemblies meet where "
-        "phi1 = 0 in both: exactly where the loop is flat, sin(theta2 - gamma1) = 0.  Only if "
-        "a1 = l3 and the links lie on one another, theta2 = gamma1, is the plate free to turn.",
+        "Angles are in the plane of the arm and measured from the vertical.  The lower arm and a "
+        "rod of the same length join the turret to a plate at the elbow.  On the turret and on the "
+        "plate their ends are at the distance a1 in the direction gamma1.  The loop equations have "
+        "two solutions for the turn phi1 of the plate and the angle beta1 of the rod.  In the "
+        "parallelogram the plate does not turn, for any a1 and gamma1.  In the crossed assembly, "
+        "an antiparallelogram, it turns.  The assemblies meet if phi1 = 0 in both, that is, "
+        "exactly if the loop is flat: sin(theta2 - gamma1) = 0.  The plate is free to turn only if "
+        "a1 = l3 and the links lie on each other, theta2 = gamma1.",
         {
             "0": sp.Matrix(lower.equations),
             r"(\phi_1, \beta_1)_{\text{parallelogram}}": (sp.Integer(0), theta2),
@@ -56,11 +57,12 @@ def double_parallelogram(
     meet = assemblies_meet(l4, a2, forearm - gamma2)
     d.step(
         "The upper loop and the virtual joint",
-        "The upper arm and a second rod join the plate to the wrist bracket, over a distance a2. "
-        "The bracket turns by phi1 + phi2 against the turret; joint 4 is what it turns against the "
-        "upper arm.  In two parallelograms phi1 = phi2 = 0: the distances a1, a2 drop out, and the "
-        "bracket stays level.  This is the virtual joint.  With a loop crossed, the bracket turns "
-        "as the arm moves.  The assemblies of the upper loop meet where this loop is flat, too.",
+        "The upper arm and a second rod join the plate to the wrist bracket, with the distance a2 "
+        "between them.  The bracket turns by phi1 + phi2 against the turret; its turn against the "
+        "upper arm is joint 4.  In two parallelograms phi1 = phi2 = 0: the distances a1, a2 drop "
+        "out, and the bracket stays level.  This is the virtual joint.  If a loop is crossed, the "
+        "bracket turns as the arm moves.  The assemblies of the upper loop also meet exactly if "
+        "this loop is flat.",
         {
             "0": sp.Matrix(upper.equations),
             r"\theta_4 = \phi_1 + \phi_2 - \theta_2 - \theta_3": bracket - theta2 - theta3,
@@ -75,11 +77,11 @@ def double_parallelogram(
     M = sp.Matrix([m1, m2, upper_arm - m2, m5]).jacobian(motors)
     d.step(
         "Motors",
-        "Motor 3 sits on the turret as motor 2 does.  Its crank of length a3 drives the upper arm "
-        "through a rod as long as the lower arm: a third parallelogram, whose fixed link is the "
-        "crank.  The upper arm does not turn against the crank, phi3 = 0, so theta2 + theta3 is "
-        "the angle of the motor.  The paper is silent about this, and its theta3 is the angle "
-        "against the lower arm.",
+        "Motor 3 is on the turret, like motor 2.  Its crank of length a3 drives the upper arm "
+        "through a rod as long as the lower arm.  They form a third parallelogram, whose fixed "
+        "link is the crank.  The upper arm does not turn against the crank, phi3 = 0, so the angle "
+        "of the motor is theta2 + theta3.  The paper does not mention this; its theta3 is the "
+        "angle against the lower arm.",
         {
             "0": sp.Matrix(drive.equations),
             r"\theta_2 + \theta_3 - m_3 = \phi_3": upper_arm - m3,
@@ -92,6 +94,6 @@ def double_parallelogram(
 
 
 def assemblies_meet(link: sp.Expr, coupler: sp.Expr, bend: sp.Expr) -> sp.Expr:
-    """``1 - cos(turn)`` of the crossed assembly: zero exactly where both assemblies are one."""
+    """``1 - cos(turn)`` of the crossed assembly: zero exactly if both assemblies coincide."""
     stretch = link**2 + coupler**2 - 2 * link * coupler * cos(bend)
     return 2 * link**2 * sin(bend) ** 2 / stretch

@@ -23,7 +23,7 @@ CHABLAT_WENGER_ANGELES = Paper(
 
 TEXTBOOK = Paper(
     "textbook",
-    "Arms of common structure, by the lemmas that solve them",
+    "Arms of common structure, solved by lemmas",
     ("The closedform authors",),
 )
 

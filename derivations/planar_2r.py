@@ -29,8 +29,9 @@ d = Derivation(
     "planar_2r",
     "Planar 2R arm",
     REDDY_BABU,
-    "Two links of lengths l1 and l2 move in the plane of x and y.  theta1 turns the first link "
-    "against the x axis, theta2 the second against the first, both counter-clockwise.",
+    "Two links of lengths l1 and l2 move in the plane of x and y.  theta1 is the angle of the "
+    "first link against the x axis, theta2 that of the second link against the first; both are "
+    "counter-clockwise.",
     task=["x", "y"],
     singularities=("elbow",),
 )
@@ -47,7 +48,8 @@ link2 = rotation("z", theta1 + theta2) * sp.Matrix([l2, 0, 0])
 position = (link1 + link2)[:2, 0]
 d.step(
     "Position by geometry",
-    "Each link is its length along the x axis, turned by its absolute angle; the links add up.",
+    "Each link is a vector along the x axis, turned by its absolute angle.  The position is the "
+    "sum of both.",
     {"x": position[0], "y": position[1]},
     published=("(1)", "(2)"),
 )
@@ -59,8 +61,8 @@ A2 = denavit_hartenberg(l2, 0, 0, theta2)
 pose = chain([A1, A2])
 d.step(
     "Pose by Denavit-Hartenberg",
-    "Table I has a = l1, l2 and no twist or offset.  The product of the two matrices has, in its "
-    "last column, the position found by geometry.",
+    "Table I has a = l1, l2 and no twist or offset.  The last column of the product of the two "
+    "matrices is the position found by geometry.",
     {"A_1": A1, "A_2": A2, "T = A_1 A_2": pose},
     published=("(6)", "(7)", "(8)", "Table I"),
     equal=[(pose[:2, 3], position), (A1 * A2, pose)],
@@ -69,7 +71,7 @@ d.step(
 phi = theta1 + theta2
 d.step(
     "Orientation",
-    "The first column of the pose is the direction of the last link, at the angle phi.",
+    "The first column of the pose is the direction of the last link, which is at the angle phi.",
     {r"\phi": phi},
     published=("(5)",),
     equal=[(pose[:2, 0], sp.Matrix([cos(phi), sin(phi)]))],
@@ -107,9 +109,9 @@ d.step(
 )
 d.step(
     "Manipulability and singular set",
-    "Yoshikawa's measure sqrt(det(J J^T)) of the square Jacobian is the modulus of the "
-    "determinant.  It vanishes exactly where sin(theta2) does (for links that have a length): the "
-    "arm is stretched or folded, and the hand cannot move along it.",
+    "For a square Jacobian, Yoshikawa's measure sqrt(det(J J^T)) is the absolute value of the "
+    "determinant.  If the links have a length, it vanishes exactly if sin(theta2) does: the arm is "
+    "stretched or folded, and the hand cannot move along it.",
     {"w": manipulability, r"w^2": sp.factor(det**2)},
     equal=[((J[:2, :] * J[:2, :].T).det(), det**2)],
 )
@@ -128,13 +130,13 @@ d.function(
 )
 d.function(
     "manipulability",
-    "Yoshikawa's manipulability of the position, the modulus of the determinant.",
+    "Yoshikawa's manipulability of the position: the absolute value of the determinant.",
     {"q": q},
     {"w": manipulability},
 )
 d.function(
     "singularities",
-    "The factor that vanishes exactly where the arm is stretched or folded.",
+    "The factor that vanishes exactly if the arm is stretched or folded.",
     {"q": q},
     {"factors": [sin(theta2)]},
 )
@@ -174,10 +176,10 @@ N, M = real("N", nonnegative=True), real("M", nonnegative=True)
 bend, lead = triangle_angles(l1, l2, N, M, sigma)
 d.step(
     "Inverse: the elbow",
-    "The links and the line from the base to the hand form a triangle with the sides l1, l2 and r. "
-    "N and M tell how far the hand is from both boundaries of the workspace; there the arctangent "
-    "of their roots keeps the hand in place to rounding, where the textbook's sqrt(1 - D^2) loses "
-    "half the digits or is not real.",
+    "The links and the line from the base to the hand form a triangle with the sides l1, l2 and "
+    "r.  N and M measure how far the hand is from the two boundaries of the workspace.  Near a "
+    "boundary the arctangent of their roots keeps the hand in place up to rounding, but the "
+    "textbook's sqrt(1 - D^2) loses half its digits or is not real.",
     {
         "r^2": px**2 + py**2,
         "N": (l1 + l2) ** 2 - real("r") ** 2,
@@ -189,15 +191,16 @@ d.step(
 )
 d.step(
     "Inverse: the shoulder",
-    "The first link leaves the bearing of the hand by the angle alpha at the base of the triangle; "
-    "the sine and cosine of both give their difference in one arctangent.  If the hand is on the "
-    "base axis, which takes l1 = l2, every theta1 serves; we return 0.",
+    "The direction of the first link is that of the hand minus alpha, the angle of the triangle at "
+    "the base.  The sines and cosines of both angles give their difference with one arctangent.  "
+    "The hand can be on the base axis only if l1 = l2.  Then every theta1 is a solution; we return "
+    "0.",
     {r"\theta_1": atan2(py, px) - alpha},
     published=("(4)",),
 )
 d.function(
     "ik",
-    "Both elbow configurations that reach a position.",
+    "Both elbow configurations for a position.",
     {"x": (px, py)},
     {"q": [solution[theta1], solution[theta2]]},
     program=p,
@@ -205,9 +208,9 @@ d.function(
     result="Solutions",
     source="eqs. (3) and (4), by arctangents",
     notes=(
-        "SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a "
-        "link without length, whose angle is free.",
-        "Ill-conditioned near full stretch and full fold: the angles lose half the digits there, "
+        "SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned; "
+        "if a link has no length, its angle is free.",
+        "Ill-conditioned near the stretched and the folded arm: the angles lose half their digits, "
         "the position does not.",
     ),
 )
@@ -259,8 +262,8 @@ s1 = f.let("s1", choose(no_first, 0, elbow_y / l1))
 full = linear_pair(theta2, n[1] * c1 - n[0] * s1, n[0] * c1 + n[1] * s1)
 d.step(
     "Inverse from the full pose",
-    "The pose tells where the elbow is, p - l2 n, and so theta1; then the first column of "
-    "A_1^{-1} T = A_2 gives theta2.  The other entries of eq. (9) are conditions on the pose.",
+    "The elbow is at p - l2 n, which gives theta1.  Then the first column of A_1^{-1} T = A_2 "
+    "gives theta2.  The other entries of eq. (9) are conditions on the pose.",
     {
         r"\theta_1": atan2(origin[1] - l2 * n[1], origin[0] - l2 * n[0]),
         r"\theta_2": full[theta2],
@@ -269,14 +272,14 @@ d.step(
 )
 d.function(
     "ik_pose",
-    "The joint angles of a full pose; there is at most one.",
+    "The joint angles for a full pose; there is at most one solution.",
     {"T": T},
     {"q": [atan2(s1, c1), full[theta2]]},
     program=f,
     branches=SINGLE,
     result="Solutions",
     source="eq. (10)",
-    notes=("UNREACHABLE where the pose is not one of the arm, be it ever so little.",),
+    notes=("UNREACHABLE if the arm cannot take the pose exactly.",),
 )
 
 a1, a2 = real("a1"), real("a2")
@@ -303,7 +306,7 @@ d.solved += [
 
 d.step(
     "Workspace",
-    "The bounds of the triangle are |l1 - l2| <= r <= l1 + l2: an annulus.",
+    "The triangle exists if |l1 - l2| <= r <= l1 + l2, so the workspace is an annulus.",
     {"r_{min}": sp.Abs(l1 - l2), "r_{max}": l1 + l2, "area": sp.pi * 4 * l1 * l2},
     equal=[(sp.pi * ((l1 + l2) ** 2 - (l1 - l2) ** 2), 4 * sp.pi * l1 * l2)],
 )

@@ -1,4 +1,4 @@
-"""A planar parallel mechanism of two RPR legs: a point carried by two sliding legs."""
+"""A planar parallel mechanism of two RPR legs: two sliding legs carry a point."""
 
 import sympy as sp
 from closedform.derivations.papers import TEXTBOOK
@@ -20,9 +20,9 @@ d = Derivation(
     "rpr_planar",
     "Planar parallel mechanism (two RPR legs)",
     TEXTBOOK,
-    "Two legs turn freely about A, at the origin, and B, at b on the x axis; each slides out by "
-    "rho1 and rho2 and both carry the point P.  The slides are driven, the turns theta1 and theta2 "
-    "of the legs follow.",
+    "Two legs turn freely about A at the origin and B at b on the x axis.  They slide out by rho1 "
+    "and rho2, and both carry the point P.  The slides are driven; the angles theta1 and theta2 of "
+    "the legs follow.",
     task=["x", "y"],
     singularities=("leg 1", "leg 2", "flat"),
 )
@@ -40,7 +40,7 @@ legs = [
 ]
 d.step(
     "The loop",
-    "P is rho1 away from A and rho2 away from B, whatever the legs turn.",
+    "P is at the distance rho1 from A and rho2 from B, for any angles of the legs.",
     {r"\rho_1^2": x**2 + y**2, r"\rho_2^2": (x - b) ** 2 + y**2},
     equal=[(loop[0].subs(legs[0]), sp.S.Zero), (loop[1].subs(legs[1]), sp.S.Zero)],
 )
@@ -56,8 +56,8 @@ point, chord = circle_intersection(
 px, py = f.let("P_x", point[x]), f.let("P_y", point[y])
 d.step(
     "Forward: two circles",
-    "P is where the circles about A and B meet: above or below the line of the pivots, the two "
-    "assembly modes.  They meet each other where the mechanism is flat.",
+    "P is an intersection of the circles about A and B, above or below the line of the pivots: "
+    "these are the two assembly modes.  They coincide if the mechanism is flat.",
     {"x": (b**2 + rho1**2 - rho2**2) / (2 * b), "y": sigma * sqrt(rho1**2 - x**2)},
 )
 d.function(
@@ -70,8 +70,8 @@ d.function(
     result="Positions",
     notes=(
         "UNREACHABLE: the legs do not meet, or a length is negative.",
-        "SINGULAR: the pivots coincide (b = 0); P is free on a circle, the point on the x axis is "
-        "returned.",
+        "SINGULAR: the pivots coincide (b = 0); P is free on a circle, and its point on the x axis "
+        "is returned.",
     ),
 )
 d.inverses.append(
@@ -97,8 +97,9 @@ J = (A.inv() * B).applyfunc(sp.cancel)
 det = sp.factor(J.det())
 d.step(
     "Velocity and singular sets",
-    "A dp = B dq.  B is singular where a leg has no length (serial: the leg may turn at will), A "
-    "where P is on the line of the pivots (parallel: the legs cannot hold P across the line).",
+    "A dp = B dq.  B is singular if a leg has no length (serial: the leg may turn freely).  A is "
+    "singular if P is on the line of the pivots (parallel: the legs cannot hold P across the "
+    "line).",
     {"A": A / 2, "B": B / 2, "J": J, r"\det A": sp.factor(A.det() / 4), r"\det J": det},
     equal=[(A * J, B), (A.det(), 4 * b * y), (B.det(), 4 * rho1 * rho2)],
 )
@@ -112,10 +113,10 @@ for name, summary, outputs in (
 
 d.step(
     "What the legs determine",
-    "P is where two circles meet.  Rounded radii are off by some units in the last place, and P by "
-    "that over the sine of the angle between the legs.  Near the line of the pivots, far away from "
-    "them and with b = 0 the legs do not hold P, however they are computed.  Where the sine is "
-    "less than 2^-10, the status is SINGULAR.",
+    "P is an intersection of two circles.  Rounded radii are off by a few units in the last place, "
+    "and the error of P is this error divided by the sine of the angle between the legs.  Near the "
+    "line of the pivots, far away from them and with b = 0 the legs do not determine P, however "
+    "they are computed.  The status is SINGULAR if the sine is less than 2^-10.",
     {r"\rho_1 \rho_2 |\sin(\theta_2 - \theta_1)|": b * sp.Abs(y)},
     equal=[
         (
@@ -127,7 +128,7 @@ d.step(
 )
 g = Program()
 leg1, leg2 = g.let("leg1", sqrt(x**2 + y**2)), g.let("leg2", sqrt((x - b) ** 2 + y**2))
-g.determined(b * sp.Abs(y), leg1 * leg2, "P is on the line of the pivots, far off, or b = 0")
+g.determined(b * sp.Abs(y), leg1 * leg2, "P is on the line of the pivots or far away, or b = 0")
 d.branches = SINGLE.labels
 d.function(
     "ik",
@@ -138,10 +139,10 @@ d.function(
     branches=SINGLE,
     result="Solutions",
     notes=(
-        "Every position can be reached, in one way: lengths are not negative.",
-        "SINGULAR: the sine of the angle between the legs is less than 2^-10, on and near the line "
-        "of the pivots, at a distance of more than some 1000 b, and everywhere if b = 0.  The "
-        "lengths are right, but P moves more for an ulp of them than 1e-12 of b + rho1 + rho2.",
+        "Every position can be reached, in exactly one way: lengths are not negative.",
+        "SINGULAR: the sine of the angle between the legs is less than 2^-10: on and near the line "
+        "of the pivots, at a distance of more than about 1000 b, and everywhere if b = 0.  The "
+        "lengths are right, but one ulp of them moves P by more than 1e-12 of b + rho1 + rho2.",
     ),
 )
 d.inverses.append(Inverse("ik", q, (sp.S.Zero,) * 2, tuple(loop), images="fk", nonnegative=q))

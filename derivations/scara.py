@@ -1,4 +1,4 @@
-"""A SCARA arm: two parallel revolute joints, a spindle that slides and turns."""
+"""A SCARA arm: two parallel revolute joints and a spindle that slides and turns."""
 
 import sympy as sp
 from closedform.derivations.papers import TEXTBOOK
@@ -11,7 +11,7 @@ d = Derivation(
     "SCARA arm (RRPR)",
     TEXTBOOK,
     "Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a "
-    "spindle slides down by d3 and turns by theta4, counter-clockwise seen from below.",
+    "spindle slides down by d3 and turns by theta4, counter-clockwise as seen from below.",
 )
 SOURCE = "the size of a common SCARA arm"
 l1 = d.parameter("l1", value=sp.Rational(13, 40), unit="m", meaning="first link", source=SOURCE)
@@ -30,8 +30,8 @@ ik.solve(slide, d3, h - z)
 ik.solve(remainder, theta4, theta1 + theta2 - yaw)
 d.step(
     "Inverse",
-    "Seen from above the links are a planar two-link arm: two elbows, theta2 >= 0 (left) and "
-    "theta2 <= 0 (right).  The spindle then makes up the height and the yaw.",
+    "Seen from above, the links are a planar two-link arm with two elbows, theta2 >= 0 (left) and "
+    "theta2 <= 0 (right).  Then the height gives the slide of the spindle and the yaw its turn.",
     {r"d_3": h - z, r"\theta_4": theta1 + theta2 - yaw},
 )
-ik.finish("Both elbows of a position and a yaw.")
+ik.finish("Both elbow configurations for a position and a yaw.")

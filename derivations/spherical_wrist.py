@@ -27,8 +27,9 @@ d = Derivation(
     "spherical_wrist",
     "Spherical wrist",
     REDDY_BABU,
-    "Three revolute joints with axes through one point.  theta4 turns about z, theta5 about the y "
-    "axis that theta4 left, theta6 about the z axis that both left; the hand is d6 along it.",
+    "The axes of three revolute joints meet in one point.  theta4 turns about z, theta5 about the "
+    "y axis after that turn, and theta6 about the z axis after both.  The hand is at the distance "
+    "d6 along the last axis.",
     task=[f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)],
     singularities=("axes 4 and 6 coincide",),
 )
@@ -48,7 +49,7 @@ q = (theta4, theta5, theta6)
 R = chain([rotation("z", theta4), rotation("y", theta5), rotation("z", theta6)])
 d.step(
     "Orientation by ZYZ Euler angles",
-    "Three rotations about axes of the moving frame multiply from left to right.",
+    "Rotations about the axes of the moving frame multiply from left to right.",
     {"R": R},
     published=("(12)",),
     equal=[(R * R.T, sp.eye(3)), (R.det(), sp.Integer(1))],
@@ -62,8 +63,8 @@ A6 = denavit_hartenberg(0, 0, d6, theta6)
 pose = chain([A4, A5, A6])
 d.step(
     "Pose by Denavit-Hartenberg",
-    "Table II has twists of -90 and +90 degrees; the offset d6 is the only length. The rotation is "
-    "the one of the Euler angles: phi, theta, varphi are theta4, theta5, theta6.",
+    "Table II has twists of -90 and +90 degrees; the offset d6 is the only length.  The rotation "
+    "is that of the Euler angles: phi, theta, varphi are theta4, theta5, theta6.",
     {"A_4": A4, "A_5": A5, "A_6": A6, "T": pose},
     published=("(14)", "(15)", "Table II"),
     equal=[(pose[:3, :3], R), (pose, homogeneous(R) * homogeneous(sp.eye(3), (0, 0, d6)))],
@@ -80,8 +81,8 @@ body = angular_velocity_matrix(R, q, "body")
 det = determinant(space)
 d.step(
     "Angular Jacobians",
-    "The columns in the space frame are the axes of the joints as they stand: z, the turned y and "
-    "the last column of R.  In the body frame they are the same axes seen from the hand.",
+    "In the space frame, the columns are the present axes of the joints: z, the turned y and the "
+    "last column of R.  In the body frame, they are the same axes in the frame of the hand.",
     {"J_s": space, "J_b": body},
     equal=[
         (space, sp.Matrix.hstack(sp.Matrix([0, 0, 1]), rotation("z", theta4)[:, 1], R[:, 2])),
@@ -90,8 +91,8 @@ d.step(
 )
 d.step(
     "Determinant and singular set",
-    "Both determinants are the same, for a rotation lies between the frames.  They vanish exactly "
-    "where theta5 is 0 or pi: the first and the last axis coincide, and the hand cannot turn about "
+    "Both determinants are the same, because the frames differ by a rotation.  They vanish exactly "
+    "if theta5 is 0 or pi: the first and the last axis coincide, and the hand cannot turn about "
     "the normal of the axes.",
     {r"\det J": det},
     equal=[(space.det(), det), (body.det(), det)],
@@ -111,7 +112,7 @@ d.function(
 d.function("determinant", "Determinant of either angular Jacobian.", {"q": q}, {"det": det})
 d.function(
     "singularities",
-    "The factor that vanishes exactly where the axes 4 and 6 coincide.",
+    "The factor that vanishes exactly if the axes 4 and 6 coincide.",
     {"q": q},
     {"factors": [sin(theta5)]},
 )
@@ -139,15 +140,15 @@ angles = zyz_angles(p, given, theta4, theta5, theta6, sigma)
 d.solved.append(Solved("ik", theta4, angles, given[0, 2] * sin(theta4) - given[1, 2] * cos(theta4)))
 d.step(
     "Inverse orientation",
-    "The third column of R gives theta4 and theta5, up to the sign of sin(theta5).  theta6 is read "
-    "from the rotation that theta4 leaves, and not from the third row as in eq. (16), which knows "
-    "nothing of theta6 when theta5 is small.",
+    "The third column of R gives theta4 and theta5, up to the sign of sin(theta5).  theta6 follows "
+    "from the rotation that remains after theta4.  Eq. (16) takes it from the third row instead, "
+    "which hardly depends on theta6 if theta5 is small.",
     {r"\theta_4": angles[theta4], r"\theta_5": angles[theta5], r"\theta_6": angles[theta6]},
     published=("(13)", "(16)"),
 )
 d.function(
     "ik",
-    "Both wrist configurations of a rotation.",
+    "Both wrist configurations for a rotation.",
     {"R": given},
     {"q": [angles[theta4], angles[theta5], angles[theta6]]},
     program=p,
@@ -155,11 +156,11 @@ d.function(
     result="Solutions",
     source="eqs. (13) and (16), with theta6 from the remaining rotation",
     notes=(
-        "SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, "
+        "SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and "
         "theta4 = 0 is returned.",
-        "INVALID: a matrix that is no proper rotation, a mirrored one included.",
-        "Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or "
-        "difference.",
+        "INVALID: the matrix is not a proper rotation, for example a reflection.",
+        "Near theta5 = 0 and pi, theta4 and theta6 are ill-conditioned; their sum or difference is "
+        "not.",
     ),
 )
 free = real("psi")

@@ -1,14 +1,15 @@
-/* closedform.h: what every generated C module shares.
+/* closedform.h: the code that all generated C modules share.
  *
  * C99 (and C++), header only, no state. real_t is double, or float if CLOSEDFORM_FLOAT is defined.
- * Ship with -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast: without the first two a
- * compiler may not turn the selects below into vector code; the third, which gcc switches off under
- * -std=c99, allows an FMA, a third faster. The error bounds hold with and without it. Never with
- * -ffast-math: the argument reduction depends on the order of its operations.
+ * Compile with -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast. Without -fno-math-errno
+ * and -fno-trapping-math a compiler may not vectorise the selects below. -ffp-contract=fast, which
+ * gcc switches off under -std=c99, allows fused multiply-adds and makes the code a third faster. The
+ * error bounds hold with and without it. Do not use -ffast-math: the argument reduction depends on
+ * the order of its operations.
  *
- * A call for one posture raises none of the floating-point exceptions invalid, division by zero and
- * overflow where its answer is finite or a status tells of it, for finite input (angles up to 1e11).
- * A batch does so too if CLOSEDFORM_TRAP_SAFE is defined. Rounding is to nearest throughout.
+ * For finite input (angles up to 1e11), a call for one posture does not raise the floating-point
+ * exceptions invalid, division by zero and overflow if its answer is finite or a status reports the
+ * failure. The same holds for a batch if CLOSEDFORM_TRAP_SAFE is defined. Rounding is to nearest.
  */
 #ifndef CLOSEDFORM_H
 #define CLOSEDFORM_H
@@ -31,8 +32,8 @@
 #error "closedform.h needs arithmetic in the declared type: on x86 compile with -msse2 -mfpmath=sse"
 #endif
 
-/* Compilers that do not tell of these options are told not to heed them, from here to the end of
- * the source that includes this header. */
+/* Some compilers define no macro for these options. They are told to ignore the options from here to
+ * the end of the source that includes this header. */
 #if defined(__clang__)
 #pragma clang fp reassociate(off)
 #if __clang_major__ >= 18
@@ -56,9 +57,10 @@
 #define CF_UNLIKELY(condition) (condition)
 #endif
 
-/* Before a loop over the postures of a batch: no iteration reads what another writes, for outputs
- * overlap nothing. Not told so, a compiler compares each plane with every other at run time first,
- * and gcc gives up beyond ten comparisons; `restrict` it heeds on parameters alone. */
+/* Before a loop over the postures of a batch: no iteration reads what another writes, because an
+ * output does not overlap any other array. Without this hint a compiler first compares every plane
+ * with every other at run time, and gcc gives up beyond ten comparisons. gcc uses `restrict` on
+ * parameters only. */
 #if defined(__clang__)
 #define CF_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #elif defined(__GNUC__)
@@ -67,9 +69,9 @@
 #define CF_INDEPENDENT
 #endif
 
-/* Before the definition of a function: with CLOSEDFORM_DISPATCH the compiler builds it for AVX-512,
- * AVX2 and the baseline, and the loader picks one. Clang, not asked for clones, is told instead to
- * keep quiet where its flags leave a loop of CF_INDEPENDENT scalar. */
+/* Before the definition of a function: with CLOSEDFORM_DISPATCH, gcc builds it for AVX-512, AVX2 and
+ * the baseline, and the loader picks one. Clang builds no clones; here it is told not to warn about a
+ * CF_INDEPENDENT loop that its flags leave scalar. */
 #if defined(__clang__)
 #define CLOSEDFORM_DISPATCHED _Pragma("clang diagnostic ignored \"-Wpass-failed\"")
 #elif defined(CLOSEDFORM_DISPATCH) && defined(__x86_64__) && defined(__GLIBC__) && \
@@ -80,15 +82,15 @@
 #define CLOSEDFORM_DISPATCHED
 #endif
 
-/* Postures per block of a batch loop: the scratch of a block stays in the first-level cache. */
+/* Postures per block of a batch loop: the scratch arrays of a block stay in the first-level cache. */
 #define CLOSEDFORM_BLOCK 256
 
 /* Status of one solution, stored as uint8_t. */
 enum closedform_status {
     CLOSEDFORM_OK = 0,
     CLOSEDFORM_UNREACHABLE = 1, /* no solution; the joints are NaN */
-    CLOSEDFORM_SINGULAR = 2,    /* a joint is free: it has its convention value, and fk(q) = x;
-                                   or rounded joints do not determine the posture */
+    CLOSEDFORM_SINGULAR = 2,    /* a joint is free: it has the value of the convention, and
+                                   fk(q) = x; or rounded joints do not determine the posture */
     CLOSEDFORM_INVALID = 3      /* non-finite input or impossible parameter; the joints are NaN */
 };
 
@@ -105,8 +107,8 @@ typedef uint64_t cf_word;
 /* A decimal literal as real_t, without an implicit conversion. */
 #define CLOSEDFORM_C(x) ((real_t)(x))
 #define CLOSEDFORM_NAN CLOSEDFORM_C(NAN)
-/* Which part of its natural scale counts as zero, and between which sizes of a mechanism no power up
- * to the second, third ... leaves the range of the type; the reasons stand in tolerances.py. */
+/* The fraction of a natural scale that counts as zero, and the sizes of a mechanism between which no
+ * power up to the second, third ... leaves the range of the type. tolerances.py gives the reasons. */
 #ifdef CLOSEDFORM_FLOAT
 #define CLOSEDFORM_FEASIBILITY CLOSEDFORM_C(1e-06)
 #define CLOSEDFORM_VANISHING CLOSEDFORM_C(4.76837158203125e-07)
@@ -169,26 +171,26 @@ CF_INLINE real_t cf_from_word(cf_word w)
     return x;
 }
 
-/* a where `condition` is 1, b where it is 0. By bits and not by `?:`, which gcc turns into jumps when
- * several selections share a condition, and then vectorises nothing. */
+/* a if `condition` is 1, b if it is 0. It works on bits: gcc turns `?:` into jumps if several
+ * selections share a condition, and then vectorises nothing. */
 CF_INLINE real_t cf_select(int condition, real_t a, real_t b)
 {
     const cf_word mask = (cf_word)0 - (cf_word)condition;
     return cf_from_word((cf_to_word(a) & mask) | (cf_to_word(b) & ~mask));
 }
 
-/* The same where `condition` hardly ever is 1 and a is much work. A single call jumps over that; a
- * batch selects. Where a is no work jumps cost more than they spare: nothing across them becomes one
- * vector. */
+/* The same for a `condition` that is hardly ever 1 and an a that is expensive. A single call jumps
+ * over the computation of a; a batch selects. If a is cheap, use cf_select: a jump costs more than it
+ * saves, because code on both sides of it is not vectorised together. */
 CF_INLINE real_t cf_rarely(int single, int condition, real_t a, real_t b)
 {
     if (single) return CF_UNLIKELY(condition) ? a : b;
     return cf_select(condition, a, b);
 }
 
-/* What to divide by, where nothing uses the quotient if `unused` is 1, for then the divisor may be
- * zero: 1, so that no floating-point exception is raised. In a batch the selection would take up to
- * a fifteenth of its time; it is made there if CLOSEDFORM_TRAP_SAFE is defined. */
+/* The divisor, or 1 if `unused` is 1. Nothing uses the quotient then, and the divisor may be zero; 1
+ * avoids a floating-point exception. In a batch the selection would take up to a fifteenth of the
+ * time, so a batch makes it only if CLOSEDFORM_TRAP_SAFE is defined. */
 CF_INLINE real_t cf_divisor(int single, int unused, real_t divisor)
 {
 #ifdef CLOSEDFORM_TRAP_SAFE
@@ -203,7 +205,7 @@ CF_INLINE real_t cf_sqrt(real_t x) { return CF_LIBM(sqrt)(x); }
 CF_INLINE real_t cf_abs(real_t x) { return CF_LIBM(fabs)(x); }
 CF_INLINE real_t cf_copysign(real_t size, real_t sign) { return CF_LIBM(copysign)(size, sign); }
 
-/* Whether a single call, or a batch that must not raise floating-point exceptions, takes care. */
+/* Whether floating-point exceptions are avoided: in single calls always, in batches on request. */
 CF_INLINE int cf_careful(int single)
 {
 #ifdef CLOSEDFORM_TRAP_SAFE
@@ -214,7 +216,7 @@ CF_INLINE int cf_careful(int single)
 #endif
 }
 
-/* a / b, of which no exception tells that b is zero. */
+/* a / b; does not raise an exception if b is zero. */
 CF_INLINE real_t cf_quotient(int single, real_t a, real_t b)
 {
     if (!cf_careful(single)) return a / b;
@@ -224,21 +226,21 @@ CF_INLINE real_t cf_quotient(int single, real_t a, real_t b)
     return cf_rarely(single, zero, a == 0 ? CLOSEDFORM_NAN : infinite, quotient);
 }
 
-/* What to divide by, of which no exception tells that it is zero: then the quotient is NaN. */
+/* The divisor, or NaN if it is zero: the quotient is then NaN and no exception is raised. */
 CF_INLINE real_t cf_nonzero(int single, real_t divisor)
 {
     if (!cf_careful(single)) return divisor;
     return cf_rarely(single, divisor == 0, CLOSEDFORM_NAN, divisor);
 }
 
-/* NaN where `failed`, else zero: added to an answer, it is one selection for all entries. A single
- * call jumps, so that nothing waits for the condition. */
+/* NaN if `failed`, else zero: added to an answer, it is one selection for all entries. A single call
+ * jumps, so that nothing waits for the condition. */
 CF_INLINE real_t cf_poison(int single, int failed)
 {
     return cf_rarely(single, failed, CLOSEDFORM_NAN, CLOSEDFORM_C(0.0));
 }
 
-/* The status of a branch; an invalid input outweighs all, a free joint nothing. */
+/* The status of a branch. INVALID takes precedence over UNREACHABLE, and that over SINGULAR. */
 CF_INLINE real_t cf_status(int single, int invalid, int unreachable, int singular)
 {
     if (single && !CF_UNLIKELY(invalid | unreachable | singular)) return CLOSEDFORM_C(0.0);
@@ -247,10 +249,11 @@ CF_INLINE real_t cf_status(int single, int invalid, int unreachable, int singula
     return cf_select(invalid, CLOSEDFORM_C(3.0), valid);
 }
 
-/* What keeps a product that decides a status out of a fused multiply-add, so that the status is the same
- * on every processor and in NumPy. In a batch it is multiplied by cf_one, of which no compiler knows
- * that it is 1; that product is fused with the addition instead, and exact. In a single call an empty
- * instruction stands between product and addition, which would keep a loop from becoming vectors. */
+/* CF_HIDE, cf_one and cf_rounded keep a product that decides a status out of a fused multiply-add. The
+ * status is then the same on every processor and in NumPy. A batch multiplies the product by cf_one,
+ * which a compiler cannot know to be 1; the compiler fuses this second, exact product with the addition
+ * instead. A single call puts an empty instruction between product and addition. In a batch that
+ * instruction would prevent vectorisation. */
 #if (defined(__x86_64__) || defined(__i386__)) && !defined(__FMA__) && !defined(__FMA4__) && \
     !defined(CLOSEDFORM_DISPATCH)
 #define CF_HIDE(x) (void)(x) /* nothing is fused */
@@ -285,33 +288,33 @@ CF_INLINE real_t cf_rounded(int single, real_t one, real_t x)
 }
 
 
-/* 1 or -1; of either zero 1. */
+/* 1 or -1; 1 for either zero. */
 CF_INLINE real_t cf_sign(real_t x) { return cf_copysign(CLOSEDFORM_C(1.0), x + CLOSEDFORM_C(0.0)); }
 
-/* Unlike fmax and fmin these are one instruction: if either argument is NaN, the result is b. */
+/* One instruction each, unlike fmax and fmin. If either argument is NaN, the result is b. */
 CF_INLINE real_t cf_max(real_t a, real_t b) { return a > b ? a : b; }
 CF_INLINE real_t cf_min(real_t a, real_t b) { return a < b ? a : b; }
 
-/* The square root of what may be negative, but only where the answer is rejected: a batch takes NaN
- * then, which raises an exception, a single call zero. */
+/* The square root of x, which is negative only if the answer is rejected. A batch then takes NaN,
+ * which raises an exception; a single call takes zero. */
 CF_INLINE real_t cf_root(int single, real_t x)
 {
     return cf_sqrt(cf_careful(single) ? cf_max(CLOSEDFORM_C(0.0), x) : x);
 }
 
-/* Zero, or NaN if x is not finite: of several numbers the sum tells whether all are. */
+/* Zero, or NaN if x is not finite. A sum of these is zero only if all the numbers are finite. */
 CF_INLINE real_t cf_nought(real_t x) { return CLOSEDFORM_C(0.0) * x; }
 
-/* Has its sign bit set unless least <= size <= most; a loop ORs the words of its postures. No size is
- * negative, and a word grows with its number. */
+/* A word with its sign bit set unless least <= size <= most; a loop ORs the words of its postures. No
+ * size is negative, so the words are in the order of the numbers. */
 CF_INLINE cf_word cf_size_excess(real_t size, real_t least, real_t most)
 {
     const cf_word w = cf_to_word(size);
     return (w - cf_to_word(least)) | (cf_to_word(most) - w);
 }
 
-/* Close to a size the exponent of a power of two, and of what has none (zero, infinity, NaN) 0. It is a
- * multiple of 4, so that roots of powers of lengths are multiplied by powers of two as well. */
+/* The exponent of a power of two near the size; 0 for zero, infinity and NaN. It is a multiple of 4, so
+ * that roots of powers of lengths are also multiplied by powers of two. */
 CF_RARE int cf_exponent(real_t size)
 {
     int exponent = 0;
@@ -319,7 +322,7 @@ CF_RARE int cf_exponent(real_t size)
     return exponent - exponent % 4;
 }
 
-/* Multiplies every number by 2^exponent as often as its degree says. */
+/* Multiplies every number by 2^(degree * exponent), with its own degree. */
 CF_RARE void cf_rescale(size_t n, const signed char *degrees, int exponent, const real_t *x,
                         real_t *scaled)
 {
@@ -327,15 +330,16 @@ CF_RARE void cf_rescale(size_t n, const signed char *degrees, int exponent, cons
         scaled[k] = CF_LIBM(ldexp)(x[k], degrees[k] * exponent);
 }
 
-/* The constants of the two types. Polynomials: Remez in 260 bits, relative error of the function
- * as the weight, coefficients then rounded in turn. Odd or even in the argument, with z its square:
+/* The constants of the two types. The polynomials come from the Remez algorithm in 260 bits, which
+ * minimises the relative error of the function; the coefficients were then rounded one after another.
+ * They are odd or even in the argument; z is its square:
  *   sin r = r + r z S(z),  cos r = 1 + z (-1/2 + z C(z))  on |r| <= pi/4;
  *   atan t = t + t z A(z)  on 0 <= t <= 1.
  * Cody-Waite: pi/2 = CF_PIO2_1 + _2 + _3, all positive. With |n| <= 2^K, the first two have
- * p - K bits (p the precision), so their products with n are exact; the third rounds, which costs
- * n 2^(2K-3p) against a remainder that is 2^-60.5 (float: 2^-26.3) at its smallest. Over all n
- * below the limit that error is at most 0.04 ulp for K = 18 (float: 0.02 for K = 7); one bit more
- * would make it 2.1 (0.35) ulp. */
+ * p - K bits (p is the precision), so their products with n are exact. The third is rounded: an error
+ * of n 2^(2K-3p), against a remainder of at least 2^-60.5 (float: 2^-26.3). Over all n below the limit
+ * that error is at most 0.04 ulp for K = 18 (float: 0.02 for K = 7); one more bit would make it
+ * 2.1 (0.35) ulp. */
 #ifdef CLOSEDFORM_FLOAT
 
 #define CF_TRIG_LIMIT CLOSEDFORM_C(200.0)
@@ -343,7 +347,7 @@ CF_RARE void cf_rescale(size_t n, const signed char *degrees, int exponent, cons
 #define CF_PIO2_2 CLOSEDFORM_C(1.0804273188114166e-05)
 #define CF_PIO2_3 CLOSEDFORM_C(6.07710062827671e-11)
 #define CF_ROUND CLOSEDFORM_C(8388608.0) /* 2^23 */
-#define CF_BELOW_PI CLOSEDFORM_C(3.1415925) /* the largest that is less: CF_PI is more */
+#define CF_BELOW_PI CLOSEDFORM_C(3.1415925) /* the largest float below pi: CF_PI is above it */
 #define CF_PIO2_LO CLOSEDFORM_C(-4.371139e-8)
 #define CF_TWO_PI_LO CLOSEDFORM_C(-1.7484555e-7)
 
@@ -414,25 +418,25 @@ CF_INLINE real_t cf_atan_poly(real_t z)
 
 #endif
 
-/* The nearest integer, of either sign. */
+/* The nearest integer; x may be negative. */
 CF_INLINE real_t cf_nearest(real_t x)
 {
     const real_t shift = CLOSEDFORM_C(1.5) * CF_ROUND;
     return (x + shift) - shift;
 }
 
-/* Sine and cosine for |x| <= CF_TRIG_LIMIT, without a branch. Beyond it, and for NaN, the values
- * are unspecified: use cf_sincos_block, or test with cf_trig_excess. If `one` is cf_one(), every
+/* Sine and cosine for |x| <= CF_TRIG_LIMIT, without a branch. The values are unspecified for larger
+ * |x| and for NaN: use cf_sincos_block, or test with cf_trig_excess. If `one` is cf_one(), every
  * product is rounded, and sincos_as_in_c of the NumPy modules gives the same bits. */
 CF_INLINE void cf_sincos_rounded(real_t one, real_t x, real_t *s, real_t *c)
 {
     const real_t ax = cf_abs(x);
-    /* Adding CF_ROUND rounds to an integer, and leaves its low bits at the end of the word. */
+    /* Adding CF_ROUND rounds to an integer and puts its low bits at the end of the word. */
     const real_t shifted = ax * CLOSEDFORM_C(0.6366197723675814) * one + CF_ROUND;
     const real_t n = shifted - CF_ROUND;
     const cf_word quadrant = cf_to_word(shifted);
 
-    /* ax - n pi/2 = r + tail; r1 is exact, and so is what rounding it to r leaves over. */
+    /* ax - n pi/2 = r + tail. r1 and the rounding error of r are exact. */
     const real_t r1 = ax - n * CF_PIO2_1;
     const real_t r = r1 - n * CF_PIO2_2;
     const real_t tail = ((r1 - r) - n * CF_PIO2_2) - n * CF_PIO2_3 * one;
@@ -455,14 +459,14 @@ CF_INLINE void cf_sincos(real_t x, real_t *s, real_t *c)
     cf_sincos_rounded(CLOSEDFORM_C(1.0), x, s, c);
 }
 
-/* Has its sign bit set if |x| > CF_TRIG_LIMIT or x is NaN; a loop ORs the words of its lanes. */
+/* A word with its sign bit set if |x| > CF_TRIG_LIMIT or x is NaN; a loop ORs those of its lanes. */
 CF_INLINE cf_word cf_trig_excess(real_t x)
 {
     return cf_to_word(CF_TRIG_LIMIT) - (cf_to_word(x) & ~CF_SIGN);
 }
 
-/* Copies 1, 2, 4 or 8 numbers as one vector. Written to memory one by one and read as one vector, they
- * would hold up the processor until the last of them has reached the cache. */
+/* Copies 1, 2, 4 or 8 numbers as one vector. If they were written one by one and read as one vector,
+ * the processor would wait until the last of them had reached the cache. */
 #if defined(__GNUC__)
 typedef real_t cf_lanes2 __attribute__((vector_size(2 * sizeof(real_t))));
 typedef real_t cf_lanes4 __attribute__((vector_size(4 * sizeof(real_t))));
@@ -490,7 +494,7 @@ CF_INLINE void cf_side_by_side(size_t n, const real_t *x, real_t *lanes)
 }
 #endif
 
-/* Redoes with libm the lanes that cf_sincos does not cover. */
+/* Recomputes with libm the lanes that cf_sincos does not cover. */
 CF_RARE void cf_sincos_fixup(size_t n, const real_t *x, real_t *s, real_t *c)
 {
     for (size_t i = 0; i < n; ++i) {
@@ -519,7 +523,7 @@ CF_INLINE void cf_sincos_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF
     cf_sincos_block_rounded(n, CLOSEDFORM_C(1.0), x, s, c);
 }
 
-/* Redoes with libm what whole turns are not enough for. */
+/* Recomputes with libm the angles beyond CF_TRIG_LIMIT. */
 CF_RARE void cf_principal_fixup(size_t n, const real_t *x, real_t *angle)
 {
     for (size_t i = 0; i < n; ++i) {
@@ -528,14 +532,14 @@ CF_RARE void cf_principal_fixup(size_t n, const real_t *x, real_t *angle)
     }
 }
 
-/* An angle, |x| <= CF_TRIG_LIMIT, brought to [-pi, pi] by whole turns, give or take rounding. */
+/* An angle with |x| <= CF_TRIG_LIMIT, moved to [-pi, pi] by whole turns, up to rounding. */
 CF_INLINE real_t cf_principal(real_t x)
 {
     const real_t n4 = 4 * cf_nearest(x * CLOSEDFORM_C(0.15915494309189535));
     return ((x - n4 * CF_PIO2_1) - n4 * CF_PIO2_2) - n4 * CF_PIO2_3;
 }
 
-/* The same of any n angles; the arrays must not overlap. */
+/* The same for any n angles; the arrays must not overlap. */
 CF_INLINE void cf_principal_block(size_t n, const real_t *CF_RESTRICT x, real_t *CF_RESTRICT angle)
 {
     cf_word excess = 0;
@@ -546,8 +550,8 @@ CF_INLINE void cf_principal_block(size_t n, const real_t *CF_RESTRICT x, real_t 
     if (excess & CF_SIGN) cf_principal_fixup(n, x, angle);
 }
 
-/* Sine and cosine of the angles of one call, a constant number: 1, 2, 4 or a multiple of 8. They
- * become vectors, and eight cost little more than one. */
+/* Sine and cosine of the n angles of one call; n is a constant: 1, 2, 4 or a multiple of 8. The
+ * compiler makes vectors of them, and eight cost little more than one. */
 CF_INLINE void cf_sincos_lanes_rounded(size_t n, real_t one, const real_t *x, real_t *s, real_t *c)
 {
     const size_t width = n < 8 ? n : 8;
@@ -563,7 +567,7 @@ CF_INLINE void cf_sincos_lanes(size_t n, const real_t *x, real_t *s, real_t *c)
     cf_sincos_lanes_rounded(n, CLOSEDFORM_C(1.0), x, s, c);
 }
 
-/* The same, and the angles brought to one turn. */
+/* The same, with the angles also moved to [-pi, pi] as by cf_principal. */
 CF_INLINE void cf_turned_lanes_rounded(size_t n, real_t one, const real_t *x, real_t *s, real_t *c,
                                        real_t *turned)
 {
@@ -589,13 +593,13 @@ CF_INLINE void cf_turned_lanes(size_t n, const real_t *x, real_t *s, real_t *c, 
     cf_turned_lanes_rounded(n, CLOSEDFORM_C(1.0), x, s, c, turned);
 }
 
-/* C99 atan2, with its signed zeros, infinities and NaN, in [-CF_PI, CF_PI]; one division, no
+/* C99 atan2 in [-CF_PI, CF_PI], including signed zeros, infinities and NaN, with one division and no
  * branch. The quotient never exceeds 1, so no argument is too large or too small. */
 CF_INLINE real_t cf_atan2(real_t y, real_t x)
 {
     const real_t ax = cf_abs(x), ay = cf_abs(y);
-    /* One of these is NaN if an argument is: cf_min and cf_max return their second argument then.
-     * 0/0 is not divided, for it would raise an exception; inf/inf counts as 1. */
+    /* If an argument is NaN, so is one of these, because cf_min and cf_max return their second
+     * argument then. 0/0 would raise an exception, so it is not computed; inf/inf counts as 1. */
     const real_t num = cf_min(ay, ax), larger = cf_max(ax, ay);
     const real_t den = larger == 0 ? CLOSEDFORM_C(1) : larger;
     const real_t t = num == den ? CLOSEDFORM_C(1) : num / den;
@@ -610,7 +614,7 @@ CF_INLINE real_t cf_atan2(real_t y, real_t x)
     return cf_copysign(high + (offset + right_angles * CF_PIO2_LO), y);
 }
 
-/* atan2 of the pairs of one call, a constant number: 2, 4 or a multiple of 8. */
+/* atan2 of the n pairs of one call; n is a constant: 2, 4 or a multiple of 8. */
 CF_INLINE void cf_atan2_lanes(size_t n, const real_t *y, const real_t *x, real_t *angle)
 {
     const size_t width = n < 8 ? n : 8;
@@ -623,10 +627,10 @@ CF_INLINE void cf_atan2_lanes(size_t n, const real_t *y, const real_t *x, real_t
     }
 }
 
-/* An angle in [-CF_PI, CF_PI], the range of cf_atan2, brought to (-CF_PI, CF_PI]. */
+/* An angle in [-CF_PI, CF_PI], the range of cf_atan2, moved to (-CF_PI, CF_PI]. */
 CF_INLINE real_t cf_wrap_cut(real_t angle) { return angle <= -CF_PI ? CF_PI : angle; }
 
-/* The sum of a few angles brought to (-CF_PI, CF_PI]; one that is there already stays as it is. */
+/* The sum of a few angles, moved to (-CF_PI, CF_PI]; a sum that is already there does not change. */
 CF_INLINE real_t cf_wrap(real_t angle)
 {
     const real_t turns = cf_nearest(angle * CLOSEDFORM_C(0.15915494309189535));

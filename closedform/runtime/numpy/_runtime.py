@@ -1,4 +1,4 @@
-"""What the generated NumPy modules share: statuses, result types and the evaluation of kernels."""
+"""Statuses, result types and the evaluation of kernels for all generated NumPy modules."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ DETERMINED = 0.0009765625
 ROTATION = 1e-06
 
 BLOCK = 8000
-"""Postures that a kernel treats at once: its intermediate arrays then stay in the cache.  It is no
-power of two, for which they would all compete for the same part of it."""
+"""Postures that a kernel computes at once: its intermediate arrays then stay in the cache.  A power of
+two would make all arrays compete for the same part of the cache."""
 
 
 class Status(IntEnum):
-    """What an inverse says of each branch."""
+    """The status of one branch of an inverse."""
 
     OK = 0
     UNREACHABLE = 1
@@ -61,11 +61,11 @@ class Array(NamedTuple):
 
 
 class Size(NamedTuple):
-    """How planes go with the size of a mechanism, its largest length.
+    """How planes scale with the size of a mechanism, its largest length.
 
-    ``lengths`` are the planes of the input that are lengths.  ``degrees`` are, of the planes of the
-    results that go with a power of the size, the place and the power.  Sizes from ``least`` to
-    ``most`` have powers that stay in the range of a double.
+    ``lengths`` are the indices of the input planes that are lengths.  ``degrees`` are pairs: the
+    index of a result plane and the power of the size with which it scales.  The powers of sizes from
+    ``least`` to ``most`` stay in the range of a double.
     """
 
     lengths: tuple[int, ...]
@@ -75,10 +75,11 @@ class Size(NamedTuple):
 
 
 class Kernel(NamedTuple):
-    """A function of planes (one array a coordinate), and what it takes and gives.
+    """A function of planes (one array for each coordinate), its arguments and its results.
 
-    ``common``, if there is one, computes the same where nothing vanishes, and then whether
-    something does.  ``size`` is there if powers of lengths may leave the range of a double.
+    ``common``, if given, returns the same planes, valid unless something vanishes, and then a plane
+    that says whether something does.  ``size`` is given if powers of lengths may leave the range of
+    a double.
     """
 
     name: str
@@ -92,10 +93,11 @@ class Kernel(NamedTuple):
 
 
 def sincos(angle: Any) -> tuple[Any, Any]:
-    """Sine and cosine by the tangent of the half angle, four times as fast as ``np.sin``, ``np.cos``.
+    """Sine and cosine from the tangent of the half angle: four times as fast as ``np.sin``, ``np.cos``.
 
-    The error is below 1.3 units in the last place of 1; near its zeros a cosine is therefore less
-    accurate than that of libm, which no natural scale of a function of several angles notices.
+    The error is below 1.3 units in the last place of 1.  Near its zeros a cosine is therefore less
+    accurate than that of libm; on the natural scale of a function of several angles the difference
+    does not matter.
     """
     sine = np.tan(0.5 * angle)
     square = sine * sine
@@ -109,15 +111,15 @@ def sincos(angle: Any) -> tuple[Any, Any]:
 
 
 def sincos_as_in_c(angle: Any) -> tuple[Any, Any]:
-    """Sine and cosine by the operations of ``cf_sincos`` in ``closedform.h``, in their order.
+    """Sine and cosine by the same operations in the same order as ``cf_sincos`` in ``closedform.h``.
 
-    They are the same to the last bit, and so is a status that rests on them.
+    The results agree to the last bit, and so does a status that depends on them.
     """
     if np.ndim(angle) == 0:
         return _sincos_of_one(float(angle))
     size = np.abs(angle)
     shifted, sine, cosine = _sincos_of_rest(size)
-    # by bits: the quadrant is at the end of the word, and np.where takes longer than all before
+    # The quadrant is at the end of the word.  Work on bits: np.where takes longer than all the above.
     quadrant, s, c = shifted.view(np.int64), sine.view(np.int64), cosine.view(np.int64)
     swap = -(quadrant & 1)
     swap &= s ^ c
@@ -150,7 +152,7 @@ def _sincos_of_one(angle: float) -> tuple[Any, Any]:
 
 
 def _sincos_of_rest(size: Any) -> tuple[Any, Any, Any]:
-    """The quarter turns in a size of an angle, at the end of the word; sine, cosine of the rest."""
+    """The quarter turns in ``size``, at the end of the word, and sine and cosine of the remainder."""
     shifted = size * 0.6366197723675814
     shifted += 4503599627370496.0
     n = shifted - 4503599627370496.0
@@ -199,9 +201,9 @@ def _sincos_of_rest(size: Any) -> tuple[Any, Any, Any]:
 
 
 def principal(angle: Any) -> Any:
-    """An angle of any size in [-pi, pi], give or take rounding; no less accurate if it is large."""
+    """The angle moved to [-pi, pi], up to rounding; a large angle loses no accuracy."""
     turns = np.rint(angle * (0.5 / np.pi))
-    # 2 pi in three parts; the products with the first two are exact
+    # 2 pi is split into three parts; the products with the first two are exact.
     near = angle - turns * (4 * 1.5707963267923333)
     near -= turns * (4 * 2.5633441515839558e-12)
     turns *= 4 * 1.0562999066987428e-23
@@ -213,7 +215,7 @@ def principal(angle: Any) -> Any:
 
 
 def wrap(angle: Any) -> Any:
-    """The sum of a few angles in (-pi, pi]; one that is there already stays as it is."""
+    """The sum of a few angles moved to (-pi, pi]; a sum that is already there does not change."""
     turns = np.rint(angle * (0.5 / np.pi))
     wrapped = angle - turns * (2 * np.pi)
     turns *= 2.4492935982947064e-16
@@ -222,29 +224,29 @@ def wrap(angle: Any) -> Any:
 
 
 def wrap_cut(angle: Any) -> Any:
-    """An angle of [-pi, pi], the range of ``atan2``, in (-pi, pi]."""
+    """An angle in [-pi, pi], the range of ``atan2``, moved to (-pi, pi]."""
     return select(angle <= -np.pi, np.pi, angle)
 
 
 def sign(value: Any) -> Any:
-    """1 or -1; of either zero 1."""
+    """1 or -1; 1 for either zero."""
     return np.copysign(1.0, value + 0.0)
 
 
 def select(rare: Any, a: Any, b: Any) -> Any:
-    """``a`` where a condition holds that hardly ever does, else ``b``."""
+    """``a`` if ``rare``, a condition that hardly ever holds, else ``b``."""
     if np.count_nonzero(rare):
         return np.where(rare, a, b)
     return np.float64(b) if isinstance(b, float) else b
 
 
 def poison(failed: Any) -> Any:
-    """NaN where ``failed``, else zero: added to an answer, it is one selection for all entries."""
+    """NaN if ``failed``, else zero: added to an answer, it is one selection for all entries."""
     return 0.0 / np.logical_not(failed) if np.count_nonzero(failed) else 0.0
 
 
 def status(invalid: Any, unreachable: Any, singular: Any) -> Any:
-    """The status of a branch; an invalid input outweighs all, a free joint nothing."""
+    """The status of a branch: INVALID takes precedence over UNREACHABLE, and that over SINGULAR."""
     told = invalid | unreachable | singular
     if not np.count_nonzero(told):
         return np.zeros_like(told, np.uint8)
@@ -254,7 +256,7 @@ def status(invalid: Any, unreachable: Any, singular: Any) -> Any:
 
 
 def evaluate(kernel: Kernel, args: Sequence[ArrayLike], params: Sequence[ArrayLike], out: Any) -> Any:
-    """Apply a kernel to arrays whose leading axes broadcast; returns an array or a tuple."""
+    """Apply a kernel to arrays whose leading axes broadcast; return an array or a tuple."""
     given = [
         arg if _is_plain(arg) else _converted(kernel, spec.name, arg)
         for spec, arg in zip(kernel.inputs, args, strict=True)
@@ -336,13 +338,13 @@ def _converted(kernel: Kernel, name: str, arg: ArrayLike) -> NDArray[np.float64]
 
 
 def _is_masked(arg: Any) -> bool:
-    """Whether it is a masked array, whose mask a conversion would drop."""
+    """Whether the argument is a masked array; a conversion would drop its mask."""
     masked = sys.modules.get("numpy.ma")
     return masked is not None and isinstance(arg, masked.MaskedArray)
 
 
 def _is_real(value: Any) -> bool:
-    """Whether an object is a real number: text is none, though ``float`` would read it."""
+    """Whether an object is a real number; text is not, although ``float`` would accept it."""
     if isinstance(value, np.generic):
         return value.dtype.kind in "biuf"
     known = hasattr(type(value), "__float__") or hasattr(type(value), "__index__")
@@ -426,16 +428,16 @@ def _fill(
 
 
 def _keep_freed_memory() -> None:
-    """Have the arrays of a block lie where those of the block before did.
+    """Let each block reuse the memory of the block before.
 
-    The C library of Linux returns memory to the system as soon as 128 KB are free, unless something
-    larger has been freed before.  New pages for every block take as long as to compute it.
+    The C library of Linux returns memory to the system as soon as 128 KB are free, unless a larger
+    piece has been freed before.  New pages for a block take as long as its computation.
     """
     np.empty(1 << 21)
 
 
 def _values(kernel: Kernel, planes: Sequence[Any]) -> Sequence[Any]:
-    """The planes of the results, of mechanisms of any size."""
+    """The planes of the results, for mechanisms of any size."""
     size = kernel.size
     if size is None or _is_ordinary(size, [planes[k] for k in size.lengths]):
         return _values_in_range(kernel, planes)
@@ -444,7 +446,7 @@ def _values(kernel: Kernel, planes: Sequence[Any]) -> Sequence[Any]:
     if np.all(ordinary):
         return _values_in_range(kernel, planes)
     exponents = np.frexp(sizes)[1]
-    # multiples of 4, so that roots of powers of lengths are multiplied by powers of two as well
+    # Multiples of 4, so that roots of powers of lengths are also multiplied by powers of two.
     exponents = np.where(ordinary, np.int32(0), exponents - np.fmod(exponents, 4))
     scaled = list(planes)
     for k in size.lengths:
@@ -458,8 +460,8 @@ def _values(kernel: Kernel, planes: Sequence[Any]) -> Sequence[Any]:
 def _is_ordinary(size: Size, lengths: Sequence[Any]) -> bool:
     """Whether all sizes are known to be between the least and the most.
 
-    Dimensions that hold for all postures are large enough for each of them.  A plane is too large if
-    the sum of its squares is.
+    The lengths that are shared by all postures must reach the least by themselves.  The sum of the
+    squares of a plane bounds all its entries.
     """
     single = [abs(x) for x in lengths if not np.ndim(x)]
     planes = [x for x in lengths if np.ndim(x)]
@@ -469,7 +471,7 @@ def _is_ordinary(size: Size, lengths: Sequence[Any]) -> bool:
 
 
 def _values_in_range(kernel: Kernel, planes: Sequence[Any]) -> Sequence[Any]:
-    """The planes of the results; where something vanishes, they are computed anew."""
+    """The planes of the results, recomputed for the postures at which something vanishes."""
     if kernel.common is None:
         return kernel.compute(*planes)
     *values, rare = kernel.common(*planes)
@@ -487,14 +489,14 @@ def _values_in_range(kernel: Kernel, planes: Sequence[Any]) -> Sequence[Any]:
 
 
 def _rows(array: NDArray[Any], lead: tuple[int, ...]) -> NDArray[Any]:
-    """``array`` broadcast to the leading axes, which become one; a view where that is possible."""
+    """``array`` broadcast to the leading axes, which become one; a view if possible."""
     return np.broadcast_to(array, (*lead, array.shape[-1])).reshape((-1, array.shape[-1]))
 
 
 def _store(
     outputs: Sequence[Array], results: Sequence[NDArray[Any]], planes: Sequence[Any]
 ) -> None:
-    """Write the planes of all results, in order, where they belong."""
+    """Write the planes, in order, into the entries of all results."""
     remaining = iter(planes)
     for spec, result in zip(outputs, results, strict=True):
         for index in _indices(spec.shape):
@@ -503,5 +505,5 @@ def _store(
 
 @cache
 def _indices(shape: tuple[int, ...]) -> list[tuple[Any, ...]]:
-    """The index of every entry of a core, behind all leading axes."""
+    """The index of every entry of a core, after all leading axes."""
     return [(..., *index) for index in np.ndindex(*shape)]

@@ -5,6 +5,11 @@ import itertools
 
 import numpy as np
 import pytest
+import sympy as sp
+
+from closedform.lower.program import lower
+from closedform.mechanics.arm import from_dh
+from closedform.model.derivation import Derivation, Paper
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 BACKENDS = ("numpy", "c")
@@ -279,3 +284,24 @@ def test_empty_and_strided_batches(robot: str, backend: str) -> None:
     np.testing.assert_allclose(forward(q[::-3]), x[::-3], atol=1e-15)
     np.testing.assert_array_equal(module.ik(x[::2]).status, module.ik(x).status[::2])
     assert module.ik(x[:0]).q.shape == (0, len(module.BRANCHES) or 1, n)
+
+
+def test_operation_counts_of_a_chain() -> None:
+    """Entries are named link by link; written out, the spatial Jacobian alone takes 122."""
+    d = importlib.import_module("closedform.derivations.ur_arm").d
+    most = {"fk": 78, "pose": 78, "jacobian": 65, "jacobian_space": 86, "jacobian_body": 85}
+    for name, limit in most.items():
+        operations = lower(d[name], d).operations()
+        assert set(operations) <= {"add", "sub", "mul", "sincos"} and operations["sincos"] <= 6
+        assert sum(n for kind, n in operations.items() if kind != "sincos") <= limit, name
+
+
+def test_names_of_the_chain_leave_those_of_parameters_alone() -> None:
+    d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
+    a, b = (d.parameter(n, value=1, unit="m", meaning=n) for n in ("T1_14", "p1_11"))
+    theta1, theta2, theta3 = (d.joint(f"theta{i}") for i in (1, 2, 3))
+    rows = [(0, sp.pi / 2, 0, theta1), (a, sp.pi / 2, 0, theta2), (b, 0, 0, theta3)]
+    from_dh(d, rows).export(d)
+    (pose,) = d["pose"].outputs
+    value = d["pose"].explicit([pose.entries[3]], {})[0][0].subs({theta2: 0, theta3: 0})
+    assert sp.simplify(value - (a + b) * sp.cos(theta1)) == 0

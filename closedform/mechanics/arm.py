@@ -13,6 +13,8 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.normal_form import determinant
+from closedform.mechanics import linkwise
+from closedform.mechanics.entries import RowError, check_unit, constant, exact, rigid
 from closedform.mechanics.frames import (
     denavit_hartenberg,
     exponential,
@@ -24,13 +26,9 @@ from closedform.mechanics.frames import (
     twist_matrix,
 )
 from closedform.mechanics.links import Group, Link, Motion, Row, groups_of
+from closedform.mechanics.linkwise import Named
 from closedform.mechanics.mobility import dependent_joints, singular_everywhere
 from closedform.model.derivation import Derivation
-from closedform.model.functions import reject_text
-
-
-class RowError(ValueError):
-    """A row of a table of joints that cannot be read."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +56,11 @@ class Serial:
     @property
     def position(self) -> sp.Matrix:
         return self.pose[:3, 3]
+
+    @property
+    def links(self) -> list[linkwise.Link]:
+        """What stands between the base and the tool, joints with parallel axes as one."""
+        return linkwise.links_of(self.groups, self.joints, self.lead, self.last)
 
     def determinant(self) -> sp.Expr:
         """Of either Jacobian of an arm of six joints, factored.
@@ -88,7 +91,9 @@ class Serial:
             return None
         values = [self.position[i] if i < 3 else self._yaw() for i in rows]
         names = tuple(("x", "y", "z", "roll", "pitch", "yaw")[i] for i in rows)
-        return Coordinates(names, sp.Matrix(values), self.geometric.extract(rows, list(range(n))))
+        return Coordinates(
+            names, tuple(rows), sp.Matrix(values), self.geometric.extract(rows, list(range(n)))
+        )
 
     def _yaw(self) -> sp.Expr:
         """The angle of the tool about z, for an arm whose joints turn it about z alone."""
@@ -105,76 +110,100 @@ class Serial:
         Returns the forward map that an inverse must solve: the task coordinates in the joints
         where the arm has as many (see :meth:`coordinates`), else the pose.
         """
-        q, task = self.joints, self.coordinates()
+        q, task, links = self.joints, self.coordinates(), self.links
         self.require_regular(d.name)
+        pose = linkwise.pose(d.program(), links)
         d.step(
             "Pose",
             "The product of the motions from link to link, the angles of parallel axes added.",
             {**{f"A_{i}": A for i, A in enumerate(self.moves, 1)}, "T": self.pose},
-            equal=[(sp.prod(self.moves), self.pose)],
+            equal=[(sp.prod(self.moves), self.pose), (pose.explicit, self.pose)],
         )
-        d.function("pose", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
+        _export(d, "pose", "Pose of the tool in the base frame.", q, "T", pose)
+        geometric = linkwise.geometric_jacobian(d.program(), links, q)
+        space = linkwise.space_jacobian(d.program(), links, q)
+        body = linkwise.body_jacobian(d.program(), links, q)
         d.step(
             "Jacobians",
             "The columns are the twists (v; omega) of the joints as they stand: that of a revolute "
             "joint is its axis w and the velocity -w x p that it gives to the origin, that of a "
             "prismatic joint its direction.  Differentiating the pose gives the same.",
             {"J": self.geometric, "J_s": self.space, "J_b": self.body},
-            equal=[(self.geometric[:3, :], self.position.jacobian(q))]
-            + [(self.geometric[3:, :], self.space[3:, :])]
-            + [
-                pair
-                for i, joint in enumerate(q)
-                for pair in (
-                    (self.pose.diff(joint), twist_matrix(self.space[:, i]) * self.pose),
-                    (self.pose.diff(joint), self.pose * twist_matrix(self.body[:, i])),
-                )
+            equal=[
+                (self.geometric[:3, :], self.position.jacobian(q)),
+                (self.geometric[3:, :], self.space[3:, :]),
+                (geometric.explicit, self.geometric),
+                (space.explicit, self.space),
+                (body.explicit, self.body),
+                *(
+                    pair
+                    for i, joint in enumerate(q)
+                    for pair in (
+                        (self.pose.diff(joint), twist_matrix(self.space[:, i]) * self.pose),
+                        (self.pose.diff(joint), self.pose * twist_matrix(self.body[:, i])),
+                    )
+                ),
             ],
         )
         if task is None:
-            self._export_pose_task(d)
+            self._export_pose_task(d, pose, geometric)
         else:
-            self._export_coordinates(d, task)
-        for name, J, frame in (
-            ("jacobian_space", self.space, "the base frame"),
-            ("jacobian_body", self.body, "its own frame"),
+            self._export_coordinates(d, task, pose, geometric)
+        for frame, name, found in (
+            ("the base frame", "jacobian_space", space),
+            ("its own frame", "jacobian_body", body),
         ):
-            summary = f"Twist (v; omega) of the tool in {frame} per joint rate."
-            d.function(name, summary, {"q": q}, {"J": J})
+            _export(
+                d, name, f"Twist (v; omega) of the tool in {frame} per joint rate.", q, "J", found
+            )
         return self.pose if task is None else task.values
 
-    def _export_pose_task(self, d: Derivation) -> None:
+    def _export_pose_task(self, d: Derivation, pose: Named, geometric: Named) -> None:
         q = self.joints
         if not d.task:
             d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
-        d.function("fk", "Pose of the tool in the base frame.", {"q": q}, {"T": self.pose})
-        d.function(
+        _export(d, "fk", "Pose of the tool in the base frame.", q, "T", pose)
+        _export(
+            d,
             "jacobian",
             "Velocity of the tool over its angular velocity, in base axes, per joint rate.",
-            {"q": q},
-            {"J": self.geometric},
-            notes=("The geometric Jacobian: rows (v; omega), v of the origin of the tool.",),
+            q,
+            "J",
+            geometric,
+            "The geometric Jacobian: rows (v; omega), v of the origin of the tool.",
         )
         if len(q) == 6:
             self._export_determinant(d, self.determinant(), ())
 
-    def _export_coordinates(self, d: Derivation, task: Coordinates) -> None:
-        q, values = self.joints, list(task.values)
+    def _export_coordinates(
+        self, d: Derivation, task: Coordinates, pose: Named, geometric: Named
+    ) -> None:
+        q = self.joints
         if not d.task:
             d.task = list(task.names)
+        place = pose.part([i for i in task.rows if i < 3], [3])
+        values, notes = list(place.matrix), []
         if "yaw" in task.names:
-            turn = values[-1]
+            turn = task.values[-1]
             d.step(
                 "Task coordinates",
                 "The joints turn the tool about z alone: its yaw is the direction of its x axis.",
                 {r"\psi": turn},
                 equal=[(self.pose[:2, 0], sp.Matrix([sp.cos(turn), sp.sin(turn)]))],
             )
-            values[-1] = sp.atan2(sp.sin(turn), sp.cos(turn))
+            values.append(sp.atan2(sp.sin(turn), sp.cos(turn)))
+            notes.append("The yaw is reduced to (-pi, pi].")
         shown = ", ".join(task.names)
-        notes = ("The yaw is reduced to (-pi, pi].",) if "yaw" in task.names else ()
-        d.function("fk", f"Task coordinates ({shown}).", {"q": q}, {"x": values}, notes=notes)
-        d.function("jacobian", f"Derivative of ({shown}) by the joints.", {"q": q}, {"J": task.J})
+        d.function(
+            "fk",
+            f"Task coordinates ({shown}).",
+            {"q": q},
+            {"x": values},
+            program=place.program,
+            notes=notes,
+        )
+        J = geometric.part(task.rows, range(len(q)))
+        _export(d, "jacobian", f"Derivative of ({shown}) by the joints.", q, "J", J)
         det = _determinant(task.J)
         check = [
             (task.values.jacobian(q), task.J),
@@ -202,11 +231,27 @@ class Serial:
             d.singularities = tuple(f"{f} = 0".replace("**", "^") for f in shown)
 
 
+def _export(
+    d: Derivation,
+    name: str,
+    summary: str,
+    q: Sequence[sp.Symbol],
+    output: str,
+    value: Named,
+    *notes: str,
+) -> None:
+    d.function(name, summary, {"q": q}, {output: value.matrix}, program=value.program, notes=notes)
+
+
 @dataclass(frozen=True)
 class Coordinates:
-    """Task coordinates: their names, their values in the joints, and their derivative."""
+    """Task coordinates: their names, their values in the joints, and their derivative.
+
+    ``rows`` are their places among x, y, z, roll, pitch and yaw.
+    """
 
     names: tuple[str, ...]
+    rows: tuple[int, ...]
     values: sp.Matrix
     J: sp.Matrix
 
@@ -245,7 +290,7 @@ def from_dh(
             lead = _followed(lead, links, step)
     if not links:
         raise RowError(f"{d.name}: no row of the Denavit-Hartenberg table holds a joint")
-    last = sp.eye(4) if tool is None else _rigid(d, tool, "the tool")
+    last = sp.eye(4) if tool is None else rigid(d, tool, "the tool")
     rest = () if tool is None else (last,)
     turned = sp.eye(3)
     if lead[:2, 2].is_zero_matrix:  # the base is turned about the first axis, as the joint turns
@@ -261,7 +306,7 @@ def _dh_row(d: Derivation, row: Sequence[Any], where: str) -> list[sp.Expr]:
             f"{where} has {len(row)} entries ({', '.join(map(str, row))}); it needs 4: a, alpha, "
             f"d, theta"
         )
-    entries = [_exact(e, where) for e in row]
+    entries = [exact(e, where) for e in row]
     known = {p.symbol for p in d.parameters} | {j.symbol for j in d.joints}
     if unknown := sorted(map(str, {s for e in entries for s in e.free_symbols} - known)):
         raise RowError(
@@ -326,18 +371,18 @@ def from_screws(
         where = f"{d.name}: axis {i}"
         if joint not in kinds:
             raise RowError(f"{where}: {joint} is not a joint; declare it with d.joint")
-        w = _constant(d, direction, where)
-        at = _constant(d, point, where)
+        w = constant(d, direction, where)
+        at = constant(d, point, where)
         if len(w) != 3 or len(at) != 3:
             raise RowError(f"{where} needs a direction and a point of 3 coordinates each")
-        _check_unit(w, where)
+        check_unit(w, where)
         revolute = kinds[joint] == "revolute"
         twist = sp.Matrix([*at.cross(w), *w]) if revolute else sp.Matrix([*w, 0, 0, 0])
         motions.append(Motion(joint, not revolute))
         directions.append(w)
         points.append(at)
         moves.append(exponential(twist, joint))
-    home = _rigid(d, home, "the pose at home")
+    home = rigid(d, home, "the pose at home")
     frame = _frame_along(directions[0])
     lead = homogeneous(frame, tuple(points[0]))
     groups: list[Group] = []
@@ -354,72 +399,6 @@ def from_screws(
             groups.append(Group(tuple(current), frame.T * after))
             frame, current = after, []
     return _assembled(motions, groups, lead, sp.eye(4), (*moves, home))
-
-
-def _constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
-    """Exact entries in which only parameters stand."""
-    reject_text(entries, where)
-    exact = sp.Matrix(entries)
-    exact = sp.Matrix(*exact.shape, [_exact(e, where) for e in exact])
-    joints = {j.symbol for j in d.joints}
-    for symbol in sorted(exact.free_symbols - {p.symbol for p in d.parameters}, key=str):
-        if symbol in joints:
-            raise RowError(f"{where}: the joint {symbol} stands in it; at home all joints are zero")
-        raise RowError(
-            f"{where}: the symbol {symbol} is not a parameter; declare it with d.parameter"
-        )
-    return exact
-
-
-def _check_unit(w: sp.Matrix, where: str) -> None:
-    length = sp.simplify(sp.sqrt(w.dot(w)))
-    if length == 1:
-        return
-    text = ", ".join(map(str, w))
-    if length == 0:
-        raise RowError(f"{where}: the direction ({text}) is zero; an axis needs a unit vector")
-    if w.free_symbols:
-        remedy = "write numbers, or the cosine and the sine of an angle"
-    elif all(e.is_Integer for e in w):
-        remedy = f"write ({', '.join(map(str, w / length))})"
-    else:
-        remedy = "numbers are exact: write sqrt(2)/2, not 0.7071"
-    size = str(length) if w.free_symbols else f"{float(length):.6g}"
-    raise RowError(f"{where}: the direction ({text}) has the length {size}, not 1; {remedy}")
-
-
-def _rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
-    """A constant pose, 4x4, whose rotation is one."""
-    where = f"{d.name}: {what}"
-    T = _constant(d, pose, where)
-    if T.shape != (4, 4) or T.row(3) != sp.Matrix([[0, 0, 0, 1]]):
-        raise RowError(f"{where} must be a 4x4 matrix with the last row 0, 0, 0, 1")
-    R = T[:3, :3]
-    if sp.simplify(R.T * R) != sp.eye(3):
-        raise RowError(
-            f"{where}: {R.tolist()} is not a rotation: {_not_orthonormal(R)}; the rows must be "
-            f"unit vectors at right angles to each other, written exactly (sqrt(3)/2, not 0.866)"
-        )
-    if sp.simplify(R.det()) != 1:
-        raise RowError(
-            f"{where}: its rotation {R.tolist()} is mirrored; the third column must be the cross "
-            f"product of the first two, x, y and z of the tool"
-        )
-    return T
-
-
-def _not_orthonormal(R: sp.Matrix) -> str:
-    """The row that is not a unit vector, or the rows that are not at right angles."""
-    for i in range(3):
-        for j in range(i + 1):
-            value = sp.simplify(R.row(i).dot(R.row(j)))
-            if value != (1 if i == j else 0):
-                size = sp.sqrt(value) if i == j else value
-                shown = size if size.free_symbols else f"{float(size):.6g}"
-                if i == j:
-                    return f"row {i + 1} has the length {shown}"
-                return f"the scalar product of the rows {j + 1} and {i + 1} is {shown}"
-    return "its columns are not"
 
 
 def _frame_along(w: sp.Matrix) -> sp.Matrix:
@@ -504,21 +483,6 @@ def _seen_from(k: int, j: int, groups: Sequence[Group], cut: int) -> sp.Matrix:
     if k < cut:
         return _to_frame(k, j, groups, cut, sp.eye(4))
     return _to_base(*groups[k].twist(j), groups[cut:k], sp.eye(4))
-
-
-def _exact(value: Any, where: str) -> sp.Expr:
-    if isinstance(value, float):
-        raise TypeError(
-            f"{where}: {value} is a float; write an integer or sympy.Rational('{value}')"
-        )
-    reject_text(value, where)
-    exact = sp.sympify(value, strict=True)
-    if exact.atoms(sp.Float):
-        raise TypeError(
-            f"{where}: the float {sorted(exact.atoms(sp.Float), key=str)[0]} stands in {exact}; "
-            f"write an integer or sympy.Rational instead"
-        )
-    return exact
 
 
 def _determinant(J: sp.Matrix) -> sp.Expr:

@@ -381,6 +381,11 @@ class Derivation(Shown):
     def actuated(self) -> tuple[sp.Symbol, ...]:
         return tuple(j.symbol for j in self.joints if not j.passive and j.coupling is None)
 
+    def program(self) -> Program:
+        """A program whose names differ from those of the joints and the parameters."""
+        symbols = [p.symbol for p in self.parameters] + [j.symbol for j in self.joints]
+        return Program(taken=frozenset(map(str, symbols)))
+
     def step(
         self,
         title: str,

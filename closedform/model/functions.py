@@ -25,7 +25,7 @@ Tolerances are no part of a derivation: a statement carries the natural scale of
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice, product
 from typing import Any, TypeAlias
@@ -346,9 +346,16 @@ class Program:
     """Collects statements in the order a derivation makes them, then closes into a Function."""
 
     body: list[Statement] = field(default_factory=list)
+    taken: frozenset[str] = frozenset()
+    """Names that mean something else; what would be called so gets a longer name."""
+
+    def _symbol(self, name: str, **assumptions: bool) -> sp.Symbol:
+        while name in self.taken:
+            name += "_0"
+        return sp.Symbol(name, **assumptions)
 
     def let(self, name: str, value: Number, **assumptions: bool) -> sp.Symbol:
-        symbol = real(name, **assumptions)
+        symbol = self._symbol(name, real=True, **assumptions)
         value = sp.sympify(value, strict=True)
         reject_floats(value, name)
         self.body.append(Let(symbol, value))
@@ -357,7 +364,7 @@ class Program:
     def bound(
         self, name: str, value: sp.Expr, scale: sp.Expr, meaning: str, *, positive: bool = False
     ) -> sp.Symbol:
-        symbol = real(name, nonnegative=True)
+        symbol = self._symbol(name, real=True, nonnegative=True)
         reject_floats(sp.sympify(value, strict=True), name)
         self.body.append(Bound(symbol, value, scale, meaning, positive))
         return symbol
@@ -373,7 +380,7 @@ class Program:
         meaning: str,
         free: Sequence[sp.Symbol] = (),
     ) -> sp.Symbol:
-        symbol = sp.Symbol(name)
+        symbol = self._symbol(name)
         self.body.append(
             Vanishes(symbol, value, sp.sympify(scale, strict=True), meaning, tuple(free))
         )
@@ -396,6 +403,16 @@ class Program:
         if isinstance(value, sp.MatrixBase):
             return value.applyfunc(lambda e: substitute(e, known))
         return substitute(value, known)
+
+    def needed_for(self, values: Iterable[sp.Expr]) -> Program:
+        """The names that these expressions need, and no others; for a program of names alone."""
+        needed = {s for e in values for s in e.free_symbols}
+        kept: list[Statement] = []
+        for statement in reversed(self.body):
+            if isinstance(statement, Let) and statement.symbol in needed:
+                needed |= statement.value.free_symbols
+                kept.insert(0, statement)
+        return Program(kept, self.taken)
 
     def matrix(self, name: str, matrix: sp.Matrix) -> sp.Matrix:
         """Name the entries that are sums or products, so that later products stay short."""

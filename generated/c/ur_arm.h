@@ -3,13 +3,13 @@
  * derivations/ur_arm.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   pose: 32 add, 57 multiply, 6 sincos
- *   fk: 32 add, 57 multiply, 6 sincos
- *   jacobian: 29 add, 54 multiply, 5 sincos
+ *   pose: 26 add, 52 multiply, 6 sincos
+ *   fk: 26 add, 52 multiply, 6 sincos
+ *   jacobian: 19 add, 46 multiply, 5 sincos
  *   determinant: 6 add, 15 multiply, 4 sincos
  *   singularities: 6 add, 11 multiply, 4 sincos
- *   jacobian_space: 46 add, 76 multiply, 5 sincos
- *   jacobian_body: 34 add, 64 multiply, 5 sincos
+ *   jacobian_space: 29 add, 57 multiply, 5 sincos
+ *   jacobian_body: 27 add, 58 multiply, 5 sincos
  *   ik: 712 compare and select, 705 add, 32 atan2, 171 divide, 1086 multiply, 80 sqrt
  *   ik where nothing vanishes: 158 compare and select, 198 add, 30 atan2, 33 divide, 226 multiply,
  *     12 sqrt

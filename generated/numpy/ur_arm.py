@@ -2,13 +2,13 @@
 # derivations/ur_arm.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, by the lemmas that solve them.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   pose: 32 add, 57 multiply, 6 sincos
-#   fk: 32 add, 57 multiply, 6 sincos
-#   jacobian: 29 add, 54 multiply, 5 sincos
+#   pose: 26 add, 52 multiply, 6 sincos
+#   fk: 26 add, 52 multiply, 6 sincos
+#   jacobian: 19 add, 46 multiply, 5 sincos
 #   determinant: 6 add, 15 multiply, 4 sincos
 #   singularities: 6 add, 11 multiply, 4 sincos
-#   jacobian_space: 46 add, 76 multiply, 5 sincos
-#   jacobian_body: 34 add, 64 multiply, 5 sincos
+#   jacobian_space: 29 add, 57 multiply, 5 sincos
+#   jacobian_body: 27 add, 58 multiply, 5 sincos
 #   ik: 712 compare and select, 705 add, 32 atan2, 171 divide, 1086 multiply, 80 sqrt
 #   ik where nothing vanishes: 158 compare and select, 198 add, 30 atan2, 33 divide, 226 multiply,
 #     12 sqrt
@@ -84,50 +84,44 @@ _DEFAULT = Parameters()
 
 def _pose(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6):
     s6, c6 = _runtime.sincos(theta6)
-    s1, c1 = _runtime.sincos(theta1)
     s5, c5 = _runtime.sincos(theta5)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     s4, c4 = _runtime.sincos(theta4)
-    t1 = s1 * s5
+    s1, c1 = _runtime.sincos(theta1)
+    T2_11 = c6 * c5
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
     del c4, s4
-    s234 = s2 * c34 + c2 * s34
-    t2 = c1 * s234
-    t3 = c1 * c5
     c234 = c2 * c34 - s2 * s34
+    s234 = s2 * c34 + c2 * s34
     del c34, s34
-    t4 = c6 * c234
-    t5 = s6 * c234
-    t6 = s1 * c5
-    t7 = c1 * s5
-    t8 = L2 * c2
-    t9 = L3 * (c2 * c3 - s2 * s3)
-    t10 = d4 * s1 - c1 * t8 - c1 * t9 + d5 * t2 + d6 * t6
-    t11 = d6 * c234
-    t12 = s1 * s234
-    t13 = d4 * c1 + s1 * t8 + s1 * t9 - d5 * t12 + t1 * t11
-    del c1, s1, t8, t9
-    t14 = c5 * s234
-    del c5
-    t15 = s5 * s234
-    del s234, s5
-    t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234
-    del c2, c3, s2, s3
+    T1_11 = T2_11 * c234 - s6 * s234
+    T2_21 = c6 * s5
+    t1 = s6 * c5
+    t2 = t1 * c234 + c6 * s234
+    t3 = s6 * s5
+    t4 = s5 * c234
+    T1_34 = d4 + d6 * c5
+    t5 = d6 * s5
+    t6 = L2 * c2 + L3 * (c2 * c3 - s2 * s3) + t5 * c234
+    t7 = t6 - d5 * s234
+    del t6
+    t8 = L2 * s2 + L3 * (s2 * c3 + c2 * s3) + t5 * s234
+    del c2, c3, s2, s3, t5
     return (
-        c6 * t1 - s6 * t2 + t3 * t4,
-        -(s6 * t1 + t3 * t5 + c6 * t2),
-        t6 - c234 * t7,
-        t10 - t7 * t11,
-        -(s6 * t12 - t6 * t4 + c6 * t7),
-        s6 * t7 - (t6 * t5 + c6 * t12),
-        -(t3 + c234 * t1),
-        -(t13 + d6 * t3),
-        t5 + c6 * t14,
-        t4 - s6 * t14,
-        -t15,
-        t16 - d6 * t15,
+        T1_11 * c1 + T2_21 * s1,
+        -(t2 * c1 + t3 * s1),
+        c5 * s1 - t4 * c1,
+        T1_34 * s1 - t7 * c1,
+        T1_11 * s1 - T2_21 * c1,
+        t3 * c1 - t2 * s1,
+        -(t4 * s1 + c5 * c1),
+        -(t7 * s1 + T1_34 * c1),
+        T2_11 * s234 + s6 * c234,
+        c6 * c234 - t1 * s234,
+        -(s5 * s234),
+        d1 - (t8 + d5 * c234),
         0.0,
         0.0,
         0.0,
@@ -175,50 +169,44 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
 
 def _fk(theta1, theta2, theta3, theta4, theta5, theta6, d1, L2, L3, d4, d5, d6):
     s6, c6 = _runtime.sincos(theta6)
-    s1, c1 = _runtime.sincos(theta1)
     s5, c5 = _runtime.sincos(theta5)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     s4, c4 = _runtime.sincos(theta4)
-    t1 = s1 * s5
+    s1, c1 = _runtime.sincos(theta1)
+    T2_11 = c6 * c5
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
     del c4, s4
-    s234 = s2 * c34 + c2 * s34
-    t2 = c1 * s234
-    t3 = c1 * c5
     c234 = c2 * c34 - s2 * s34
+    s234 = s2 * c34 + c2 * s34
     del c34, s34
-    t4 = c6 * c234
-    t5 = s6 * c234
-    t6 = s1 * c5
-    t7 = c1 * s5
-    t8 = L2 * c2
-    t9 = L3 * (c2 * c3 - s2 * s3)
-    t10 = d4 * s1 - c1 * t8 - c1 * t9 + d5 * t2 + d6 * t6
-    t11 = d6 * c234
-    t12 = s1 * s234
-    t13 = d4 * c1 + s1 * t8 + s1 * t9 - d5 * t12 + t1 * t11
-    del c1, s1, t8, t9
-    t14 = c5 * s234
-    del c5
-    t15 = s5 * s234
-    del s234, s5
-    t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234
-    del c2, c3, s2, s3
+    T1_11 = T2_11 * c234 - s6 * s234
+    T2_21 = c6 * s5
+    t1 = s6 * c5
+    t2 = t1 * c234 + c6 * s234
+    t3 = s6 * s5
+    t4 = s5 * c234
+    T1_34 = d4 + d6 * c5
+    t5 = d6 * s5
+    t6 = L2 * c2 + L3 * (c2 * c3 - s2 * s3) + t5 * c234
+    t7 = t6 - d5 * s234
+    del t6
+    t8 = L2 * s2 + L3 * (s2 * c3 + c2 * s3) + t5 * s234
+    del c2, c3, s2, s3, t5
     return (
-        c6 * t1 - s6 * t2 + t3 * t4,
-        -(s6 * t1 + t3 * t5 + c6 * t2),
-        t6 - c234 * t7,
-        t10 - t7 * t11,
-        -(s6 * t12 - t6 * t4 + c6 * t7),
-        s6 * t7 - (t6 * t5 + c6 * t12),
-        -(t3 + c234 * t1),
-        -(t13 + d6 * t3),
-        t5 + c6 * t14,
-        t4 - s6 * t14,
-        -t15,
-        t16 - d6 * t15,
+        T1_11 * c1 + T2_21 * s1,
+        -(t2 * c1 + t3 * s1),
+        c5 * s1 - t4 * c1,
+        T1_34 * s1 - t7 * c1,
+        T1_11 * s1 - T2_21 * c1,
+        t3 * c1 - t2 * s1,
+        -(t4 * s1 + c5 * c1),
+        -(t7 * s1 + T1_34 * c1),
+        T2_11 * s234 + s6 * c234,
+        c6 * c234 - t1 * s234,
+        -(s5 * s234),
+        d1 - (t8 + d5 * c234),
         0.0,
         0.0,
         0.0,
@@ -265,77 +253,67 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> A
 
 
 def _jacobian(theta1, theta2, theta3, theta4, theta5, _theta6, L2, L3, d4, d5, d6):
+    s5, c5 = _runtime.sincos(theta5)
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     s4, c4 = _runtime.sincos(theta4)
-    s5, c5 = _runtime.sincos(theta5)
-    t1 = L2 * c2
-    t2 = L3 * (c2 * c3 - s2 * s3)
+    p2_21 = d6 * c5
+    p3_31 = d4 + p2_21
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
     del c4, s4
     s234 = s2 * c34 + c2 * s34
-    t3 = d5 * s234
-    t4 = d6 * s5
+    t1 = d6 * s5
     c234 = c2 * c34 - s2 * s34
     del c34, s34
-    t5 = s1 * c234
-    t6 = d4 * c1 + s1 * t1 + s1 * t2 - s1 * t3 + t4 * t5
-    t7 = d6 * c5
-    t8 = L2 * s2
-    t9 = L3 * (s2 * c3 + c2 * s3)
-    del c2, c3, s2, s3
-    t10 = c1 * c234
-    t11 = c1 * s234
-    t12 = d5 * t10 + t11 * t4
-    t13 = c1 * t9 + t12
-    t14 = d4 * s1 - c1 * t1 - c1 * t2 + c1 * t3 + s1 * t7
-    t15 = s1 * s234
-    t16 = d5 * t5 + t15 * t4
-    t17 = s1 * t9 + t16
-    del t9
-    t18 = t3 - c234 * t4
-    del t3
-    t19 = t2 - t18
-    del t2
+    J4_theta4_21 = d5 * s234 - t1 * c234
+    t2 = L3 * (c2 * c3 - s2 * s3) - J4_theta4_21
+    t3 = L2 * c2 + t2
+    J4_theta4_11 = d5 * c234 + t1 * s234
+    J4_theta3_11 = L3 * (s2 * c3 + c2 * s3) + J4_theta4_11
+    del c2, c3, s3
+    J4_theta2_11 = L2 * s2 + J4_theta3_11
+    del s2
+    t4 = p2_21 * c234
+    t5 = s5 * c234
     return (
-        t6 + c1 * t7,
-        c1 * t8 + t13,
-        t13,
-        t12,
-        -(s1 * t4 + t7 * t10),
+        p3_31 * c1 + s1 * t3,
+        c1 * J4_theta2_11,
+        c1 * J4_theta3_11,
+        J4_theta4_11 * c1,
+        -(t1 * s1 + t4 * c1),
         0.0,
-        t14 - t4 * t10,
-        s1 * t8 + t17,
-        t17,
-        t16,
-        c1 * t4 - t7 * t5,
+        p3_31 * s1 - c1 * t3,
+        s1 * J4_theta2_11,
+        s1 * J4_theta3_11,
+        J4_theta4_11 * s1,
+        t1 * c1 - t4 * s1,
         0.0,
         0.0,
-        -(t1 + t19),
-        -t19,
-        t18,
-        -(s234 * t7),
+        -t3,
+        -t2,
+        J4_theta4_21,
+        -(p2_21 * s234),
         0.0,
         0.0,
         s1,
         s1,
         s1,
-        t11,
-        s1 * c5 - s5 * t10,
+        s234 * c1,
+        c5 * s1 - t5 * c1,
         0.0,
         -c1,
         -c1,
         -c1,
-        t15,
-        -(c1 * c5 + s5 * t5),
+        s234 * s1,
+        -(t5 * s1 + c5 * c1),
         1.0,
         0.0,
         0.0,
         0.0,
         -c234,
-        -(s234 * s5),
+        -(s5 * s234),
     )
 
 
@@ -495,80 +473,68 @@ def _jacobian_space(theta1, theta2, theta3, theta4, theta5, _theta6, d1, L2, L3,
     s5, c5 = _runtime.sincos(theta5)
     t1 = d1 * c1
     t2 = L2 * s2
-    t3 = t1 - c1 * t2
-    t4 = L3 * (s2 * c3 + c2 * s3)
+    t3 = t2 + L3 * (s2 * c3 + c2 * s3)
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
     del c4, s4
-    s234 = s2 * c34 + c2 * s34
-    t5 = s1 * s234
-    t6 = L2 * c2
     c234 = c2 * c34 - s2 * s34
+    J4_theta5_11 = d4 * c234
+    s234 = s2 * c34 + c2 * s34
     del c34, s34
-    t7 = s1 * c234
-    t8 = L3 * (c2 * c3 - s2 * s3)
+    J4_theta3_21 = L2 * c2
+    J4_theta4_21 = J4_theta3_21 + L3 * (c2 * c3 - s2 * s3)
     del c2, c3, s2, s3
-    t9 = t5 * t2 + t6 * t7 + t5 * t4 + t8 * t7 - d1 * t5
-    t10 = c1 * c234
-    t11 = c234 * s5
-    t12 = s1 * t11
-    t13 = s5 * t5
-    t14 = c1 * c5
-    t15 = t2 * t12 - t6 * t13 + t14 * t2 + t4 * t12 - t8 * t13
-    t16 = c1 * s234
-    t17 = s5 * t16
-    t18 = t15 + t14 * t4 - d1 * t12 - d1 * t14 - d4 * t17
-    del t15
-    t19 = d5 * s5
-    t20 = d5 * c234
-    t21 = d1 * s1
-    t22 = t21 - s1 * t2
-    t23 = t16 * t2 + t6 * t10 + t16 * t4 + t8 * t10 - d1 * t16
-    t24 = s1 * c5
-    t25 = c1 * t11
-    t26 = t24 * t2 - t2 * t25 + t6 * t17 + t24 * t4 - t4 * t25
-    del t2
-    t27 = t26 + t8 * t17 - d1 * t24 + d1 * t25 - d4 * t13
-    del t13, t17, t26
-    t28 = d5 * s234 * c5 - c5 * t6 - c5 * t8 + d4 * t11
-    del c5, t11
+    J4_theta5_31 = s234 * t3 + c234 * J4_theta4_21
+    t4 = d1 * s234
+    t5 = J4_theta5_11 * c1 + J4_theta5_31 * s1 - s1 * t4
+    t6 = s5 * c234
+    t7 = t6 * s1 + c5 * c1
+    t8 = d5 * c5
+    t9 = s5 * s234
+    t10 = t8 * c234 + c5 * t3 - d4 * t9
+    t11 = d5 * s5 + t3 * t6 - J4_theta4_21 * t9
+    del s5
+    t12 = d1 * s1
+    t13 = J4_theta5_11 * s1 - J4_theta5_31 * c1 + c1 * t4
+    del J4_theta5_11, J4_theta5_31, t4
+    t14 = t6 * c1 - c5 * s1
     return (
         0.0,
         t1,
-        t3,
-        t3 - c1 * t4,
-        t9 + d4 * t10,
-        -(t18 + s1 * t19 + t14 * t20),
-        0.0,
-        t21,
-        t22,
-        t22 - s1 * t4,
-        d4 * t7 - t23,
-        c1 * t19 - (t27 + t24 * t20),
-        0.0,
-        0.0,
-        t6,
-        t6 + t8,
-        d4 * s234,
-        -t28,
-        0.0,
-        s1,
-        s1,
-        s1,
-        t16,
-        t24 - t25,
-        0.0,
-        -c1,
-        -c1,
-        -c1,
+        t1 - t2 * c1,
+        t1 - t3 * c1,
         t5,
-        -(t14 + t12),
+        d1 * t7 - c1 * t10 - s1 * t11,
+        0.0,
+        t12,
+        t12 - t2 * s1,
+        t12 - t3 * s1,
+        t13,
+        c1 * t11 - (d1 * t14 + s1 * t10),
+        0.0,
+        0.0,
+        J4_theta3_21,
+        J4_theta4_21,
+        d4 * s234,
+        -(t8 * s234 - c5 * J4_theta4_21 + d4 * t6),
+        0.0,
+        s1,
+        s1,
+        s1,
+        s234 * c1,
+        -t14,
+        0.0,
+        -c1,
+        -c1,
+        -c1,
+        s234 * s1,
+        -t7,
         1.0,
         0.0,
         0.0,
         0.0,
         -c234,
-        -(s234 * s5),
+        -t9,
     )
 
 
@@ -611,80 +577,71 @@ def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
 
 
 def _jacobian_body(_theta1, theta2, theta3, theta4, theta5, theta6, L2, L3, d4, d5, d6):
-    s5, c5 = _runtime.sincos(theta5)
     s6, c6 = _runtime.sincos(theta6)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     s4, c4 = _runtime.sincos(theta4)
-    t1 = s5 * c6
-    t2 = L2 * c2
-    t3 = L3 * (c2 * c3 - s2 * s3)
+    s5, c5 = _runtime.sincos(theta5)
     c34 = c3 * c4 - s3 * s4
     s34 = s3 * c4 + c3 * s4
-    del c3, s3
-    s234 = s2 * c34 + c2 * s34
-    t4 = d4 * s234
-    t5 = c5 * c6
     c234 = c2 * c34 - s2 * s34
-    del c2, s2
-    t6 = d4 * c234
-    t7 = d5 * s234
-    t8 = t1 * t2 + t1 * t3 - s6 * t4 + t5 * t6 - t1 * t7
-    t9 = c5 * s6
-    t10 = d6 * s234
-    t11 = d6 * c6
-    t12 = s5 * s6
-    t13 = d5 * t5 - d6 * t12
-    t14 = L3 * s4
+    J3_theta1_11 = d4 * c234
+    s234 = s2 * c34 + c2 * s34
+    t1 = L2 * c2 + L3 * (c2 * c3 - s2 * s3) - d5 * s234
+    del c2, c3, s2, s3
+    t2 = J3_theta1_11 * c5 + s5 * t1 + d6 * c234
+    J4_theta1_41 = s234 * c5
+    t3 = d4 * s234 + d6 * J4_theta1_41
+    t4 = L3 * s4
     del s4
-    t15 = L3 * c4
-    del c4
-    t16 = t13 - (t5 * t14 + s6 * t15)
-    t17 = L2 * c34
-    del c34
-    t18 = L2 * s34
+    t5 = d5 - (L2 * s34 + t4)
     del s34
-    t19 = t12 * t2 + t12 * t3 + t9 * t6 + c6 * t4 - t12 * t7
+    J4_theta2_11 = c5 * t5
+    J3_theta3_31 = L3 * c4
+    del c4
+    t6 = d6 * s5
+    t7 = L2 * c34 + J3_theta3_31 + t6
+    del c34
+    t8 = d5 - t4
     del t4
-    t20 = d6 * s6
-    t21 = d5 * t9 + d6 * t1
-    t22 = t21 - (t9 * t14 - c6 * t15)
-    del t15
-    t23 = d5 * s5
-    t24 = t23 - s5 * t14
-    del t14
+    J4_theta3_11 = c5 * t8
+    t9 = J3_theta3_31 + t6
+    del J3_theta3_31
+    J4_theta4_11 = d5 * c5
+    t10 = s5 * c6
+    t11 = -(s5 * s6)
     return (
-        t8 - t9 * t10 + c234 * t11,
-        t16 - (s6 * t17 + t5 * t18),
-        t16,
-        t13,
-        -t11,
+        c6 * t2 - t3 * s6,
+        J4_theta2_11 * c6 - s6 * t7,
+        J4_theta3_11 * c6 - s6 * t9,
+        J4_theta4_11 * c6 - s6 * t6,
+        -(d6 * c6),
         0.0,
-        -(t19 + c234 * t20 + t5 * t10),
-        t9 * t18 - c6 * t17 - t22,
-        -t22,
-        -t21,
-        t20,
+        -(t3 * c6 + s6 * t2),
+        -(J4_theta2_11 * s6 + c6 * t7),
+        -(J4_theta3_11 * s6 + c6 * t9),
+        -(J4_theta4_11 * s6 + c6 * t6),
+        d6 * s6,
         0.0,
-        c5 * t2 + c5 * t3 - s5 * t6 - c5 * t7,
-        s5 * t18 - t24,
-        -t24,
-        -t23,
+        c5 * t1 - J3_theta1_11 * s5,
+        -(s5 * t5),
+        -(s5 * t8),
+        -(d5 * s5),
         0.0,
         0.0,
-        s6 * c234 + s234 * t5,
-        t1,
-        t1,
-        t1,
+        c234 * s6 + J4_theta1_41 * c6,
+        t10,
+        t10,
+        t10,
         -s6,
         0.0,
-        c6 * c234 - s234 * t9,
-        -t12,
-        -t12,
-        -t12,
+        c234 * c6 - J4_theta1_41 * s6,
+        t11,
+        t11,
+        t11,
         -c6,
         0.0,
-        -(s5 * s234),
+        -(s234 * s5),
         c5,
         c5,
         c5,

@@ -45,12 +45,8 @@ def complaint(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[
         ("a, alpha, d, theta\n1, 0, 0, 2*t\n", "as it is or with a constant added"),
         ("a, alpha, d, theta\n1/0, 0, 0, t\n", "column a: cannot read '1/0'; it divides by zero"),
         ("a, alpha, d, theta\n1, 0, 0, foo(t)\n", "column theta: cannot read 'foo(t)'"),
-        ("a, alpha, d, theta
-lambda, 0, 0, t
-", "lambda is a word of Python;"),
-        ("a, alpha, d, theta
-x, 0, 0, t
-", "the written script uses the name x"),
+        ("a, alpha, d, theta\nlambda, 0, 0, t\n", "lambda is a word of Python;"),
+        ("a, alpha, d, theta\nx, 0, 0, t\n", "the written script uses the name x"),
         ("# L = 1/0 m: x\na, alpha, d, theta\nL, 0, 0, t\n", "the value of L is '1/0'"),
         ("a, alpha, d, theta, a\n0, 0, 0, t, 0\n", "line 1: there are two columns a"),
         ("a, alpha, d, theta\nnan, 0, 0, t\n", "line 2, column a: nan is not a finite number"),

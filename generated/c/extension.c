@@ -2103,11 +2103,11 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_fk_in, 1, h6ar_fk_out,
@@ -2136,11 +2136,11 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_pose_in, 1, h6ar_pose_out,
@@ -2168,13 +2168,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_arm_tips_in, 1, h6ar_arm_tips_out,
       h6ar_arm_tips_one, h6ar_arm_tips_many },
     { "h6ar.invariant_point",
-      "The invariant point, by the averages of the angles.\n"
+      "The invariant point, computed from the averages of the angles.\n"
       "\n"
       "Source: eq. (7).\n"
       "\n"
@@ -2196,7 +2196,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_invariant_point_in, 1, h6ar_invariant_point_out,
@@ -2225,12 +2225,12 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
-      "- Unbounded where the wrist links are stretched: there l_W turns over.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
+      "- Unbounded near stretched wrist links: the slope of l_W is infinite there.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_jacobian_in, 1, h6ar_jacobian_out,
@@ -2256,11 +2256,11 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_determinant_in, 1, h6ar_determinant_out,
@@ -2280,20 +2280,21 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "factors : ndarray of float64, shape (..., 6)\n"
-      "    One factor for each singular set: the tip is above or below the waist axis; virtual arm\n"
-      "    with the wrist straight or folded; virtual arm straight or folded; upper arms half a\n"
-      "    turn apart; fore-arms half a turn apart; wrist links stretched along the base line.\n"
+      "    One factor for each singular set: tip in the plane of the waist axis and the shoulders;\n"
+      "    virtual arm with the wrist straight or folded; virtual arm straight or folded; upper\n"
+      "    arms half a turn apart; fore-arms half a turn apart; wrist links stretched along the\n"
+      "    base line.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_singularities_in, 1, h6ar_singularities_out,
@@ -2317,38 +2318,39 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 4, 6)\n"
       "    theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 4)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
       "- Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, rear_elbow_up,\n"
       "  rear_elbow_down.\n"
       "- UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist\n"
-      "  axis than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.\n"
-      "- SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm\n"
-      "  with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm\n"
-      "  straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),\n"
-      "  or their difference where it is folded, is determined by yaw and roll, alpha and beta\n"
-      "  being half the differences of the arms' angles; sines of equal size are returned.\n"
-      "- SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al):\n"
-      "  rounded joints do not hold the tip to 1e-12 there.\n"
+      "  axis than L_theta, the virtual arm cannot reach the tip, or the tips of the arms cannot be\n"
+      "  so far apart.\n"
+      "- SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned); the tip of the virtual arm\n"
+      "  with the wrist is on its shoulder (a horizontal upper arm is returned); or the virtual arm\n"
+      "  without the wrist is straight or folded. In the last case yaw and roll determine only the\n"
+      "  sum of L1 sin(alpha) and f sin(beta) (straight) or their difference (folded); alpha and\n"
+      "  beta are half the differences of the arms' angles, and sines of equal size are returned.\n"
+      "- SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded\n"
+      "  joints do not determine the tip to 1e-12 there.\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_ik_in, 2, h6ar_ik_out,
       h6ar_ik_one, h6ar_ik_many },
     { "h6ar.wrist_length",
-      "The variable length l_W of the wrist; NaN where the links are too short.\n"
+      "The variable length l_W of the wrist; NaN if the links are too short.\n"
       "\n"
       "Source: eq. (8).\n"
       "\n"
@@ -2372,7 +2374,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       2, h6ar_wrist_length_in, 1, h6ar_wrist_length_out,
@@ -2403,13 +2405,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       3, h6ar_minimum_link_length_in, 1, h6ar_minimum_link_length_out,
       h6ar_minimum_link_length_one, h6ar_minimum_link_length_many },
     { "h6ar.largest_yaw",
-      "The largest yaw at a roll that keeps the separation angle; NaN where there is none.\n"
+      "The largest yaw at a roll that keeps the separation angle; NaN if there is none.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2432,13 +2434,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       2, h6ar_largest_yaw_in, 1, h6ar_largest_yaw_out,
       h6ar_largest_yaw_one, h6ar_largest_yaw_many },
     { "h6ar.largest_angle",
-      "The largest angle that yaw and roll may both have; NaN where there is none.\n"
+      "The largest angle that yaw and roll may both have; NaN if there is none.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2459,7 +2461,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_largest_angle_in, 1, h6ar_largest_angle_out,
@@ -2488,14 +2490,14 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_fk_in, 1, h6ar_loop_closed_fk_out,
@@ -2524,14 +2526,14 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_pose_in, 1, h6ar_loop_closed_pose_out,
@@ -2559,7 +2561,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_arm_tips_in, 1, h6ar_loop_closed_arm_tips_out,
@@ -2587,7 +2589,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_invariant_point_in, 1, h6ar_loop_closed_invariant_point_out,
@@ -2616,21 +2618,21 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
-      "- Unbounded where the wrist links are stretched: there l_W turns over.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
+      "- Unbounded near stretched wrist links: the slope of l_W is infinite there.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_jacobian_in, 1, h6ar_loop_closed_jacobian_out,
       h6ar_loop_closed_jacobian_one, h6ar_loop_closed_jacobian_many },
     { "h6ar_loop_closed.determinant",
-      "Determinant of the Jacobian; it has a pole where the virtual arm is straight.\n"
+      "Determinant of the Jacobian; it has a pole if the virtual arm is straight or folded.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2650,14 +2652,14 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_determinant_in, 1, h6ar_loop_closed_determinant_out,
@@ -2677,33 +2679,33 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "factors : ndarray of float64, shape (..., 6)\n"
-      "    One factor for each singular set: the tip is above or below the waist axis; virtual arm\n"
-      "    with the wrist straight or folded; right arm straight or folded; left arm straight or\n"
-      "    folded; virtual arm straight or folded (a pole of the determinant); wrist links\n"
-      "    stretched along the base line.\n"
+      "    One factor for each singular set: tip in the plane of the waist axis and the shoulders;\n"
+      "    virtual arm with the wrist straight or folded; right arm straight or folded; left arm\n"
+      "    straight or folded; virtual arm straight or folded (a pole of the determinant); wrist\n"
+      "    links stretched along the base line.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_singularities_in, 1, h6ar_loop_closed_singularities_out,
       h6ar_loop_closed_singularities_one, h6ar_loop_closed_singularities_many },
     { "h6ar_loop_closed.ik",
-      "All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other\n"
-      "side.\n"
+      "All postures of the mechanism that reach a tip; in a mixed one the elbows are on opposite\n"
+      "sides.\n"
       "\n"
-      "Source: eqs. (11), (13) and (14), then each arm by itself.\n"
+      "Source: eqs. (11), (13) and (14), then each arm separately.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2719,17 +2721,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 8, 6)\n"
       "    theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2737,22 +2739,22 @@ const cf_function cf_functions[] = {
       "  front_elbow_down_alike, front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed,\n"
       "  rear_elbow_down_alike, rear_elbow_down_mixed.\n"
       "- UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the\n"
-      "  waist axis than L_theta, or an arm is out of reach.\n"
-      "- SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its\n"
-      "  upper arm is returned beside that of the virtual arm).\n"
-      "- SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a\n"
+      "  waist axis than L_theta, or an arm cannot reach its tip.\n"
+      "- SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on its\n"
+      "  own shoulder (its upper arm is returned parallel to that of the virtual arm).\n"
+      "- SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a\n"
       "  folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the\n"
-      "  distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and stretched\n"
-      "  wrist links (l_W is less than 2^-10 al).\n"
+      "  distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near\n"
+      "  stretched wrist links (l_W is less than 2^-10 al).\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
       "- A straight right arm is returned bent by a few units in the last place, so that fk can\n"
-      "  read the side.\n"
+      "  tell the side.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_ik_in, 2, h6ar_loop_closed_ik_out,
       h6ar_loop_closed_ik_one, h6ar_loop_closed_ik_many },
     { "h6ar_loop_closed.wrist_length",
-      "The variable length l_W of the wrist; NaN where the links are too short.\n"
+      "The variable length l_W of the wrist; NaN if the links are too short.\n"
       "\n"
       "Source: eq. (8).\n"
       "\n"
@@ -2776,7 +2778,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       2, h6ar_loop_closed_wrist_length_in, 1, h6ar_loop_closed_wrist_length_out,
@@ -2808,13 +2810,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       3, h6ar_loop_closed_minimum_link_length_in, 1, h6ar_loop_closed_minimum_link_length_out,
       h6ar_loop_closed_minimum_link_length_one, h6ar_loop_closed_minimum_link_length_many },
     { "h6ar_loop_closed.largest_yaw",
-      "The largest yaw at a roll that keeps the separation angle; NaN where there is none.\n"
+      "The largest yaw at a roll that keeps the separation angle; NaN if there is none.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2837,13 +2839,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       2, h6ar_loop_closed_largest_yaw_in, 1, h6ar_loop_closed_largest_yaw_out,
       h6ar_loop_closed_largest_yaw_one, h6ar_loop_closed_largest_yaw_many },
     { "h6ar_loop_closed.largest_angle",
-      "The largest angle that yaw and roll may both have; NaN where there is none.\n"
+      "The largest angle that yaw and roll may both have; NaN if there is none.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2864,7 +2866,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_largest_angle_in, 1, h6ar_loop_closed_largest_angle_out,
@@ -2888,22 +2890,22 @@ const cf_function cf_functions[] = {
       "p : ndarray of float64, shape (..., 2, 3)\n"
       "    x, y, z in the unit of the parameters.\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `p` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `p` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `p` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.\n"
-      "- UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.\n"
+      "- UNREACHABLE: C and D are more than 2*L2 apart, so the loop cannot close.\n"
       "- SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point\n"
       "  at theta4 = theta5 = +90 or -90 degrees is returned.\n"
       "- Ill-conditioned near the parallel singularities, where both modes meet or P is free.\n"
@@ -2933,13 +2935,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.\n"
       "- NaN for an assembly mode that does not exist.\n"
-      "- Free, but equal, where C and D coincide: +90 and -90 degrees are returned.\n"
+      "- If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_passive_angles_in, 1, hybrid_five_bar_passive_angles_out,
@@ -2966,7 +2968,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2998,13 +3000,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.\n"
       "- NaN for an assembly mode that does not exist.\n"
-      "- Its signs tell the working modes apart, in the order of BRANCHES.\n"
+      "- Its signs distinguish the working modes; BRANCHES lists them in the same order.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_jacobian_serial_in, 1, hybrid_five_bar_jacobian_serial_out,
@@ -3031,7 +3033,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3063,7 +3065,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3076,7 +3078,7 @@ const cf_function cf_functions[] = {
       hybrid_five_bar_determinant_one, hybrid_five_bar_determinant_many },
     { "hybrid_five_bar.singularities",
       "Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and\n"
-      "L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.\n"
+      "L1*L2*sin(theta5 - theta3) (serial), and L2^2*sin(theta5 - theta4) (parallel).\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3098,7 +3100,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3129,14 +3131,14 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.\n"
       "- NaN for an assembly mode that does not exist.\n"
-      "- Infinite at a parallel singularity; it does not depend on theta1, and both modes have the\n"
-      "  same.\n"
+      "- Infinite at a parallel singularity. It does not depend on theta1 and is the same for both\n"
+      "  modes.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_condition_number_in, 1, hybrid_five_bar_condition_number_out,
@@ -3160,17 +3162,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 8, 3)\n"
       "    theta1, theta2, theta3 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3178,13 +3180,15 @@ const cf_function cf_functions[] = {
       "  plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.\n"
       "- BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly\n"
       "  modes.\n"
-      "- UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.\n"
-      "- SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is\n"
-      "  free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.\n"
-      "- SINGULAR as well near a parallel singularity, where the sine of the angle between CP and\n"
-      "  DP is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than\n"
-      "  1e-12 of the lengths. If L0 = 0, equal signs of the last two entries put C on D.\n"
-      "- Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,\n"
+      "- UNREACHABLE: the distance of P from A or from B is more than L1 + L2 or less than |L1 -\n"
+      "  L2|.\n"
+      "- SINGULAR: theta1 is free if P is on the axis; theta2 or theta3 is free if L1 = L2 and P is\n"
+      "  at A or at B; both are free if L1 = 0. 0 is returned for theta1, and for the others unless\n"
+      "  L1 = 0.\n"
+      "- SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is\n"
+      "  less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of\n"
+      "  the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.\n"
+      "- Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but\n"
       "  the loop still closes.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
@@ -3213,7 +3217,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_workspace_contains_in, 1, hybrid_five_bar_workspace_contains_out,
@@ -3239,11 +3243,11 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN for a length that is negative or not finite.\n"
+      "- NaN if a length is negative or not finite.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       0, NULL, 1, hybrid_five_bar_workspace_volume_out,
@@ -3272,13 +3276,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_joint4_in, 1, irb260_joint4_out,
       irb260_joint4_one, irb260_joint4_many },
     { "irb260.joints_from_motors",
-      "Joint angles of motor angles: theta3 = m3 - m2.\n"
+      "Joint angles from motor angles: theta3 = m3 - m2.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3299,17 +3303,17 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- The map is linear and counts turns: its angles are not reduced to (-pi, pi].\n"
+      "- The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_joints_from_motors_in, 1, irb260_joints_from_motors_out,
       irb260_joints_from_motors_one, irb260_joints_from_motors_many },
     { "irb260.motors_from_joints",
-      "Motor angles of joint angles: m3 = theta2 + theta3.\n"
+      "Motor angles from joint angles: m3 = theta2 + theta3.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3329,11 +3333,11 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- The map is linear and counts turns: its angles are not reduced to (-pi, pi].\n"
+      "- The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_motors_from_joints_in, 1, irb260_motors_from_joints_out,
@@ -3362,7 +3366,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3395,7 +3399,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_pose_in, 1, irb260_pose_out,
@@ -3424,13 +3428,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_jacobian_in, 1, irb260_jacobian_out,
       irb260_jacobian_one, irb260_jacobian_many },
     { "irb260.jacobian_space",
-      "Twist (v; omega) of the hand in the base frame per joint rate.\n"
+      "Twist (v; omega) of the hand in the base frame, per joint rate.\n"
       "\n"
       "Source: eq. (18).\n"
       "\n"
@@ -3453,13 +3457,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_jacobian_space_in, 1, irb260_jacobian_space_out,
       irb260_jacobian_space_one, irb260_jacobian_space_many },
     { "irb260.jacobian_body",
-      "Twist (v; omega) of the hand in its own frame per joint rate.\n"
+      "Twist (v; omega) of the hand in its own frame, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3480,7 +3484,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_jacobian_body_in, 1, irb260_jacobian_body_out,
@@ -3507,7 +3511,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_jacobian_motors_in, 1, irb260_jacobian_motors_out,
@@ -3533,7 +3537,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_determinant_in, 1, irb260_determinant_out,
@@ -3560,7 +3564,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_singularities_in, 1, irb260_singularities_out,
@@ -3590,15 +3594,15 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       2, irb260_point_velocity_in, 1, irb260_point_velocity_out,
       irb260_point_velocity_one, irb260_point_velocity_many },
     { "irb260.ik",
-      "All four configurations of a position and a yaw.\n"
+      "All four configurations for a position and a yaw.\n"
       "\n"
-      "Source: solved from eq. (13); the paper leaves the inverse out.\n"
+      "Source: solved from eq. (13); the paper does not give the inverse.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3614,30 +3618,31 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 4, 4)\n"
       "    theta1, theta2, theta3, theta5 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 4)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
       "- Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,\n"
       "  back_elbow_down.\n"
       "- front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,\n"
-      "  where rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;\n"
+      "  with rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;\n"
       "  elbow_down: cos(theta3) <= 0.\n"
-      "- SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0\n"
-      "  is returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is\n"
-      "  returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.\n"
-      "- Ill-conditioned where the arm is straight or folded: the angles lose half the digits\n"
-      "  there, the position does not.\n"
+      "- SINGULAR: if the hand is on the base axis, theta1 is free (theta1 + theta5 is determined)\n"
+      "  and 0 is returned; if equal arms are folded with the wrist on the shoulder, theta2 is free\n"
+      "  and 0 is returned; if an arm has no length, its angle is free and theta3 = -pi/2 is\n"
+      "  returned.\n"
+      "- Ill-conditioned if the arm is straight or folded: the angles lose half their digits, the\n"
+      "  position does not.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_ik_in, 2, irb260_ik_out,
@@ -3661,7 +3666,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3691,13 +3696,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_workspace_margin_in, 1, irb260_workspace_margin_out,
       irb260_workspace_margin_one, irb260_workspace_margin_many },
     { "irb260.workspace_contains",
-      "Whether some configuration reaches a position, whatever the yaw.\n"
+      "Whether any configuration reaches a position; the yaw does not matter.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3717,11 +3722,11 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- True exactly where ik has a branch that is OK or SINGULAR.\n"
+      "- True if and only if ik has a branch that is OK or SINGULAR.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_workspace_contains_in, 1, irb260_workspace_contains_out,
@@ -3750,7 +3755,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_fk_in, 1, planar_2r_fk_out,
@@ -3779,7 +3784,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_pose_in, 1, planar_2r_pose_out,
@@ -3808,7 +3813,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_orientation_in, 1, planar_2r_orientation_out,
@@ -3837,7 +3842,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_jacobian_in, 1, planar_2r_jacobian_out,
@@ -3863,13 +3868,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_determinant_in, 1, planar_2r_determinant_out,
       planar_2r_determinant_one, planar_2r_determinant_many },
     { "planar_2r.manipulability",
-      "Yoshikawa's manipulability of the position, the modulus of the determinant.\n"
+      "Yoshikawa's manipulability of the position: the absolute value of the determinant.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3889,13 +3894,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_manipulability_in, 1, planar_2r_manipulability_out,
       planar_2r_manipulability_one, planar_2r_manipulability_many },
     { "planar_2r.singularities",
-      "The factor that vanishes exactly where the arm is stretched or folded.\n"
+      "The factor that vanishes exactly if the arm is stretched or folded.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3916,13 +3921,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_singularities_in, 1, planar_2r_singularities_out,
       planar_2r_singularities_one, planar_2r_singularities_many },
     { "planar_2r.ik",
-      "Both elbow configurations that reach a position.\n"
+      "Both elbow configurations for a position.\n"
       "\n"
       "Source: eqs. (3) and (4), by arctangents.\n"
       "\n"
@@ -3940,31 +3945,31 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 2, 2)\n"
       "    theta1, theta2 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
       "- Branches in this order, `BRANCHES`: elbow_down, elbow_up.\n"
-      "- SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a\n"
-      "  link without length, whose angle is free.\n"
-      "- Ill-conditioned near full stretch and full fold: the angles lose half the digits there,\n"
+      "- SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned;\n"
+      "  if a link has no length, its angle is free.\n"
+      "- Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,\n"
       "  the position does not.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_ik_in, 2, planar_2r_ik_out,
       planar_2r_ik_one, planar_2r_ik_many },
     { "planar_2r.ik_pose",
-      "The joint angles of a full pose; there is at most one.\n"
+      "The joint angles for a full pose; there is at most one solution.\n"
       "\n"
       "Source: eq. (10).\n"
       "\n"
@@ -3982,21 +3987,21 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 1, 2)\n"
       "    theta1, theta2 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 1)\n"
-      "    A `Status`: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none,\n"
-      "    SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the notes),\n"
-      "    and INVALID (3) where an input is not finite or impossible. `q` is NaN where the status\n"
-      "    is UNREACHABLE or INVALID.\n"
+      "    A `Status`: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no solution,\n"
+      "    SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined (see the\n"
+      "    notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN if the\n"
+      "    status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- UNREACHABLE where the pose is not one of the arm, be it ever so little.\n"
+      "- UNREACHABLE if the arm cannot take the pose exactly.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_ik_pose_in, 2, planar_2r_ik_pose_out,
@@ -4020,7 +4025,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       0, NULL, 1, planar_2r_workspace_radii_out,
@@ -4047,7 +4052,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_fk_in, 1, puma560_fk_out,
@@ -4074,7 +4079,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_pose_in, 1, puma560_pose_out,
@@ -4101,7 +4106,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4132,7 +4137,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_jacobian_space_in, 1, puma560_jacobian_space_out,
@@ -4159,7 +4164,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_jacobian_body_in, 1, puma560_jacobian_body_out,
@@ -4185,7 +4190,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_determinant_in, 1, puma560_determinant_out,
@@ -4212,7 +4217,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_singularities_in, 1, puma560_singularities_out,
@@ -4234,17 +4239,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 8, 6)\n"
       "    theta1 to theta6 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4281,24 +4286,24 @@ const cf_function cf_functions[] = {
       "p : ndarray of float64, shape (..., 2, 2)\n"
       "    x, y in the unit of the parameters.\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `p` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `p` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `p` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
       "- UNREACHABLE: the legs do not meet, or a length is negative.\n"
-      "- SINGULAR: the pivots coincide (b = 0); P is free on a circle, the point on the x axis is\n"
-      "  returned.\n"
+      "- SINGULAR: the pivots coincide (b = 0); P is free on a circle, and its point on the x axis\n"
+      "  is returned.\n"
       ,
       1, rpr_planar_values, rpr_planar_fields,
       1, rpr_planar_fk_in, 2, rpr_planar_fk_out,
@@ -4325,7 +4330,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4356,7 +4361,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4386,7 +4391,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4417,7 +4422,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4443,24 +4448,24 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 1, 2)\n"
       "    rho1, rho2 in the unit of the parameters.\n"
       "status : ndarray of uint8, shape (..., 1)\n"
-      "    A `Status`: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none,\n"
-      "    SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the notes),\n"
-      "    and INVALID (3) where an input is not finite or impossible. `q` is NaN where the status\n"
-      "    is UNREACHABLE or INVALID.\n"
+      "    A `Status`: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no solution,\n"
+      "    SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined (see the\n"
+      "    notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN if the\n"
+      "    status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
-      "- Every position can be reached, in one way: lengths are not negative.\n"
-      "- SINGULAR: the sine of the angle between the legs is less than 2^-10, on and near the line\n"
-      "  of the pivots, at a distance of more than some 1000 b, and everywhere if b = 0. The\n"
-      "  lengths are right, but P moves more for an ulp of them than 1e-12 of b + rho1 + rho2.\n"
+      "- Every position can be reached, in exactly one way: lengths are not negative.\n"
+      "- SINGULAR: the sine of the angle between the legs is less than 2^-10: on and near the line\n"
+      "  of the pivots, at a distance of more than about 1000 b, and everywhere if b = 0. The\n"
+      "  lengths are right, but one ulp of them moves P by more than 1e-12 of b + rho1 + rho2.\n"
       ,
       1, rpr_planar_values, rpr_planar_fields,
       1, rpr_planar_ik_in, 2, rpr_planar_ik_out,
@@ -4487,7 +4492,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_pose_in, 1, scara_pose_out,
@@ -4514,7 +4519,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4545,7 +4550,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_jacobian_in, 1, scara_jacobian_out,
@@ -4571,7 +4576,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_determinant_in, 1, scara_determinant_out,
@@ -4598,7 +4603,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_singularities_in, 1, scara_singularities_out,
@@ -4625,7 +4630,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_jacobian_space_in, 1, scara_jacobian_space_out,
@@ -4652,13 +4657,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_jacobian_body_in, 1, scara_jacobian_body_out,
       scara_jacobian_body_one, scara_jacobian_body_many },
     { "scara.ik",
-      "Both elbows of a position and a yaw.\n"
+      "Both elbow configurations for a position and a yaw.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -4675,17 +4680,17 @@ const cf_function cf_functions[] = {
       "    theta1, theta2 in rad, in (-pi, pi]; d3 in the unit of the parameters; theta4 in rad, in\n"
       "    (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4720,7 +4725,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_fk_in, 1, spherical_wrist_fk_out,
@@ -4749,7 +4754,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_pose_in, 1, spherical_wrist_pose_out,
@@ -4776,7 +4781,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_jacobian_space_in, 1, spherical_wrist_jacobian_space_out,
@@ -4803,7 +4808,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_jacobian_body_in, 1, spherical_wrist_jacobian_body_out,
@@ -4829,13 +4834,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_determinant_in, 1, spherical_wrist_determinant_out,
       spherical_wrist_determinant_one, spherical_wrist_determinant_many },
     { "spherical_wrist.singularities",
-      "The factor that vanishes exactly where the axes 4 and 6 coincide.\n"
+      "The factor that vanishes exactly if the axes 4 and 6 coincide.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -4856,13 +4861,13 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_singularities_in, 1, spherical_wrist_singularities_out,
       spherical_wrist_singularities_one, spherical_wrist_singularities_many },
     { "spherical_wrist.ik",
-      "Both wrist configurations of a rotation.\n"
+      "Both wrist configurations for a rotation.\n"
       "\n"
       "Source: eqs. (13) and (16), with theta6 from the remaining rotation.\n"
       "\n"
@@ -4880,26 +4885,26 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 2, 3)\n"
       "    theta4, theta5, theta6 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
       "- Branches in this order, `BRANCHES`: theta5_positive, theta5_negative.\n"
-      "- SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, theta4\n"
-      "  = 0 is returned.\n"
-      "- INVALID: a matrix that is no proper rotation, a mirrored one included.\n"
-      "- Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or\n"
-      "  difference.\n"
+      "- SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and\n"
+      "  theta4 = 0 is returned.\n"
+      "- INVALID: the matrix is not a proper rotation, for example a reflection.\n"
+      "- Near theta5 = 0 and pi, theta4 and theta6 are ill-conditioned; their sum or difference is\n"
+      "  not.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_ik_in, 2, spherical_wrist_ik_out,
@@ -4926,7 +4931,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_fk_in, 1, stanford_arm_fk_out,
@@ -4953,7 +4958,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_pose_in, 1, stanford_arm_pose_out,
@@ -4980,7 +4985,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -5011,7 +5016,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_jacobian_space_in, 1, stanford_arm_jacobian_space_out,
@@ -5038,7 +5043,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_jacobian_body_in, 1, stanford_arm_jacobian_body_out,
@@ -5064,7 +5069,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_determinant_in, 1, stanford_arm_determinant_out,
@@ -5091,7 +5096,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_singularities_in, 1, stanford_arm_singularities_out,
@@ -5114,17 +5119,17 @@ const cf_function cf_functions[] = {
       "    theta1, theta2 in rad, in (-pi, pi]; d3 in the unit of the parameters; theta4, theta5,\n"
       "    theta6 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -5162,7 +5167,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_pose_in, 1, ur_arm_pose_out,
@@ -5189,7 +5194,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_fk_in, 1, ur_arm_fk_out,
@@ -5216,7 +5221,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -5246,7 +5251,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_determinant_in, 1, ur_arm_determinant_out,
@@ -5273,7 +5278,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_singularities_in, 1, ur_arm_singularities_out,
@@ -5300,7 +5305,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_jacobian_space_in, 1, ur_arm_jacobian_space_out,
@@ -5327,7 +5332,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_jacobian_body_in, 1, ur_arm_jacobian_body_out,
@@ -5349,17 +5354,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 8, 6)\n"
       "    theta1 to theta6 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"

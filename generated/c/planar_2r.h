@@ -142,7 +142,7 @@ void planar_2r_determinant_batch(size_t n, const planar_2r_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * Yoshikawa's manipulability of the position, the modulus of the determinant.
+ * Yoshikawa's manipulability of the position: the absolute value of the determinant.
  *
  * Inputs
  * ------
@@ -160,7 +160,7 @@ void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params,
     real_t *w, size_t w_stride);
 
 /*
- * The factor that vanishes exactly where the arm is stretched or folded.
+ * The factor that vanishes exactly if the arm is stretched or folded.
  *
  * Inputs
  * ------
@@ -179,7 +179,7 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
     real_t *factors, size_t factors_stride);
 
 /*
- * Both elbow configurations that reach a position.
+ * Both elbow configurations for a position.
  *
  * Source: eqs. (3) and (4), by arctangents.
  *
@@ -193,18 +193,18 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
  * q : real_t[4], shape (2, 2)
  *     theta1, theta2 in rad, in (-pi, pi].
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
- *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
- *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
- *     the status is UNREACHABLE or INVALID.
+ *     A CLOSEDFORM_ status of each branch: OK (0) if q is a solution, UNREACHABLE (1) if there
+ *     is no solution, SINGULAR (2) if q is one of infinitely many solutions or poorly
+ *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. q
+ *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
  * - Branches in this order: elbow_down, elbow_up.
- * - SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a
- *   link without length, whose angle is free.
- * - Ill-conditioned near full stretch and full fold: the angles lose half the digits there, the
- *   position does not.
+ * - SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned; if
+ *   a link has no length, its angle is free.
+ * - Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,
+ *   the position does not.
  */
 void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
     real_t q[4], uint8_t status[2]);
@@ -214,7 +214,7 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * The joint angles of a full pose; there is at most one.
+ * The joint angles for a full pose; there is at most one solution.
  *
  * Source: eq. (10).
  *
@@ -228,14 +228,14 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
  * q : real_t[2], shape (1, 2)
  *     theta1, theta2 in rad, in (-pi, pi].
  * status : uint8_t[1]
- *     A CLOSEDFORM_ status: OK (0) where q is a solution, UNREACHABLE (1) where there is none,
- *     SINGULAR (2) where q is one of infinitely many or hardly determined (see the notes), and
- *     INVALID (3) where an input is not finite or impossible. q is NaN where the status is
- *     UNREACHABLE or INVALID.
+ *     A CLOSEDFORM_ status: OK (0) if q is a solution, UNREACHABLE (1) if there is no solution,
+ *     SINGULAR (2) if q is one of infinitely many solutions or poorly determined (see the
+ *     notes), and INVALID (3) if an input is not finite or not possible. q is NaN if the status
+ *     is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - UNREACHABLE where the pose is not one of the arm, be it ever so little.
+ * - UNREACHABLE if the arm cannot take the pose exactly.
  */
 void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
     real_t q[2], uint8_t status[1]);

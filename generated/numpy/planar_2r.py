@@ -15,8 +15,9 @@
 #   workspace_radii: 1 compare and select, 2 add
 """Planar 2R arm.
 
-Two links of lengths l1 and l2 move in the plane of x and y.  theta1 turns the first link
-against the x axis, theta2 the second against the first, both counter-clockwise.
+Two links of lengths l1 and l2 move in the plane of x and y.  theta1 is the angle of the first
+link against the x axis, theta2 that of the second link against the first; both are counter-
+clockwise.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from S. Baswanth Kumar Reddy, K. Rajesh Babu: Kinematic Attitudes of a Planar Robot and a Spherical Wrist.
@@ -119,7 +120,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> A
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -185,7 +186,7 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -233,7 +234,7 @@ def orientation(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_ORIENTATION, (q,), params, out)
     return result
@@ -289,7 +290,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -334,7 +335,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -359,7 +360,7 @@ _MANIPULABILITY = _runtime.Kernel(
 
 
 def manipulability(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Yoshikawa's manipulability of the position, the modulus of the determinant.
+    """Yoshikawa's manipulability of the position: the absolute value of the determinant.
 
     Parameters
     ----------
@@ -379,7 +380,7 @@ def manipulability(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_MANIPULABILITY, (q,), params, out)
     return result
@@ -403,7 +404,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factor that vanishes exactly where the arm is stretched or folded.
+    """The factor that vanishes exactly if the arm is stretched or folded.
 
     Parameters
     ----------
@@ -424,7 +425,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -494,7 +495,7 @@ _IK = _runtime.Kernel(
 
 
 def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
-    """Both elbow configurations that reach a position.
+    """Both elbow configurations for a position.
 
     Source: eqs. (3) and (4), by arctangents.
 
@@ -512,24 +513,24 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     q : ndarray of float64, shape (..., 2, 2)
         theta1, theta2 in rad, in (-pi, pi].
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
-        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
-        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
-        status is UNREACHABLE or INVALID.
+        A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no
+        solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined
+        (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN
+        if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
     - Branches in this order, `BRANCHES`: elbow_down, elbow_up.
-    - SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a
-      link without length, whose angle is free.
-    - Ill-conditioned near full stretch and full fold: the angles lose half the digits there,
+    - SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned;
+      if a link has no length, its angle is free.
+    - Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,
       the position does not.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
@@ -600,7 +601,7 @@ _IK_POSE = _runtime.Kernel(
 
 
 def ik_pose(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
-    """The joint angles of a full pose; there is at most one.
+    """The joint angles for a full pose; there is at most one solution.
 
     Source: eq. (10).
 
@@ -618,21 +619,21 @@ def ik_pose(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None)
     q : ndarray of float64, shape (..., 1, 2)
         theta1, theta2 in rad, in (-pi, pi].
     status : ndarray of uint8, shape (..., 1)
-        A `Status`: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none,
-        SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the notes),
-        and INVALID (3) where an input is not finite or impossible. `q` is NaN where the status
-        is UNREACHABLE or INVALID.
+        A `Status`: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no solution,
+        SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined (see the
+        notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN if the
+        status is UNREACHABLE or INVALID.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
-    - UNREACHABLE where the pose is not one of the arm, be it ever so little.
+    - UNREACHABLE if the arm cannot take the pose exactly.
     """
     result = _runtime.evaluate(_IK_POSE, (T,), params, out)
     return Solutions(*result)
@@ -674,7 +675,7 @@ def workspace_radii(params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_WORKSPACE_RADII, (), params, out)
     return result

@@ -12,9 +12,11 @@ from closedform.algebra.normal_form import normal as normal
 from closedform.algebra.normal_form import positive_form as positive_form
 from closedform.algebra.solutions import count_solutions as count_solutions
 from closedform.algebra.solutions import rotation_parametrisation as rotation_parametrisation
+from closedform.lemmas.applied import Applied as Applied
 from closedform.lemmas.chain import Chain as Chain
 from closedform.lemmas.circles import circle_intersection as circle_intersection
 from closedform.lemmas.links import Reaching as Reaching
+from closedform.lemmas.links import named as named
 from closedform.lemmas.links import polar as polar
 from closedform.lemmas.links import remainder as remainder
 from closedform.lemmas.links import slide as slide
@@ -27,6 +29,7 @@ from closedform.lemmas.pairs import direction as direction
 from closedform.lemmas.pairs import sine_cosine_pair as sine_cosine_pair
 from closedform.lemmas.pairs import triangle_pairs as triangle_pairs
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
+from closedform.lemmas.registry import chain_lemma as chain_lemma
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine
 from closedform.lemmas.tangent import Links as Links
@@ -70,6 +73,7 @@ from closedform.mechanics.serial import product as product
 from closedform.mechanics.volumes import lens as lens
 from closedform.model.claims import Check as Check
 from closedform.model.derivation import Continuum as Continuum
+from closedform.model.derivation import Degenerate as Degenerate
 from closedform.model.derivation import Derivation as Derivation
 from closedform.model.derivation import Inverse as Inverse
 from closedform.model.derivation import Paper as Paper

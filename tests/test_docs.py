@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 from pathlib import Path
 
 import pytest
 
+import closedform
 from closedform.lazy import homes
+from closedform.lemmas.registry import chain_lemmas
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
@@ -47,10 +50,17 @@ def test_the_architecture_names_every_package() -> None:
 
 
 def test_a_name_for_authors_is_the_one_of_its_module() -> None:
-    import importlib
-
-    import closedform
-
     for name, home in homes(closedform.__path__).items():
         assert getattr(closedform, name) is getattr(importlib.import_module(home), name)
         assert name in dir(closedform)
+
+
+def test_the_guide_and_the_stub_have_every_lemma() -> None:
+    text = (ROOT / "docs" / "adding-a-mechanism.md").read_text("utf-8")
+    rows = re.findall(r"^\| `(\w+)\([^`]*\)` \| (.*?) \| (.*?) \|$", text, flags=re.MULTILINE)
+    guide = {name: (equation.replace("`", ""), result) for name, equation, result in rows}
+    for name, lemma in chain_lemmas().items():
+        equation, result = guide.pop(name)
+        assert equation.startswith(lemma.equation) and result == lemma.result
+        assert getattr(closedform, name) is lemma.apply
+    assert not guide

@@ -21,6 +21,7 @@ from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.pairs import Pair, amplitude_lemma, nearly_tangent
+from closedform.lemmas.registry import chain_lemma
 from closedform.lemmas.tangent import Links, Turn, Turned, leaving
 from closedform.lemmas.triangle import heron_factors
 from closedform.model.derivation import Degenerate
@@ -73,6 +74,7 @@ def degenerate(
     return tuple(Degenerate((flag,), locus, free, meaning) for locus in loci if locus is not None)
 
 
+@chain_lemma("a sin x + b cos x = c", "the pair of x")
 def turn(
     chain: Chain,
     x: sp.Symbol,
@@ -117,6 +119,7 @@ def turn(
     return Applied(lemma, Turned(pair.s, pair.c, root), means, {}, cases)
 
 
+@chain_lemma("l1 u(x1) + l2 u(x1 + x2) = (x, y)", "both pairs")
 def two_links(
     chain: Chain,
     first: sp.Symbol,
@@ -229,6 +232,7 @@ def _stretched(
     ]
 
 
+@chain_lemma("r u(x) = (x, y)", "the pair of x, and r")
 def polar(
     chain: Chain,
     angle: sp.Symbol,
@@ -268,12 +272,14 @@ def polar(
     return Applied(lemma, (pair, value), means | {value: length}, {}, cases)
 
 
+@chain_lemma("d = value", "the value")
 def slide(chain: Chain, joint: sp.Symbol, value: sp.Expr) -> Applied:
     """``joint = value``: a prismatic joint along the direction of a coordinate."""
     lemma = Lemma("slide", r"d = z", (joint - value,), {joint: value}, 1)
     return Applied(lemma, value)
 
 
+@chain_lemma("x = value", "the angle")
 def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
     """``joint = total``, an angle: what the earlier joints leave of an angle of the target.
 
@@ -296,6 +302,7 @@ def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
     return Applied(lemma, total, {}, dict(chain.meaning))
 
 
+@chain_lemma("Rz(x1) Ry(x2) Rz(x3) = R", "the pair of x1")
 def zyz(
     chain: Chain,
     R: sp.Matrix,

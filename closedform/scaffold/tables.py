@@ -24,6 +24,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.formulas import BITS, FormulaError, formula, number, shown
+from closedform.lemmas.registry import chain_lemmas
 from closedform.model.functions import real
 from closedform.model.names import check_symbol
 from closedform.scaffold import exact
@@ -38,7 +39,7 @@ JOINTS = 16
 ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
-CHAIN = ("Reaching", "polar", "remainder", "slide", "turn", "turned", "two_links", "zyz")
+CHAIN = ("Reaching", "turned", *chain_lemmas())
 AUTHOR = (
     "Chain", "Derivation", "Links", "LinksAndWrist", "Pair", "Paper", "from_dh", "from_screws",
 )  # fmt: skip

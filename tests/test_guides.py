@@ -1,4 +1,4 @@
-"""The guide for a new mechanism: every snippet is run, in order, as a reader would."""
+"""The guides: every snippet is run, in order, as a reader would."""
 
 import os
 import re
@@ -9,7 +9,12 @@ from pathlib import Path
 
 import pytest
 
-GUIDE = Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md"
+DOCS = Path(__file__).parents[1] / "docs"
+COUNTS = {
+    "adding-a-mechanism": {"python": 7, "run": 5, "error": 4},
+    "adding-a-lemma": {"python": 1, "run": 1, "error": 1},
+}
+"""How many snippets of each kind a guide has, so that none is overlooked."""
 BLOCK = re.compile(r"^```(\w+) ?([\w.]*)\n(.*?)^```", re.M | re.S)
 
 
@@ -28,12 +33,15 @@ def run(*command: str, folder: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_every_snippet(tmp_path: Path) -> None:
-    """Plain Python adds to jib.py; ``run`` and ``error`` are programs of their own."""
-    script, failed = tmp_path / "jib.py", ""
+@pytest.mark.parametrize("guide", COUNTS)
+def test_every_snippet(tmp_path: Path, guide: str) -> None:
+    """Plain Python adds to a script; ``run`` and ``error`` are programs of their own."""
+    failed = ""
     counts: dict[str, int] = {}
-    for kind, name, text in BLOCK.findall(GUIDE.read_text("utf-8")):
-        counts[f"{kind} {name}"] = counts.get(f"{kind} {name}", 0) + 1
+    for kind, name, text in BLOCK.findall((DOCS / f"{guide}.md").read_text("utf-8")):
+        if kind == "python":
+            way = name if name in ("run", "error") else kind
+            counts[way] = counts.get(way, 0) + 1
         if kind in ("csv", "toml"):
             (tmp_path / name).write_text(text, "utf-8")
         elif kind == "sh":
@@ -52,6 +60,7 @@ def test_every_snippet(tmp_path: Path) -> None:
             assert done.returncode != 0, text
             failed = done.stderr
         elif kind == "python":
+            script = tmp_path / (name or "jib.py")
             script.write_text(
                 (script.read_text("utf-8") if script.exists() else "") + text, "utf-8"
             )
@@ -59,8 +68,9 @@ def test_every_snippet(tmp_path: Path) -> None:
             assert text.strip() in failed
         else:
             pytest.fail(f"a snippet of unknown kind: {kind} {name}")
-    assert counts["python "] == 7 and counts["python run"] == 5 and counts["python error"] == 4
-    report = (tmp_path / "printed" / "jib-crosscheck.md").read_text("utf-8")
-    assert "Nothing exceeds its tolerance." in report
-    assert (tmp_path / "printed" / "c" / "lift.c").exists()
-    assert shutil.which("cc") is None or "| c |" in report
+    assert counts == COUNTS[guide]
+    if guide == "adding-a-mechanism":
+        report = (tmp_path / "printed" / "jib-crosscheck.md").read_text("utf-8")
+        assert "Nothing exceeds its tolerance." in report
+        assert (tmp_path / "printed" / "c" / "lift.c").exists()
+        assert shutil.which("cc") is None or "| c |" in report

@@ -3,6 +3,7 @@
 import importlib
 from pathlib import Path
 
+import libraries
 import numpy as np
 import pytest
 
@@ -40,9 +41,12 @@ def derivation(robot: str) -> Derivation:
     return importlib.import_module(f"closedform.derivations.{robot}").d
 
 
-def backend(name: str, robot: str, scratch: Path) -> Backend:
+def backend(name: str, robot: str, factory: pytest.TempPathFactory) -> Backend:
     if name == "c float":
-        library = CLibrary(derivation(robot), GENERATED / "c", scratch, single=True)
+        folder, built = factory.mktemp(robot), None
+        if libraries.compiles() and libraries.runs():
+            built, _ = libraries.library(factory, robot, single=True)
+        library = CLibrary(derivation(robot), GENERATED / "c", folder, single=True, built=built)
         return float_backend(library.function)
     return module_backend(name, importlib.import_module(f"closedform.generated.{name}.{robot}"))
 
@@ -50,9 +54,9 @@ def backend(name: str, robot: str, scratch: Path) -> Backend:
 @pytest.mark.parametrize("name", ["numpy", "c", "c float"])  # in turn: they share the exact values
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_against_the_symbolic_source(
-    robot: str, name: str, tmp_path: Path, findings: list[Finding]
+    robot: str, name: str, tmp_path_factory: pytest.TempPathFactory, findings: list[Finding]
 ) -> None:
-    found = crosscheck(derivation(robot), backend(name, robot, tmp_path))
+    found = crosscheck(derivation(robot), backend(name, robot, tmp_path_factory))
     findings += found
     assert not [failure for f in found for failure in f.failures]
     assert all(f.compared for f in found)

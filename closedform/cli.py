@@ -17,8 +17,11 @@ from pathlib import Path
 from closedform import __version__, console, pipeline, versions
 from closedform.console import Progress
 from closedform.disk import locked
+from closedform.workers import WorkerError
 
 DIFF_LINES = 20
+PATIENCE = 120.0
+"""Seconds to wait for another process that writes to the generated package, which takes one."""
 NAMED = 4
 """Files that are named where many have changed."""
 PRETTY = "─│⎡⎣√θ₁"
@@ -42,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         command(options)
     except CommandError as error:
         return _complain(str(error), error.code)
-    except (pipeline.DerivationError, console.StreamError) as error:
+    except (pipeline.DerivationError, console.StreamError, WorkerError) as error:
         return _complain(str(error))
     except BrokenPipeError:
         return 1
@@ -153,7 +156,7 @@ def show_command(options: argparse.Namespace) -> None:
     from closedform.emit.show import show
 
     with Progress() as progress:
-        progress(source.name, "derivation")
+        progress(source.name, "deriving")
         derivation = pipeline.load(source)
         kept = pipeline.default_store().get(source)
         pretty = console.has(PRETTY)
@@ -222,7 +225,7 @@ def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequenc
 
     with Progress() as progress:
         for source in chosen:
-            progress(source.name, "cross-check")
+            progress(source.name, "cross-checking")
             try:
                 text, failures = report(pipeline.load(source), root, backends)
             except CompileError as error:
@@ -366,7 +369,9 @@ def _write(root: Path, printed: pipeline.Files) -> list[Path]:
 def _alone() -> contextlib.AbstractContextManager[None]:
     """No other process changes the generated package."""
     root = pipeline.checkout()
-    return locked(root / "build" / "generated.lock") if root else contextlib.nullcontext()
+    if root is None:
+        return contextlib.nullcontext()
+    return locked(root / "build" / "generated.lock", patience=PATIENCE)
 
 
 def _differences(root: Path, printed: pipeline.Files) -> Iterable[str]:

@@ -1,13 +1,11 @@
 """The command line, from listing to an edited derivation, and the examples of the README."""
 
-import io
 import os
 import re
 import shlex
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -15,7 +13,6 @@ from derivations_for_tests import SLIDER
 
 from closedform import pipeline
 from closedform.cli import main
-from closedform.console import Progress
 
 README = Path(__file__).parents[1] / "README.md"
 
@@ -342,18 +339,6 @@ def test_make_decides_how_many_processes(
     assert pipeline.default_jobs() == jobs
     monkeypatch.delenv("MAKELEVEL")
     assert pipeline.default_jobs() == os.cpu_count()
-
-
-def test_progress_is_shown_only_when_it_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    for patience, shown in ((60.0, False), (0.0, True)):
-        stderr = io.StringIO()
-        monkeypatch.setattr(sys, "stderr", stderr)
-        monkeypatch.setattr("closedform.console.PATIENCE", patience)
-        with Progress() as progress:
-            progress("planar_2r", "inverse: ik")
-            time.sleep(0.5)
-        assert ("planar_2r: inverse: ik" in stderr.getvalue()) == shown
-        assert stderr.getvalue().count("\n") == int(shown)
 
 
 def blocks(language: str) -> list[str]:

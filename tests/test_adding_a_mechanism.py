@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
+
 GUIDE = Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md"
 BLOCK = re.compile(r"^```(\w+) ?([\w.]*)\n(.*?)^```", re.M | re.S)
 

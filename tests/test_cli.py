@@ -23,6 +23,8 @@ d.claim("table", "4 edges", Enumeration(4, lambda: {}[3], "edges"))
 """
 WRONG_SIGN = """
 from closedform.claims import Identity
+
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
 d.claim("eq. (1)", "x = a - q_1", Identity(a - q1, a + q1))
 """
 

@@ -28,6 +28,8 @@ from closedform.names import check_symbol
 from closedform.prove import ClaimResult, Proof
 from closedform.report import _page
 
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
+
 Strings = Callable[[str], str]
 
 

@@ -15,7 +15,7 @@ from closedform import pipeline
 from closedform.cli import main
 
 README = Path(__file__).parents[1] / "README.md"
-
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 CLAIM = """
 from closedform.claims import Enumeration
@@ -23,8 +23,6 @@ d.claim("table", "4 edges", Enumeration(4, lambda: {}[3], "edges"))
 """
 WRONG_SIGN = """
 from closedform.claims import Identity
-
-pytestmark = pytest.mark.usefixtures("compiled_quickly")
 d.claim("eq. (1)", "x = a - q_1", Identity(a - q1, a + q1))
 """
 

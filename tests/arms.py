@@ -35,6 +35,21 @@ def differences(f, q: np.ndarray, h: float = 1e-6) -> list[np.ndarray]:
     return [(f(q + s) - f(q - s)) / (2 * h) for s in h * np.eye(q.shape[-1])]
 
 
+def newton(pose, target: np.ndarray, q: np.ndarray, steps: int = 60) -> np.ndarray:
+    """Where Newton's method finds the target, from starts q, with a Jacobian by differences."""
+    q, moving = q.copy(), np.arange(len(q))
+    for _ in range(steps):
+        at = q[moving]
+        error = (pose(at) - target)[:, :3].reshape(-1, 12)
+        missed = np.abs(error).max(axis=1) > 1e-14
+        at, error, moving = at[missed], error[missed], moving[missed]
+        J = np.stack([r[:, :3].reshape(-1, 12) for r in differences(pose, at)], -1)
+        step = (np.linalg.pinv(J) @ error[..., None])[..., 0]
+        size = np.linalg.norm(step, axis=-1, keepdims=True)
+        q[moving] = at - step * np.minimum(1, 0.7 / np.maximum(size, 1e-300))
+    return q[np.abs(pose(q) - target).max(axis=(-1, -2)) < 1e-10]
+
+
 def twists(matrices: list[np.ndarray]) -> np.ndarray:
     """Columns (v; omega) of matrices of se(3)."""
     rows = [(0, 3), (1, 3), (2, 3), (2, 1), (0, 2), (1, 0)]

@@ -1,12 +1,14 @@
 """What tests share: repeatable examples, the toy extension, the table of the worst errors found."""
 
+import os
 import pickle
+import shutil
 from typing import Any
 
 import pytest
 from extension_toy.build import compile_toy, loaded
 from hypothesis import settings
-from sharing import shared
+from sharing import quick_compiler, shared
 
 from closedform.check.crosscheck import Finding, table
 
@@ -27,6 +29,15 @@ def findings(pytestconfig: pytest.Config) -> list[Finding]:
 def native(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The toy extension, for the tests of the runtime."""
     return loaded(shared(tmp_path_factory, "toy", compile_toy))
+
+
+@pytest.fixture
+def compiled_quickly(
+    tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is printed for a test is cross-checked with little optimisation."""
+    if os.name == "posix" and shutil.which("cc"):
+        monkeypatch.setenv("CC", quick_compiler(tmp_path_factory.mktemp("cc")))
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from closedform.check.clibrary import compiler
 from closedform.pipeline.disk import locked
 
 
@@ -23,3 +24,11 @@ def shared(
             make(folder)
             (base / f"{name}.made").touch()
     return folder
+
+
+def quick_compiler(folder: Path, level: str = "-O1") -> str:
+    """The C compiler as a program that optimises little, for code whose speed is not looked at."""
+    program = folder / "cc-quick"
+    program.write_text(f'#!/bin/sh\nexec {compiler()} "$@" {level}\n', "utf-8")
+    program.chmod(0o755)
+    return str(program)

@@ -1,65 +1,28 @@
 """Every batch function of the generated C becomes vector code, and agrees with its single call."""
 
 import ctypes
-import os
-import platform
 import re
-import shutil
-import subprocess
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import pytest
+from libraries import ROBOTS, C, compiles, library, runs
 from sizes import lengths, powers, scaled
 
-C = Path(__file__).resolve().parent.parent / "generated" / "c"
-ROBOTS = sorted(path.stem for path in C.glob("*.c") if path.stem != "extension")
-# Without folding of identical functions: pose and fk may be one, and gcc would tell of it once.
-FLAGS = "-std=c99 -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast -march=x86-64-v3"
-FLAGS += " -fno-ipa-icf"
-TYPES = {np.float64: [], np.float32: ["-DCLOSEDFORM_FLOAT"]}
+TYPES = (np.float64, np.float32)
 POSTURES = 300  # more than a block, and a remainder that is no whole vector
-CPU = Path("/proc/cpuinfo")
-
-
-def version_of_gcc() -> int:
-    told = subprocess.run(["gcc", "--version"], capture_output=True, text=True).stdout
-    number = re.search(r"^gcc.* (\d+)\.\d+\.\d+", told)
-    return int(number[1]) if number else 0
 
 
 pytestmark = [
-    pytest.mark.skipif(
-        platform.machine() != "x86_64" or not shutil.which("gcc") or version_of_gcc() < 12,
-        reason="no gcc 12 for x86-64",
-    ),
+    pytest.mark.skipif(not compiles(), reason="no gcc 12 for x86-64"),
     pytest.mark.parametrize("robot", ROBOTS),
     pytest.mark.parametrize("real", TYPES),
 ]
 
 
-def compiled(robot: str, real: type, target: Path) -> tuple[Path, str]:
-    flags = [*FLAGS.split(), *TYPES[real], "-fPIC", "-shared", "-fopt-info-loop-vec-optimized"]
-    command = ["gcc", *flags, str(C / f"{robot}.c"), "-o", str(target), "-lm"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return target, done.stderr
-
-
 @pytest.fixture(scope="module")
 def build(tmp_path_factory):
-    """Every robot for each type, compiled side by side: the library, and what gcc tells of it."""
-    folder = tmp_path_factory.mktemp("vector")
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        jobs = {
-            (robot, real): pool.submit(
-                compiled, robot, real, folder / f"{robot}_{real.__name__}.so"
-            )
-            for robot in ROBOTS
-            for real in TYPES
-        }
-    return lambda robot, real: jobs[robot, real].result()
+    """The library of a robot for a type, and what gcc tells of it."""
+    return lambda robot, real: library(tmp_path_factory, robot, single=real == np.float32)
 
 
 def batch_loops(source: str) -> dict[int, str]:
@@ -112,11 +75,9 @@ def pointer(array: np.ndarray) -> ctypes.c_void_p:
     return ctypes.c_void_p(array.ctypes.data)
 
 
-@pytest.mark.skipif(
-    not CPU.exists() or " avx2 " not in CPU.read_text(), reason="a processor without AVX2"
-)
+@pytest.mark.skipif(not runs(), reason="a processor without AVX2")
 def test_batch_and_single_call_agree(robot, real, build):
-    library = ctypes.CDLL(str(build(robot, real)[0]))
+    loaded = ctypes.CDLL(str(build(robot, real)[0]))
     header = " ".join((C / f"{robot}.h").read_text().split())
     fields = len(re.findall(r"real_t \w+; /\*", header))
     params = np.linspace(3, 2, fields).astype(real)
@@ -133,9 +94,9 @@ def test_batch_and_single_call_agree(robot, real, build):
         batch = planes_of(arguments, real, known)
         single = [np.ascontiguousarray(planes.T) for planes in batch]
         strided = [x for a in batch for x in (pointer(a), ctypes.c_size_t(POSTURES))]
-        library[f"{name}_batch"](ctypes.c_size_t(POSTURES), pointer(params), *strided)
+        loaded[f"{name}_batch"](ctypes.c_size_t(POSTURES), pointer(params), *strided)
         for rows in zip(*single, strict=True):
-            library[name](pointer(params), *map(pointer, rows))
+            loaded[name](pointer(params), *map(pointer, rows))
         inverse = name.endswith(("_ik", "_ik_pose"))
         for one, many in zip(single, batch, strict=True):
             if many.dtype == np.uint8 or not (inverse or long_chain):
@@ -152,13 +113,11 @@ def test_batch_and_single_call_agree(robot, real, build):
             assert np.mean((batch[-1] == 0).any(axis=0)) > 0.5, name
 
 
-@pytest.mark.skipif(
-    not CPU.exists() or " avx2 " not in CPU.read_text(), reason="a processor without AVX2"
-)
+@pytest.mark.skipif(not runs(), reason="a processor without AVX2")
 def test_a_mechanism_of_any_size(robot, real, build):
     """Of one that is much larger or smaller, a call gives the same to the last bit; a batch gives
     what a call does."""
-    library = ctypes.CDLL(str(build(robot, real)[0]))
+    loaded = ctypes.CDLL(str(build(robot, real)[0]))
     header = " ".join((C / f"{robot}.h").read_text().split())
     fields = len(re.findall(r"real_t \w+; /\*", header))
     dimensions = np.linspace(3, 2, fields).astype(real)
@@ -180,11 +139,11 @@ def test_a_mechanism_of_any_size(robot, real, build):
             ]
             if batch:
                 strided = [x for a in arrays for x in (pointer(a), ctypes.c_size_t(n))]  # noqa: B023
-                library[f"{name}_batch"](ctypes.c_size_t(n), pointer(params), *strided)  # noqa: B023
+                loaded[f"{name}_batch"](ctypes.c_size_t(n), pointer(params), *strided)  # noqa: B023
                 return arrays[n_in:]  # noqa: B023
             rows = [np.ascontiguousarray(a.T) for a in arrays]
             for row in zip(*rows, strict=True):
-                library[name](pointer(params), *map(pointer, row))  # noqa: B023
+                loaded[name](pointer(params), *map(pointer, row))  # noqa: B023
             return [r.T for r in rows[n_in:]]  # noqa: B023
 
         single, many = evaluated(0), evaluated(0, batch=True)

@@ -1,25 +1,22 @@
 """The command line, from listing to an edited derivation, and the examples of the README."""
 
-import io
 import os
 import re
 import shlex
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from closedform.pipeline.run.imports import package, sources_of
 from derivations_for_tests import SLIDER
 
 from closedform.cli.commands import main
-from closedform.cli.console import Progress
 from closedform.pipeline import run as pipeline
-from closedform.pipeline.imports import package, sources_of
 
 README = Path(__file__).parents[1] / "README.md"
-
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 CLAIM = """
 from closedform.proof.checks import Enumeration
@@ -349,18 +346,6 @@ def test_make_decides_how_many_processes(
     assert pipeline.default_jobs() == jobs
     monkeypatch.delenv("MAKELEVEL")
     assert pipeline.default_jobs() == os.cpu_count()
-
-
-def test_progress_is_shown_only_when_it_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    for patience, shown in ((60.0, False), (0.0, True)):
-        stderr = io.StringIO()
-        monkeypatch.setattr(sys, "stderr", stderr)
-        monkeypatch.setattr("closedform.cli.console.PATIENCE", patience)
-        with Progress() as progress:
-            progress("planar_2r", "inverse: ik")
-            time.sleep(0.5)
-        assert ("planar_2r: inverse: ik" in stderr.getvalue()) == shown
-        assert stderr.getvalue().count("\n") == int(shown)
 
 
 def blocks(language: str) -> list[str]:

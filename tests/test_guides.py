@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
+
 DOCS = Path(__file__).parents[1] / "docs"
 COUNTS = {
     "adding-a-mechanism": {"python": 7, "run": 5, "error": 4},

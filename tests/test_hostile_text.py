@@ -27,6 +27,8 @@ from closedform.model.names import check_symbol
 from closedform.proof.checks import Undecidable
 from closedform.proof.prove import ClaimResult, Proof
 
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
+
 Strings = Callable[[str], str]
 HEADER = Path(__file__).parents[1] / "closedform" / "runtime" / "c" / "closedform.h"
 

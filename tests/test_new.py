@@ -9,6 +9,8 @@ import pytest
 
 from closedform.cli.commands import main
 
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
+
 ELBOW = """\
 # h = 0.4 m: height of the shoulder
 # L1 = 0.5 m: upper arm

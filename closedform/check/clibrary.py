@@ -33,7 +33,10 @@ class CompileError(FailedError):
 
 
 class CLibrary:
-    """The C of one robot as a shared library, called through its ``_batch`` functions."""
+    """The C of one robot as a shared library, called through its ``_batch`` functions.
+
+    It is compiled into ``scratch``, unless there is one that was ``built`` before.
+    """
 
     def __init__(
         self,
@@ -42,22 +45,14 @@ class CLibrary:
         scratch: Path,
         *,
         single: bool = False,
-        flags: Sequence[str] = (),
+        built: Path | None = None,
     ):
         self.dtype = np.float32 if single else np.float64
         self._real = ctypes.c_float if single else ctypes.c_double
         self._name = derivation.name
         self._programs = {f.name: lower(f, derivation) for f in derivation.functions}
         self._fields = len(derivation.parameters)
-        library = scratch / f"{derivation.name}_{'float' if single else 'double'}.so"
-        define = ["-DCLOSEDFORM_FLOAT"] if single else []
-        command = [compiler(), *FLAGS, *define, *flags, f"-I{sources}"]
-        source = sources / f"{derivation.name}.c"
-        command += [str(source), "-o", str(library), "-lm"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode:
-            first = next((e for e in done.stderr.splitlines() if "error" in e), done.stderr[:200])
-            raise CompileError(f"{command[0]} does not compile {source}: {first}")
+        library = built or _compiled(derivation.name, sources, scratch, single)
         self._library = ctypes.CDLL(str(library))
 
     def function(self, name: str) -> Callable[..., Any]:
@@ -92,3 +87,16 @@ class CLibrary:
     def _planes(self, value: Any, size: int) -> np.ndarray[Any, Any]:
         array = np.asarray(value, self.dtype)
         return np.ascontiguousarray(array.reshape(-1, size).T)
+
+
+def _compiled(name: str, sources: Path, scratch: Path, single: bool) -> Path:
+    library = scratch / f"{name}_{'float' if single else 'double'}.so"
+    define = ["-DCLOSEDFORM_FLOAT"] if single else []
+    command = [compiler(), *FLAGS, *define, f"-I{sources}"]
+    source = sources / f"{name}.c"
+    command += [str(source), "-o", str(library), "-lm"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        first = next((e for e in done.stderr.splitlines() if "error" in e), done.stderr[:200])
+        raise CompileError(f"{command[0]} does not compile {source}: {first}")
+    return library

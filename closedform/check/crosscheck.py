@@ -205,8 +205,8 @@ def _ulp_bounds(
         size = np.maximum(np.maximum(np.minimum(scales, most[:, None]), sizes), tiny)
         unit = np.ldexp(backend.eps, np.frexp(size)[1] - 1)
         bounds = (abs(computed - middle) + radius) / np.maximum(unit, 5e-324)
-    bounds[~np.isfinite(bounds)] = np.inf
-    return np.where(np.isfinite(scales), bounds, 0.0).astype(float)
+        bounds[~np.isfinite(bounds)] = np.inf
+        return np.where(np.isfinite(scales), bounds, 0.0).astype(float)
 
 
 def check_boolean(derivation: Derivation, function: Function, backend: Backend) -> Finding:

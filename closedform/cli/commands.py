@@ -20,8 +20,11 @@ from closedform.cli.console import Progress
 from closedform.pipeline import run as pipeline
 from closedform.pipeline import versions
 from closedform.pipeline.disk import locked
+from closedform.pipeline.workers import WorkerError
 
 DIFF_LINES = 20
+PATIENCE = 120.0
+"""Seconds to wait for another process that writes to the generated package, which takes one."""
 NAMED = 4
 """At most this many changed files are named."""
 PRETTY = "─│⎡⎣√θ₁"
@@ -45,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         command(options)
     except CommandError as error:
         return _complain(str(error), error.code)
-    except (pipeline.DerivationError, console.StreamError) as error:
+    except (pipeline.DerivationError, console.StreamError, WorkerError) as error:
         return _complain(str(error))
     except BrokenPipeError:
         return 1
@@ -156,7 +159,7 @@ def show_command(options: argparse.Namespace) -> None:
     from closedform.emit.show import show
 
     with Progress() as progress:
-        progress(source.name, "derivation")
+        progress(source.name, "deriving")
         derivation = pipeline.load(source)
         kept = pipeline.default_store().get(source)
         pretty = console.has(PRETTY)
@@ -226,7 +229,7 @@ def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequenc
 
     with Progress() as progress:
         for source in chosen:
-            progress(source.name, "cross-check")
+            progress(source.name, "cross-checking")
             try:
                 text, failures = report(pipeline.load(source), root, backends)
             except FailedError as error:
@@ -371,7 +374,9 @@ def _write(root: Path, printed: pipeline.Files) -> list[Path]:
 def _alone() -> contextlib.AbstractContextManager[None]:
     """Keep other processes from changing the generated package."""
     root = pipeline.checkout()
-    return locked(root / "build" / "generated.lock") if root else contextlib.nullcontext()
+    if root is None:
+        return contextlib.nullcontext()
+    return locked(root / "build" / "generated.lock", patience=PATIENCE)
 
 
 def _differences(root: Path, printed: pipeline.Files) -> Iterable[str]:

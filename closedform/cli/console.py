@@ -17,8 +17,8 @@ from typing import TextIO
 
 PATIENCE = 1.0
 """Seconds of silence before progress is shown."""
-INTERVAL = 5.0
-"""Seconds between two lines of progress if the output is not a terminal."""
+INTERVAL = 0.2
+"""Seconds between two looks at what is going on."""
 ASCII = {"·": "*", "−": "-", "–": "-", "—": "-", "‘": "'", "’": "'", "“": '"', "”": '"'}
 ASCII |= {
     "≤": "<=",
@@ -116,13 +116,16 @@ def _plain(character: str) -> str:
 
 
 class Progress:
-    """Shows on stderr what is going on, once it takes longer than :data:`PATIENCE`."""
+    """Says what is going on once it takes long, on one line of a terminal that is overwritten.
+
+    It says nothing unless both stdout and stderr are terminals.
+    """
 
     def __init__(self) -> None:
         self.start = time.monotonic()
         self.current: dict[str, str] = {}
-        self.terminal = sys.stderr.isatty()
-        self.shown = 0.0
+        self.terminal = all(s is not None and s.isatty() for s in (sys.stdout, sys.stderr))
+        self.shown = False
         self.finished = threading.Event()
         self.thread = threading.Thread(target=self._run, daemon=True)
 
@@ -135,7 +138,8 @@ class Progress:
             self.current.pop(name, None)
 
     def __enter__(self) -> Progress:
-        self.thread.start()
+        if self.terminal:
+            self.thread.start()
         return self
 
     def __exit__(
@@ -145,23 +149,19 @@ class Progress:
         trace: TracebackType | None,
     ) -> None:
         self.finished.set()
-        self.thread.join()
-        if self.terminal and self.shown:
+        if self.terminal:
+            self.thread.join()
+        if self.shown:
             _show("\r\x1b[K")
 
     def _run(self) -> None:
-        while not self.finished.wait(0.2):
+        while not self.finished.wait(INTERVAL):
             passed = time.monotonic() - self.start
-            due = self.terminal or not self.shown or passed - self.shown >= INTERVAL
-            if passed >= PATIENCE and due and self.current:
-                self.shown = passed
+            if passed >= PATIENCE and self.current:
+                self.shown = True
                 self._line(passed)
 
     def _line(self, passed: float) -> None:
         doing = [f"{n}: {what}" if n else what for n, what in sorted(self.current.copy().items())]
         line = f"[{passed:4.0f} s] {' | '.join(doing)}"
-        if self.terminal:
-            line = line[: shutil.get_terminal_size().columns - 1]
-            _show(f"\r\x1b[K{line}")
-        else:
-            _show(f"{line}\n")
+        _show(f"\r\x1b[K{line[: shutil.get_terminal_size().columns - 1]}")

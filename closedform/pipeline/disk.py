@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import IO
 
 
 def replace(target: Path, content: bytes) -> None:
@@ -23,12 +26,36 @@ def replace(target: Path, content: bytes) -> None:
 
 
 @contextlib.contextmanager
-def locked(path: Path) -> Iterator[None]:
-    """Hold a lock, after other processes release it; do nothing if the system has no locks."""
+def locked(path: Path, patience: float = math.inf) -> Iterator[None]:
+    """Hold a lock, after other processes release it; do nothing if the system has no locks.
+
+    Raises ``TimeoutError`` if that takes more seconds than ``patience``.
+    """
     with contextlib.ExitStack() as stack:
-        with contextlib.suppress(ImportError, OSError):
+        try:
             import fcntl
 
             path.parent.mkdir(parents=True, exist_ok=True)
-            fcntl.flock(stack.enter_context(path.open("w")), fcntl.LOCK_EX)
+            file = stack.enter_context(path.open("w"))
+        except (ImportError, OSError):
+            yield
+            return
+        end = time.monotonic() + patience
+        while not _taken(file, fcntl.LOCK_EX | fcntl.LOCK_NB):
+            if time.monotonic() > end:
+                raise TimeoutError(f"another process has held {path} for {patience:.0f} s")
+            time.sleep(0.05)
         yield
+
+
+def _taken(file: IO[str], how: int) -> bool:
+    """Whether there is the lock now, or cannot be one."""
+    import fcntl
+
+    try:
+        fcntl.flock(file, how)
+    except BlockingIOError:
+        return False
+    except OSError:
+        pass
+    return True

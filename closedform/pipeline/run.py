@@ -11,16 +11,12 @@ import hashlib
 import importlib
 import importlib.util
 import json
-import multiprocessing
 import os
 import re
-import signal
 import sys
-import threading
 import time
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
@@ -31,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 from closedform.emit.backends import names as backend_names
 from closedform.pipeline.disk import replace
 from closedform.pipeline.imports import package, sources_of
+from closedform.pipeline.workers import each
 
 if TYPE_CHECKING:
     from closedform.emit.pages import Share
@@ -232,7 +229,7 @@ def _proved(derivation: Derivation, report: Report) -> Proof:
     from closedform.proof.prove import prove
 
     try:
-        return prove(derivation, partial(report, derivation.name))
+        return prove(derivation, lambda what: report(derivation.name, f"proving {what}"))
     except (ValueError, TypeError, ArithmeticError, NotImplementedError) as error:
         message = str(error).removeprefix(derivation.name).lstrip(",.: ")
         raise DerivationError(derivation.name, f"not proved: {message}") from error
@@ -306,7 +303,7 @@ def print_robot(
     """Prove one robot, unless its stored proof is still valid, and print its files."""
     from closedform.emit.pages import pages
 
-    report(source.name, "derivation")
+    report(source.name, "deriving")
     start = time.perf_counter()
     mark = digest(source)
     derivation = load(source)
@@ -314,10 +311,11 @@ def print_robot(
     if kept:
         proof, seconds = kept
     else:
+        report(source.name, "proving")
         proof = _proved(derivation, report)
         seconds = time.perf_counter() - start
         store.put(source, mark, proof, seconds)
-    report(source.name, "printing")
+    report(source.name, "generating")
     try:
         printed = pages(derivation, proof, backends)
     except (ValueError, TypeError, KeyError, NotImplementedError) as error:
@@ -348,7 +346,7 @@ def run(
     robots, failures = _each(job, everyone, min(jobs, len(everyone)), report)
     shared: Files = {}
     if not failures:
-        report("", "shared files")
+        report("", "generating shared files")
         shares = {robot.name: robot.share for robot in robots}
         shared = shared_files([shares[s.name] for s in together], backends)
     names = {source.name for source in chosen}
@@ -365,7 +363,11 @@ def _each(
 ) -> tuple[list[Printed], list[DerivationError]]:
     outcomes: dict[str, Printed | DerivationError] = {}
     if jobs > 1:
-        outcomes = _in_processes(job, chosen, jobs, report)
+        for source, outcome in each(job, sorted(chosen, key=_length, reverse=True), jobs, report):
+            if not isinstance(outcome, Printed | DerivationError):
+                raise outcome
+            outcomes[source.name] = outcome
+            report(source.name, "")
     else:
         for source in chosen:
             try:
@@ -380,74 +382,9 @@ def _each(
     )
 
 
-def _in_processes(
-    job: Callable[..., Printed], chosen: Sequence[Source], jobs: int, report: Report
-) -> dict[str, Printed | DerivationError]:
-    outcomes: dict[str, Printed | DerivationError] = {}
-    context = multiprocessing.get_context("spawn")
-    queue = context.SimpleQueue()
-    with ProcessPoolExecutor(jobs, context, _prepare, (queue,)) as pool, _ending_at_once():
-        with _uninterrupted():
-            futures: dict[Future[Printed], str] = {
-                pool.submit(_reporting, job, source): source.name for source in chosen
-            }
-        pending = set(futures)
-        while pending:
-            done, pending = wait(pending, 0.1, FIRST_COMPLETED)
-            while not queue.empty():
-                report(*queue.get())
-            for future in done:
-                try:
-                    outcomes[futures[future]] = future.result()
-                except DerivationError as error:
-                    outcomes[futures[future]] = error
-                report(futures[future], "")
-    return outcomes
-
-
-@contextlib.contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Processes that are started here ignore Ctrl-C, because this process ends them itself."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextlib.contextmanager
-def _ending_at_once() -> Iterator[None]:
-    """End the proofs that are still running if an exception interrupts the wait for them."""
-    try:
-        yield
-    except BaseException:
-        for process in multiprocessing.active_children():
-            process.terminate()
-        raise
-
-
-_queue: Any = None
-
-
-def _prepare(queue: Any) -> None:
-    """Make a process of the pool end with the one that started it, however that ends."""
-    global _queue
-    _queue = queue
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
-
-
-def _end_with(parent: Any) -> None:
-    parent.join()
-    os._exit(1)
-
-
-def _reporting(job: Callable[..., Printed], source: Source) -> Printed:
-    return job(source, report=lambda name, what: _queue.put((name, what)))
+def _length(source: Source) -> int:
+    """A guess at how long a proof takes; the longest comes first."""
+    return sum(path.stat().st_size for path in sources_of([source.path]))
 
 
 def default_jobs() -> int:

@@ -1,4 +1,4 @@
-"""Every batch function of the generated C becomes vector code, and agrees with its single call."""
+"""Every batch function of the generated C is vectorised and agrees with the single call."""
 
 import ctypes
 import os
@@ -15,11 +15,11 @@ from sizes import lengths, powers, scaled
 
 C = Path(__file__).resolve().parent.parent / "generated" / "c"
 ROBOTS = sorted(path.stem for path in C.glob("*.c") if path.stem != "extension")
-# Without folding of identical functions: pose and fk may be one, and gcc would tell of it once.
+# Without folding: if pose and fk were one function, gcc would remark on it only once.
 FLAGS = "-std=c99 -O3 -fno-math-errno -fno-trapping-math -ffp-contract=fast -march=x86-64-v3"
 FLAGS += " -fno-ipa-icf"
 TYPES = {np.float64: [], np.float32: ["-DCLOSEDFORM_FLOAT"]}
-POSTURES = 300  # more than a block, and a remainder that is no whole vector
+POSTURES = 300  # more than a block, with a remainder that does not fill a vector
 CPU = Path("/proc/cpuinfo")
 
 
@@ -49,7 +49,7 @@ def compiled(robot: str, real: type, target: Path) -> tuple[Path, str]:
 
 @pytest.fixture(scope="module")
 def build(tmp_path_factory):
-    """Every robot for each type, compiled side by side: the library, and what gcc tells of it."""
+    """Every robot for each type, compiled in parallel: the library and gcc's remarks on it."""
     folder = tmp_path_factory.mktemp("vector")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         jobs = {
@@ -98,7 +98,7 @@ def planes_of(arguments: str, real: type, known: dict[str, np.ndarray]) -> list[
         if const:
             image = known.get(name, known.get("p") if name == "x" else None)
             planes[:] = random.uniform(-3, 3, planes.shape)
-            if image is not None:  # but where a loop does not close there is none
+            if image is not None:  # there is none if the loop does not close
                 image = image[: len(planes)]
                 planes[:] = np.where(np.isnan(image), planes, image)
             planes[:, ::50] = 0

@@ -2103,7 +2103,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2136,7 +2136,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2168,7 +2168,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_arm_tips_in, 1, h6ar_arm_tips_out,
@@ -2196,7 +2196,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_invariant_point_in, 1, h6ar_invariant_point_out,
@@ -2225,7 +2225,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2256,7 +2256,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2289,7 +2289,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2317,17 +2317,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 4, 6)\n"
       "    theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 4)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2372,7 +2372,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       2, h6ar_wrist_length_in, 1, h6ar_wrist_length_out,
@@ -2403,7 +2403,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       3, h6ar_minimum_link_length_in, 1, h6ar_minimum_link_length_out,
@@ -2432,7 +2432,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       2, h6ar_largest_yaw_in, 1, h6ar_largest_yaw_out,
@@ -2459,7 +2459,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_largest_angle_in, 1, h6ar_largest_angle_out,
@@ -2488,7 +2488,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2524,7 +2524,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2559,7 +2559,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_arm_tips_in, 1, h6ar_loop_closed_arm_tips_out,
@@ -2587,7 +2587,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_invariant_point_in, 1, h6ar_loop_closed_invariant_point_out,
@@ -2616,7 +2616,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2650,7 +2650,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2687,7 +2687,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2719,17 +2719,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 8, 6)\n"
       "    theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2776,7 +2776,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       2, h6ar_loop_closed_wrist_length_in, 1, h6ar_loop_closed_wrist_length_out,
@@ -2808,7 +2808,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       3, h6ar_loop_closed_minimum_link_length_in, 1, h6ar_loop_closed_minimum_link_length_out,
@@ -2837,7 +2837,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       2, h6ar_loop_closed_largest_yaw_in, 1, h6ar_loop_closed_largest_yaw_out,
@@ -2864,7 +2864,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_largest_angle_in, 1, h6ar_loop_closed_largest_angle_out,
@@ -2888,17 +2888,17 @@ const cf_function cf_functions[] = {
       "p : ndarray of float64, shape (..., 2, 3)\n"
       "    x, y, z in the unit of the parameters.\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `p` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `p` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `p` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2933,7 +2933,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2966,7 +2966,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -2998,7 +2998,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3031,7 +3031,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3063,7 +3063,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3098,7 +3098,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3129,7 +3129,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3160,17 +3160,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 8, 3)\n"
       "    theta1, theta2, theta3 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3213,7 +3213,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_workspace_contains_in, 1, hybrid_five_bar_workspace_contains_out,
@@ -3239,7 +3239,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3272,7 +3272,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_joint4_in, 1, irb260_joint4_out,
@@ -3299,7 +3299,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3329,7 +3329,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3362,7 +3362,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3395,7 +3395,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_pose_in, 1, irb260_pose_out,
@@ -3424,7 +3424,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_jacobian_in, 1, irb260_jacobian_out,
@@ -3453,7 +3453,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_jacobian_space_in, 1, irb260_jacobian_space_out,
@@ -3480,7 +3480,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_jacobian_body_in, 1, irb260_jacobian_body_out,
@@ -3507,7 +3507,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_jacobian_motors_in, 1, irb260_jacobian_motors_out,
@@ -3533,7 +3533,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_determinant_in, 1, irb260_determinant_out,
@@ -3560,7 +3560,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_singularities_in, 1, irb260_singularities_out,
@@ -3590,7 +3590,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       2, irb260_point_velocity_in, 1, irb260_point_velocity_out,
@@ -3614,17 +3614,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 4, 4)\n"
       "    theta1, theta2, theta3, theta5 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 4)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3661,7 +3661,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3691,7 +3691,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_workspace_margin_in, 1, irb260_workspace_margin_out,
@@ -3717,7 +3717,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3750,7 +3750,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_fk_in, 1, planar_2r_fk_out,
@@ -3779,7 +3779,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_pose_in, 1, planar_2r_pose_out,
@@ -3808,7 +3808,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_orientation_in, 1, planar_2r_orientation_out,
@@ -3837,7 +3837,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_jacobian_in, 1, planar_2r_jacobian_out,
@@ -3863,7 +3863,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_determinant_in, 1, planar_2r_determinant_out,
@@ -3889,7 +3889,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_manipulability_in, 1, planar_2r_manipulability_out,
@@ -3916,7 +3916,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_singularities_in, 1, planar_2r_singularities_out,
@@ -3940,17 +3940,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 2, 2)\n"
       "    theta1, theta2 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -3982,17 +3982,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 1, 2)\n"
       "    theta1, theta2 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 1)\n"
-      "    A `Status`: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none,\n"
-      "    SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the notes),\n"
-      "    and INVALID (3) where an input is not finite or impossible. `q` is NaN where the status\n"
-      "    is UNREACHABLE or INVALID.\n"
+      "    A `Status`: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no solution,\n"
+      "    SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined (see the\n"
+      "    notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN if the\n"
+      "    status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4020,7 +4020,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       0, NULL, 1, planar_2r_workspace_radii_out,
@@ -4047,7 +4047,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_fk_in, 1, puma560_fk_out,
@@ -4074,7 +4074,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_pose_in, 1, puma560_pose_out,
@@ -4101,7 +4101,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4132,7 +4132,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_jacobian_space_in, 1, puma560_jacobian_space_out,
@@ -4159,7 +4159,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_jacobian_body_in, 1, puma560_jacobian_body_out,
@@ -4185,7 +4185,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_determinant_in, 1, puma560_determinant_out,
@@ -4212,7 +4212,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_singularities_in, 1, puma560_singularities_out,
@@ -4234,17 +4234,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 8, 6)\n"
       "    theta1 to theta6 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4281,17 +4281,17 @@ const cf_function cf_functions[] = {
       "p : ndarray of float64, shape (..., 2, 2)\n"
       "    x, y in the unit of the parameters.\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `p` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `p` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `p` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4325,7 +4325,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4356,7 +4356,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4386,7 +4386,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4417,7 +4417,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4443,17 +4443,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 1, 2)\n"
       "    rho1, rho2 in the unit of the parameters.\n"
       "status : ndarray of uint8, shape (..., 1)\n"
-      "    A `Status`: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none,\n"
-      "    SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the notes),\n"
-      "    and INVALID (3) where an input is not finite or impossible. `q` is NaN where the status\n"
-      "    is UNREACHABLE or INVALID.\n"
+      "    A `Status`: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no solution,\n"
+      "    SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined (see the\n"
+      "    notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN if the\n"
+      "    status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4487,7 +4487,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_pose_in, 1, scara_pose_out,
@@ -4514,7 +4514,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4545,7 +4545,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_jacobian_in, 1, scara_jacobian_out,
@@ -4571,7 +4571,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_determinant_in, 1, scara_determinant_out,
@@ -4598,7 +4598,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_singularities_in, 1, scara_singularities_out,
@@ -4625,7 +4625,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_jacobian_space_in, 1, scara_jacobian_space_out,
@@ -4652,7 +4652,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       3, scara_values, scara_fields,
       1, scara_jacobian_body_in, 1, scara_jacobian_body_out,
@@ -4675,17 +4675,17 @@ const cf_function cf_functions[] = {
       "    theta1, theta2 in rad, in (-pi, pi]; d3 in the unit of the parameters; theta4 in rad, in\n"
       "    (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4720,7 +4720,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_fk_in, 1, spherical_wrist_fk_out,
@@ -4749,7 +4749,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_pose_in, 1, spherical_wrist_pose_out,
@@ -4776,7 +4776,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_jacobian_space_in, 1, spherical_wrist_jacobian_space_out,
@@ -4803,7 +4803,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_jacobian_body_in, 1, spherical_wrist_jacobian_body_out,
@@ -4829,7 +4829,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_determinant_in, 1, spherical_wrist_determinant_out,
@@ -4856,7 +4856,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_singularities_in, 1, spherical_wrist_singularities_out,
@@ -4880,17 +4880,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 2, 3)\n"
       "    theta4, theta5, theta6 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 2)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -4926,7 +4926,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_fk_in, 1, stanford_arm_fk_out,
@@ -4953,7 +4953,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_pose_in, 1, stanford_arm_pose_out,
@@ -4980,7 +4980,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -5011,7 +5011,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_jacobian_space_in, 1, stanford_arm_jacobian_space_out,
@@ -5038,7 +5038,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_jacobian_body_in, 1, stanford_arm_jacobian_body_out,
@@ -5064,7 +5064,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_determinant_in, 1, stanford_arm_determinant_out,
@@ -5091,7 +5091,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_singularities_in, 1, stanford_arm_singularities_out,
@@ -5114,17 +5114,17 @@ const cf_function cf_functions[] = {
       "    theta1, theta2 in rad, in (-pi, pi]; d3 in the unit of the parameters; theta4, theta5,\n"
       "    theta6 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -5162,7 +5162,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_pose_in, 1, ur_arm_pose_out,
@@ -5189,7 +5189,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_fk_in, 1, ur_arm_fk_out,
@@ -5216,7 +5216,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"
@@ -5246,7 +5246,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_determinant_in, 1, ur_arm_determinant_out,
@@ -5273,7 +5273,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_singularities_in, 1, ur_arm_singularities_out,
@@ -5300,7 +5300,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_jacobian_space_in, 1, ur_arm_jacobian_space_out,
@@ -5327,7 +5327,7 @@ const cf_function cf_functions[] = {
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_jacobian_body_in, 1, ur_arm_jacobian_body_out,
@@ -5349,17 +5349,17 @@ const cf_function cf_functions[] = {
       "q : ndarray of float64, shape (..., 8, 6)\n"
       "    theta1 to theta6 in rad, in (-pi, pi].\n"
       "status : ndarray of uint8, shape (..., 8)\n"
-      "    A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there\n"
-      "    is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the\n"
-      "    notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the\n"
-      "    status is UNREACHABLE or INVALID.\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
       "\n"
       "Raises\n"
       "------\n"
       "TypeError\n"
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
-      "    If an argument has another shape, or leading axes do not broadcast.\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       "\n"
       "Notes\n"
       "-----\n"

@@ -193,10 +193,10 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
  * q : real_t[4], shape (2, 2)
  *     theta1, theta2 in rad, in (-pi, pi].
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
- *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
- *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
- *     the status is UNREACHABLE or INVALID.
+ *     A CLOSEDFORM_ status of each branch: OK (0) if q is a solution, UNREACHABLE (1) if there
+ *     is no solution, SINGULAR (2) if q is one of infinitely many solutions or poorly
+ *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. q
+ *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
@@ -228,10 +228,10 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
  * q : real_t[2], shape (1, 2)
  *     theta1, theta2 in rad, in (-pi, pi].
  * status : uint8_t[1]
- *     A CLOSEDFORM_ status: OK (0) where q is a solution, UNREACHABLE (1) where there is none,
- *     SINGULAR (2) where q is one of infinitely many or hardly determined (see the notes), and
- *     INVALID (3) where an input is not finite or impossible. q is NaN where the status is
- *     UNREACHABLE or INVALID.
+ *     A CLOSEDFORM_ status: OK (0) if q is a solution, UNREACHABLE (1) if there is no solution,
+ *     SINGULAR (2) if q is one of infinitely many solutions or poorly determined (see the
+ *     notes), and INVALID (3) if an input is not finite or not possible. q is NaN if the status
+ *     is UNREACHABLE or INVALID.
  *
  * Notes
  * -----

@@ -1,4 +1,4 @@
-"""What tests share: repeatable examples, the toy extension, the table of the worst errors found."""
+"""Shared by the tests: repeatable examples, the toy extension, the table of the worst errors."""
 
 import os
 import pickle
@@ -41,7 +41,7 @@ def compiled_quickly(
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """With several processes (-n), each hands what it found to the first."""
+    """With several processes (-n), each passes its findings to the first."""
     output = getattr(session.config, "workeroutput", None)
     if output is not None:
         output["findings"] = pickle.dumps(session.config.stash.get(FINDINGS, [])).hex()

@@ -1,4 +1,4 @@
-"""A direct interpreter of a lowered program: a third reading beside the printers."""
+"""A direct interpreter of a lowered program, independent of the printers."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What takes long to make is made once for all processes that run the tests."""
+"""Things that take long to make are made once for all processes that run the tests."""
 
 import os
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from closedform.pipeline.disk import locked
 def shared(
     factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object] = lambda _: None
 ) -> Path:
-    """A folder of this run of pytest; the process that comes first fills it."""
+    """A folder for this run of pytest, filled by the first process that asks for it."""
     base = factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         base = base.parent

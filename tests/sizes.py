@@ -15,19 +15,19 @@ LENGTHS = {
 
 
 def lengths(robot: str, name: str) -> list[int]:
-    """The places of lengths in an input of this name, its entries counted through."""
+    """The places of lengths in the input of this name, counting its entries in order."""
     return [3, 7, 11] if name == "T" else LENGTHS.get(robot, {}).get(name, [])
 
 
 def scaled(planes: np.ndarray, places: list[int], exponent: int) -> np.ndarray:
-    """Entries by planes, those of the places times a power of two."""
+    """Planes of entries; those at the given places are multiplied by a power of two."""
     result = planes.copy()
     result[places] = np.ldexp(planes[places], exponent)
     return result
 
 
 def powers(larger: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Of every entry, with which power of the lengths it goes, as 16 times the lengths show."""
+    """For every entry, the power of the lengths in it, found by multiplying the lengths by 16."""
     with np.errstate(all="ignore"):
         found = np.log2(larger / values) / 4
     plain = np.isnan(values) | np.isinf(values) | (values == 0)

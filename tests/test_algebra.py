@@ -89,7 +89,7 @@ def test_non_identity_is_not_proved(name: str) -> None:
 
 @pytest.mark.parametrize("name", TRUE)
 def test_the_list_of_identities_is_true(name: str) -> None:
-    """mpmath agrees, at points within all domains; guards against an error in the list."""
+    """mpmath agrees at points within all domains, so the list itself is right."""
     f = sp.lambdify([x, y, theta, phi, a, b, l1, l2], TRUE[name], "mpmath")
     draw = random.Random(name)
     for _ in range(5):
@@ -286,7 +286,7 @@ def test_a_guard_that_vanishes_licenses_nothing() -> None:
 
 
 def test_determinant_by_minors() -> None:
-    """Against SymPy's own, with angles that add up; and zero where rows depend on each other."""
+    """Agrees with SymPy's determinant for sums of angles, and is zero for dependent rows."""
     a, b = sp.symbols("a b", real=True)
     J = sp.Matrix(
         [

@@ -1,4 +1,4 @@
-"""What is not an array of real numbers is refused, by NumPy and C with the same words."""
+"""NumPy and C refuse anything but an array of real numbers, with the same message."""
 
 import decimal
 import fractions
@@ -41,7 +41,7 @@ def objects(*values: Any) -> np.ndarray:
     return array
 
 
-# Each for one of the two coordinates, or for both.
+# Each is given for one of the two coordinates, or for both.
 ACCEPTED: list[Any] = [
     [1, 2],
     (1, 2.5),
@@ -115,7 +115,7 @@ OTHER: list[tuple[Any, type[Exception]]] = [
 
 
 def outcome(call: Any) -> tuple[Any, ...]:
-    """The results, or the error with its words; a warning is an error."""
+    """The results, or the error with its message; a warning is an error."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:

@@ -1,4 +1,4 @@
-"""The measuring itself: the comparison of inverses sees what is wrong, the accuracy is bounded."""
+"""The benchmarks: the comparison of inverses notices errors, and the accuracy is bounded."""
 
 import shutil
 import subprocess
@@ -50,8 +50,8 @@ def test_a_flawed_inverse_is_seen():
     def many(T):
         q, exact = whole.many(T)
         q = q.copy()
-        q[:, 1] = np.nan  # a branch is not there
-        q[:, 2, 5] += 1e-4  # one is not exact, and so not that branch either
+        q[:, 1] = np.nan  # a branch is missing
+        q[:, 2, 5] += 1e-4  # a branch is not exact, so it counts as missing too
         return q, exact & np.isfinite(q).all(axis=-1)
 
     figures = inverses.on_random_poses(replace(whole, many=many, poses=50))
@@ -66,7 +66,7 @@ def test_inverses_can_be_timed():
 
 
 def test_tables_of_batches_and_calls():
-    """With whatever peers there are; the others are listed with their error."""
+    """The tables have the peers that are installed; the others are listed with their error."""
     command = [sys.executable, "-m", "benchmarks", "--only", "batch", "--only", "single"]
     command += ["--rounds", "1", "--batch", "2000", "2R"]
     told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout

@@ -1,4 +1,4 @@
-"""Builds that are killed, run twice at once or find what an earlier one has left."""
+"""Builds that are killed, run twice at once, or find the remains of an earlier build."""
 
 import errno
 import os
@@ -81,7 +81,7 @@ def start(toy: Path) -> subprocess.Popen[str]:
 
 
 def build(toy: Path) -> list[str]:
-    """Build; the names of the files that the compiler made."""
+    """Build, and return the names of the files that the compiler made."""
     log = toy / "LOG"
     log.unlink(missing_ok=True)
     process = start(toy)
@@ -379,7 +379,7 @@ def gone(pid: int) -> None:
 
 
 def state(pid: int) -> str:
-    """Of a process that has ended, but that nobody has waited for."""
+    """Whether a process has ended, though no one has waited for it."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:

@@ -1,4 +1,4 @@
-"""Flags of compilers: under each the generated C gives right values, or does not compile."""
+"""Compiler flags: with each of them the generated C gives right values or does not compile."""
 
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""closedform.h: compiled both ways by each compiler, compared with Arb and long double in ulps."""
+"""closedform.h, compiled in both ways by each compiler and compared with Arb and long double."""
 
 import ctypes
 import math
@@ -92,7 +92,7 @@ def header(request, tmp_path_factory):
 
 
 def patterns(real, count: int, seed: int) -> np.ndarray:
-    """Finite numbers with every exponent about equally often, denormals included, either sign."""
+    """Finite numbers of either sign; every exponent, denormals included, is equally likely."""
     info = np.finfo(real)
     word = np.uint32 if real is np.float32 else np.uint64
     random = np.random.default_rng(seed)
@@ -105,11 +105,11 @@ def patterns(real, count: int, seed: int) -> np.ndarray:
 
 @cache
 def near_right_angles(real) -> np.ndarray:
-    """The numbers nearest to k pi/2 and their neighbours: there the reduction cancels most."""
+    """The numbers nearest to k pi/2 and their neighbours, for which the reduction cancels most."""
     if real is np.float32:
         k = np.arange(1, 70_000)
     else:
-        # 29, 87981 and 204551 come closest to a double, or reduce worst, below the limit.
+        # Below the limit, 29, 87981 and 204551 come closest to a double or reduce worst.
         k = np.unique(np.r_[1:2000, 87981, 204551, 200_000:270_000:137, 10**6 : 10**7 : 999_983])
     ctx.prec = 160
     half_pi = arb.pi() / 2
@@ -119,7 +119,7 @@ def near_right_angles(real) -> np.ndarray:
 
 
 def spacing(value: np.ndarray, real) -> np.ndarray:
-    """One ulp of `real` at the exact value: of its binade, even if it rounds up to the next."""
+    """One ulp of `real` in the binade of the exact value, even if it rounds to the next."""
     info = np.finfo(real)
     _, exponent = np.frexp(np.abs(value))
     return np.ldexp(np.ones_like(value), np.maximum(exponent - 1, info.minexp) - info.nmant)
@@ -181,7 +181,7 @@ def test_sincos_in_bulk(header):
 
 @pytest.mark.parametrize("name", ["sincos_block_rounded", "sincos_lanes_rounded"])
 def test_rounded_sincos_is_that_of_numpy(header, name):
-    """To the last bit, with and without fused operations: statuses rest on it in both languages."""
+    """Equal to the last bit, with and without fused operations: statuses depend on it."""
     if header.real is np.float32:
         pytest.skip("NumPy computes in double precision")
     random = np.random.default_rng(4)
@@ -322,7 +322,7 @@ def test_wrap_stays_in_the_half_open_interval(header, name, turns):
 
 
 def test_principal_values_are_as_accurate_of_large_angles(header):
-    """Within two units of pi's last place, up to the rounding that leaves one beside pi."""
+    """Results are within two units in the last place of pi, and may round to just beyond pi."""
     random = np.random.default_rng(9)
     x = np.concatenate([random.uniform(-r, r, 1500) for r in (3, 30, 199, 4e5, 1e9, 1e30)])
     ends = np.arange(-64, 65) * np.pi

@@ -1,4 +1,4 @@
-"""Every batch function of the generated C becomes vector code, and agrees with its single call."""
+"""Every batch function of the generated C is vectorised and agrees with the single call."""
 
 import ctypes
 import re
@@ -61,7 +61,7 @@ def planes_of(arguments: str, real: type, known: dict[str, np.ndarray]) -> list[
         if const:
             image = known.get(name, known.get("p") if name == "x" else None)
             planes[:] = random.uniform(-3, 3, planes.shape)
-            if image is not None:  # but where a loop does not close there is none
+            if image is not None:  # there is none if the loop does not close
                 image = image[: len(planes)]
                 planes[:] = np.where(np.isnan(image), planes, image)
             planes[:, ::50] = 0

@@ -1,4 +1,4 @@
-"""Each check gives each of its verdicts and refuses what is not proved; the verdicts on a paper."""
+"""Each check gives each of its verdicts and refuses what is not proved; verdicts on a paper."""
 
 from dataclasses import replace
 
@@ -133,7 +133,7 @@ class TestIdentity:
 
     def test_what_can_be_neither_proved_nor_refuted_raises(self) -> None:
         with pytest.raises(Undecided):
-            Identity(sqrt(3 + 2 * sqrt(2)), 1 + sqrt(2)).judge()  # true, but out of its sight
+            Identity(sqrt(3 + 2 * sqrt(2)), 1 + sqrt(2)).judge()  # true, but it cannot prove it
 
 
 class TestDecimal:

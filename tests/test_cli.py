@@ -30,7 +30,7 @@ d.claim("eq. (1)", "x = a - q_1", Identity(a - q1, a + q1))
 
 @pytest.fixture(autouse=True)
 def no_progress(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is written to stderr does not hang on the time it takes."""
+    """Keep stderr independent of the time that a command takes."""
     monkeypatch.setattr("closedform.cli.console.PATIENCE", float("inf"))
 
 
@@ -43,7 +43,7 @@ def slider(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def only_planar(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    """A repository with one robot and a copy of what is generated; kept proofs are used."""
+    """A repository with one robot and a copy of the generated files; stored proofs are used."""
     (planar,) = pipeline.find(["planar_2r"])
     store = pipeline.default_store()
     monkeypatch.setattr(pipeline, "sources", lambda: [planar])
@@ -130,7 +130,7 @@ def test_backends_are_chosen(slider: Path, tmp_path: Path) -> None:
 
 
 def test_what_is_printed_elsewhere_is_cross_checked(slider: Path, tmp_path: Path) -> None:
-    """With a page on what was found; the installation is left as it is."""
+    """Writes a page with the findings and leaves the installation as it is."""
     root = Path(pipeline.__file__).parents[1]
     watched = [root / name for name in ("closedform", "derivations", "generated", "templates")]
     before = [{p: t for p, t in times(f).items() if p.suffix != ".pyc"} for f in watched]
@@ -256,7 +256,7 @@ def test_a_proof_is_kept_until_something_it_depends_on_changes(
 
 
 def test_the_digest_of_a_proof_holds_what_is_run() -> None:
-    """Every module of ours that a derivation and its proof load is read for the digest."""
+    """The digest covers every module of ours that a derivation and its proof load."""
     code = (
         "import sys, closedform.derivations.ur_arm, closedform.proof.prove;"
         "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('closedform')))"

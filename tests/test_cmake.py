@@ -22,7 +22,7 @@ def run(*command: str | Path) -> str:
 
 
 def build(source: Path, folder: Path, *options: str) -> None:
-    # Unoptimised, for the time it takes; the flags of a release are tried by make check.
+    # Unoptimised, to save time; make check tries the flags of a release.
     run("cmake", "-S", source, "-B", folder, "-DCMAKE_BUILD_TYPE=Debug", *options)
     run("cmake", "--build", folder, "--parallel", "2")
 

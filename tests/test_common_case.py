@@ -1,4 +1,4 @@
-"""The common case of a program tells where something vanishes, and is the whole one elsewhere."""
+"""The program for the common case detects that something vanishes, and is exact otherwise."""
 
 import importlib
 import itertools
@@ -18,8 +18,8 @@ x, y, z = (real(n) for n in "xyz")
 
 
 def chained() -> Lowered:
-    """Flags that rest on what other flags select, one that holds only where another does not, and
-    much work for each."""
+    """Flags that depend on values selected by other flags, and a flag that holds only if another
+    does not, with much work for each."""
     p = Program()
     first = p.vanishes("first", sp.Abs(x), 1, "x is zero")
     u = p.let("u", choose(first, (y**2 + z) * (y - z**2) + 3 * y * z, z / x))
@@ -109,7 +109,7 @@ def test_generated(robot: str, name: str) -> None:
 
 @pytest.mark.parametrize(("robot", "name"), kernels())
 def test_rare_postures_of_a_batch(robot: str, name: str) -> None:
-    """Each has the answer that it has by itself, as has its neighbour; parameters broadcast."""
+    """Each posture and its neighbour have the answers of single calls; parameters broadcast."""
     module = importlib.import_module(f"closedform.generated.numpy.{robot}")
     usual, q = postures(robot, 60)
     q[::2] = usual[::2]

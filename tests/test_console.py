@@ -1,4 +1,4 @@
-"""The command line on terminals without Unicode, on streams that are closed, full or cut off."""
+"""The command line on terminals without Unicode, and on closed, full or broken streams."""
 
 import io
 import os
@@ -21,7 +21,7 @@ ESCAPE = re.compile(r"\\u[0-9a-f]{4}|\\x[0-9a-f]{2}")
 
 @pytest.fixture(autouse=True)
 def no_progress(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is written to stderr does not hang on the time it takes."""
+    """Keep stderr independent of the time that a command takes."""
     monkeypatch.setattr("closedform.cli.console.PATIENCE", float("inf"))
 
 
@@ -34,7 +34,7 @@ def call(*arguments: str) -> int:
 
 
 def in_ascii(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> str:
-    """What a command writes where the encoding is ASCII."""
+    """The output of a command if the encoding is ASCII."""
     written = io.BytesIO()
     monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(written, encoding="ascii"))
     assert call(*arguments) == 0
@@ -105,7 +105,7 @@ def test_a_closed_output(
     ],
 )
 def test_streams_of_the_shell(redirections: str, code: int, errors: str) -> None:
-    """Python too has nothing to complain of when it ends."""
+    """Python does not complain either when it ends."""
     done = subprocess.run(
         f'exec "{sys.executable}" -m closedform list {redirections}',
         shell=True,
@@ -144,7 +144,7 @@ def test_the_current_folder_is_gone(
 
 
 def test_a_file_is_not_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """This is said before anything is proved."""
+    """The warning comes before anything is proved."""
     (tmp_path / "out").touch()
     assert main(["derive", "planar_2r", "-o", str(tmp_path / "out")]) == 1
     assert capsys.readouterr().err.endswith("out: it is not a folder\n")

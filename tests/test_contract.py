@@ -269,7 +269,7 @@ def test_back_ends_agree(robot: str, data: st.DataObject) -> None:
                 np.testing.assert_allclose(u, v, rtol=0, atol=1e-13 * size)
     x = image(numpy, q)
     a, b = numpy.ik(x), c.ik(x)
-    # At a singular posture rounding decides whether a joint counts as free; both answers hold.
+    # At a singular posture rounding decides whether a joint is free; both answers are right.
     factors = numpy.singularities(q)
     near = np.abs(factors).min(axis=tuple(range(len(lead), factors.ndim)), initial=1) < 1e-9
     solved = [np.where(r.status == numpy.Status.SINGULAR, 0, r.status) for r in (a, b)]
@@ -452,7 +452,7 @@ def test_wrist_rejects_what_is_no_rotation(wrist) -> None:
 
 @pytest.mark.parametrize("d6", [np.nan, np.inf])
 def test_wrist_rejects_an_offset_that_is_none(wrist, d6: float) -> None:
-    """Its inverse does not need the offset, but there is no such wrist."""
+    """The inverse does not need the offset, but such a wrist does not exist."""
     solutions = wrist.ik(wrist.fk([0.1, 0.2, 0.3]), wrist.Parameters(d6))
     assert (solutions.status == INVALID).all() and np.isnan(solutions.q).all()
 

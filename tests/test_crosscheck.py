@@ -1,4 +1,4 @@
-"""Generated code against the symbolic source in Arb, in every back end; and the check can fail."""
+"""Generated code against the symbolic source in Arb, in every back end; the check can fail."""
 
 import importlib
 from pathlib import Path
@@ -89,7 +89,7 @@ def first_branch_only(solutions):
 
 
 def slightly_off(x):
-    """Wrong by ulps; a position of a closed loop, which is held to the round trip, by 1e-11."""
+    """Values wrong by ulps are found; in a closed loop, checked by round trips, by 1e-11."""
     return x._replace(p=x.p * (1 + 1e-11)) if isinstance(x, tuple) else x * (1 + 1e-14)
 
 

@@ -1,4 +1,4 @@
-"""Arms with links of very different lengths, or without some: no posture of one's own is lost."""
+"""Arms with links of very different or zero lengths: the inverse loses no posture of `fk`."""
 
 import importlib
 
@@ -19,7 +19,7 @@ def dimensions(rng: np.random.Generator, n: int, k: int) -> np.ndarray:
 
 
 def near(rng: np.random.Generator, shape: tuple[int, ...]) -> np.ndarray:
-    """Deviations of 1 to 1e-15, and none."""
+    """Deviations from 1 down to 1e-15, and zero."""
     return rng.choice(OFF, shape) * rng.uniform(-1, 1, shape)
 
 
@@ -61,7 +61,7 @@ def planar_2r(rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def reached(robot: str, backend: str, lengths: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Which postures come back, after a look at the answers."""
+    """Whether each posture is returned, after a check of the answers."""
     module = importlib.import_module(f"closedform.generated.{backend}.{robot}")
     x = module.fk(q, module.Parameters(*lengths.T))
     found, status = module.ik(x, module.Parameters(*lengths.T))

@@ -1,4 +1,4 @@
-"""The pages for people name files that exist, and each page is found from another."""
+"""The pages name files that exist, and every page can be found from another."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 FOLDERS = ("closedform", "derivations", "docs", "generated", "templates", "tests", "benchmarks")
 HISTORY = {"CHANGELOG.md"}
-"""It names what is gone, too."""
+"""The changelog also names files that are gone."""
 MADE = {"tests/fuzz/cases/"}
 """Folders that exist only after something has failed."""
 
@@ -24,7 +24,7 @@ MADE = {"tests/fuzz/cases/"}
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_file_that_a_page_names_exists(page: Path) -> None:
     if page.name in HISTORY:
-        pytest.skip("names what is gone, too")
+        pytest.skip("also names files that are gone")
     text = re.sub(r"```.*?```", "", page.read_text("utf-8"), flags=re.DOTALL)
     quoted = re.findall(rf"`((?:{'|'.join(FOLDERS)})/[\w./-]*)`", text)
     linked = re.findall(r"\]\((?!https?:)([^)#]+)\)", text)

@@ -1,4 +1,4 @@
-"""What a user is told who makes one of the usual mistakes: which, where, and how to mend it."""
+"""Messages for the usual mistakes: what is wrong, where it is, and how to correct it."""
 
 import dataclasses
 
@@ -34,7 +34,7 @@ def planar(d: Derivation) -> sp.Matrix:
 
 
 def by_hand(d: Derivation, *, wrong: sp.Expr = sp.S.Zero, labels=None) -> None:
-    """The inverse of the planar arm as one would type it, with an error at choice."""
+    """The inverse of the planar arm as a user would write it, with a chosen error."""
     l1, l2 = (p.symbol for p in d.parameters)
     x, y, sigma, alpha = real("x"), real("y"), real("sigma"), real("alpha")
     program = Program()
@@ -258,7 +258,7 @@ def test_a_float() -> None:
 
 
 def test_a_zyz_lemma_on_what_is_no_such_rotation() -> None:
-    """Rz Rx Rz is no ZYZ rotation: the proof says which lemma, and where it fails."""
+    """Rz Rx Rz is not a ZYZ rotation: the proof names the lemma, and says where it fails."""
     d = Derivation("wrist", "Wrist", Paper("toy", "Toys", ("A.",)), "A wrist.", task=["T"])
     q = [d.joint(f"theta{i}") for i in (1, 2, 3)]
     arm = from_dh(d, [(0, sp.pi / 2, 0, q[0]), (0, sp.pi / 2, 0, q[1]), (0, 0, 0, q[2])])

@@ -1,4 +1,4 @@
-"""SCARA, UR-type arm and two RPR legs, by routes of their own: numbers, not the derivations."""
+"""SCARA, UR-type arm and two RPR legs, checked with numbers instead of the derivations."""
 
 import importlib
 import itertools
@@ -40,7 +40,7 @@ def screw(w, point, angle: np.ndarray) -> np.ndarray:
 
 
 def ur_by_screws(q) -> np.ndarray:
-    """The UR5 at home lies stretched along -x: its axes, and the pose of its tool."""
+    """The axes and the tool of the UR5 at home, where it is stretched along -x."""
     d1, a2, a3, d4, d5, d6 = UR.values()
     across = (0, -1, 0)
     axes = [
@@ -134,7 +134,7 @@ def test_ur_at_the_shoulder_singularity(backend: str) -> None:
 
 
 def test_ur_with_nothing_beside_the_shoulder(backend: str) -> None:
-    """With d4 = 0 the first joint is free where the wrist is on its axis."""
+    """With d4 = 0 the first joint is free if the wrist is on its axis."""
     ur = load(backend, "ur_arm")
     params = ur.Parameters()._replace(d4=0.0)
     T = np.eye(4)

@@ -2,7 +2,7 @@
 
 The toy's kernels are in extension_toy/toy.c, and again in toy.py. Values are small binary
 fractions, so that float32 and integer conversions are exact and results can be compared bit for
-bit (but for sines and cosines).
+bit (except sines and cosines).
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def test_any_shapes_and_layouts(native: Any, data: st.DataObject) -> None:
 @pytest.mark.parametrize("name", sorted(ROWS))
 @pytest.mark.parametrize("layout", sorted(STRIDED))
 def test_batches_in_all_memory_layouts(native: Any, name: str, layout: str, n: int) -> None:
-    """Every length around a block or a tile; planes 4096 bytes apart among them."""
+    """Every length near that of a block or a tile, including planes 4096 bytes apart."""
     row, f = ROWS[name], function(native, name)
     rng = np.random.default_rng(n)
     plain = [values(rng, (n, *core)) for core in row.cores]

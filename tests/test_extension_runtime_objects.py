@@ -1,5 +1,5 @@
-"""The functions of the compiled extension as objects of Python, on the toy table: what they refuse,
-how they look, and that they neither leak nor stop other threads."""
+"""The functions of the compiled extension as Python objects, on the toy table: what they refuse,
+how they look, and that they neither leak memory nor stop other threads."""
 
 from __future__ import annotations
 
@@ -222,7 +222,7 @@ class HostileSequence(Hostile):
 
 @pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
 def test_an_array_may_change_while_what_follows_is_converted(native: Any, change: Any) -> None:
-    """Each call is as of the array that it leaves behind, or is refused; nothing is read beyond."""
+    """Each call uses the array as it ends up, or is refused; nothing is read beyond its end."""
     polar_, two_ = function(native, "polar"), function(native, "two")
 
     def attempts() -> list[tuple[np.ndarray, Callable[[np.ndarray], Any]]]:
@@ -315,7 +315,7 @@ def test_keywords_need_not_be_interned(native: Any) -> None:
 
 
 def exercise(functions: dict[str, Any]) -> None:
-    """All paths once: short, general, into given arrays, and every error."""
+    """Take every path once: short, general, into given arrays, and every error."""
     rng = np.random.default_rng(0)
     for name, row in ROWS.items():
         f = functions[name]
@@ -341,8 +341,8 @@ def refused(native: Any) -> None:
 
 
 def blocks_kept(work: Callable[[], Any], rounds: int = 200) -> int:
-    """Memory blocks of Python that so many rounds leave behind each time: what only fills a cache
-    is not left again."""
+    """The Python memory blocks that so many rounds leave behind each time.  A cache that fills up
+    leaves none the second time."""
     kept = []
     for _ in range(4):
         gc.collect()

@@ -14,7 +14,7 @@ COMPILER = next((name for name in ("gcc", "clang") if shutil.which(name)), None)
 OVERFLOW, INVALID = 4, 3
 
 UNMENDED = {("ur_arm", "ik")}
-"""Raises INVALID where the turn of the shoulder is nearly tangent."""
+"""Functions that raise INVALID: here if the turn of the shoulder is nearly tangent."""
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="there is neither gcc nor clang")
 
@@ -30,7 +30,7 @@ def answers(program: Program, *, single: bool) -> Iterator[tuple[Request, Answer
 
 
 def raised(request: Request, answer: Answer) -> Iterator[str]:
-    """Only what is too large for the type may raise an overflow, and what is INVALID anything."""
+    """Only values too large for the type may overflow; INVALID input may raise anything."""
     finite = np.isfinite(answer.single).all(axis=1)
     invalid = (answer.single == INVALID).any(axis=1) & ~finite
     rows = zip(request.rows, answer.exceptions, finite, invalid, strict=True)
@@ -41,7 +41,7 @@ def raised(request: Request, answer: Answer) -> Iterator[str]:
 
 @pytest.mark.parametrize("single", [False, True])
 def test_single_calls_raise_none(tmp_path: Path, single: bool) -> None:
-    """Nor is an answer made up: it is finite where that of a batch is."""
+    """Answers are not made up either: they are finite if those of a batch are."""
     program = build(tmp_path, ROBOTS, "-O1", single=single)
     for request, answer in answers(program, single=single):
         assert not list(raised(request, answer)) or request.name in UNMENDED

@@ -1,4 +1,4 @@
-"""Text that is not trusted: a formula is parsed, and whatever else a cell holds is refused."""
+"""Untrusted text: a formula is parsed, and anything else in a cell is refused."""
 
 import ast
 import json
@@ -22,7 +22,7 @@ from closedform.scaffold.source import source
 
 HEADER = "a, alpha, d, theta\n"
 MADE = "made"
-"""The file that a text below writes if it is run; nothing may write it."""
+"""The file that the texts below would write if anything ran them."""
 OPEN = f"open('{MADE}','w')"
 HEX = "ff" + OPEN.replace("(", "\x0c(").encode().hex()
 BYTES = "((x1.name.encode)().fromhex)"
@@ -135,7 +135,7 @@ HOSTILE = [
 
 
 def refused(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[str]) -> str:
-    """What the command says of a table: one printable line, no script, and nothing was run."""
+    """The command's complaint about a table: one printable line; no script, nothing was run."""
     table = folder / "table"
     table.write_text(text, "utf-8")
     assert main(["new", "arm", "--from", kind, str(table), "-o", str(folder)]) == 1
@@ -215,7 +215,7 @@ def test_what_is_not_a_number(text: str) -> None:
         ("dh", HEADER + "0, 0, 0, t\n" * 10**6, "is too large"),
         ("dh", HEADER + "0, 0, 0, 0\n" * 1000 + "0, 0, 0, t\n", "more than 32 rows"),
         ("dh", HEADER + "".join(f"0, 0, 0, t{i}\n" for i in range(20)), "more than 16 joints"),
-        ("dh", "#" + " " * 10**4 + "\n", "a line has at most 2000 characters"),
+        ("dh", "#" + " " * 10**4 + "\n", "characters, more than 2000"),
         ("dh", "# L = 1" + " " * 1900 + ":" * 20 + "\n", "is empty"),
         ("dh", "# L = " + "9" * 1900 + "\n", "the value of L is"),
         ("dh", HEADER + '"0, 0, 0, t\n', "is not a line of CSV"),
@@ -255,7 +255,7 @@ TEXTS = [
 def test_text_of_a_table_stays_text(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str
 ) -> None:
-    """The script that is written has the same statements, whatever a parameter is said to be."""
+    """The script has the same statements, whatever the text about a parameter says."""
     monkeypatch.chdir(tmp_path)
     body = '[[axes]]\njoint = "t"\ndirection = [0, 0, 1]\n[home]\nposition = ["L", 0, 0]\n'
     trees = []

@@ -82,7 +82,7 @@ def hand(T3: np.ndarray, psi: float, phi: float, theta: float, wrist: float) -> 
 
 
 def missed(model, solutions: np.ndarray, x: np.ndarray, params=P) -> np.ndarray:
-    """What the branches of an inverse miss their targets by, angles on the shorter arc."""
+    """How far the branches of an inverse miss their targets, angles on the shorter arc."""
     off = model.fk(solutions, params) - x[:, None]
     off[..., 3:] = np.angle(np.exp(1j * off[..., 3:]))
     return off
@@ -135,7 +135,7 @@ def test_published_map_by_the_printed_equations(published) -> None:
 
 
 def loop(q: np.ndarray, unknown: np.ndarray) -> np.ndarray:
-    """The virtual arm misses the middle; the wrist's base line is not along that of the tips."""
+    """The virtual arm misses the middle; the base lines of wrist and tips are not parallel."""
     theta2, theta3, psi, phi = unknown
     right = forearm_tip(q[0], q[1], q[2], P.d)
     left = forearm_tip(q[0], q[3], q[4], -P.d)
@@ -199,7 +199,7 @@ def test_jacobian_by_finite_differences(model) -> None:
 
 
 def test_factors_vanish_with_the_determinant(model) -> None:
-    """Each factor on its event, found without the factors."""
+    """Each factor vanishes at its event, which is found without the factors."""
     waist, virtual = model.SINGULARITIES[:2]
     assert "waist" in waist and "wrist" in virtual
     q = postures(1, 5, 0.02)[0]
@@ -220,7 +220,7 @@ def test_factors_vanish_with_the_determinant(model) -> None:
         straight[[2, 4]] = STRAIGHT + 0.02, STRAIGHT - 0.02
         assert abs(factors(straight)[2]) < 1e-15 and abs(model.determinant(straight)) < 1e-16
         real = q.copy()
-        real[2] = STRAIGHT  # a real arm is straight, and the published model does not see it
+        real[2] = STRAIGHT  # a real arm is straight; the published model does not notice
         assert abs(model.determinant(real)) > 1e-6
 
 
@@ -333,7 +333,7 @@ def two_events_at_once(n: int, params, seed: int) -> np.ndarray:
 
 @pytest.mark.parametrize("dimensions", [{}, {"al": 1.0}])
 def test_no_posture_is_lost_where_two_events_meet(model, dimensions: dict) -> None:
-    """Rounding a target there turns arms by 1e-8, more than what some answers have to spare."""
+    """Rounding a target there turns arms by 1e-8, more than some answers can afford."""
     params = P._replace(**dimensions)
     q = two_events_at_once(20_000, params, 41)
     x = model.fk(q, params)
@@ -351,7 +351,7 @@ def test_no_posture_is_lost_where_two_events_meet(model, dimensions: dict) -> No
 
 
 def test_a_virtual_arm_without_direction_is_singular(closed) -> None:
-    """Equal links folded onto their shoulders: the joints say nothing of yaw and roll."""
+    """Equal links folded onto their shoulders: the joints do not determine yaw and roll."""
     equal = P._replace(a3=0.0)
     # a hand that stands on the shoulder: the virtual arm is solved, and its length is zero
     R = frame3(0.3, 0.5, 0.7, 0.0)[:3, :3] @ rotation(2, 0.1) @ rotation(0, 0.2)
@@ -467,7 +467,7 @@ def test_other_dimensions(model, change: dict) -> None:
 
 
 def test_wrist_design(model) -> None:
-    """With the shortest links the separation angle is at least beta_min, and just so somewhere."""
+    """With the shortest links the separation angle is at least beta_min, and reaches it."""
     yaw, roll, beta = 0.5, 0.4, 0.3
     combined = "loop" in model.__name__
     shortest = model.minimum_link_length(yaw, roll, beta)

@@ -1,4 +1,4 @@
-"""How far the models of the H6AR are apart: the figures of docs/decisions/h6ar-models.md.
+"""How far apart the models of the H6AR are: the figures of docs/decisions/h6ar-models.md.
 
 Run as a script it prints the tables of that page.
 """
@@ -44,7 +44,7 @@ def averages(q: np.ndarray) -> tuple[float, float]:
 
 
 def shortcut(x: np.ndarray) -> np.ndarray:
-    """The inverse as the paper ends it: the right arm from (1), the left one from the averages."""
+    """The inverse of the paper: the right arm from (1), the left one from the averages."""
     exact = elbow_up(h6ar, x)
     upper, fore = averages(exact)
     r, h = arm(upper, fore) + D * np.tan(x[3:5])  # (3) and (4)
@@ -59,7 +59,7 @@ def shortcut(x: np.ndarray) -> np.ndarray:
 
 
 def miss(model, q: np.ndarray, x: np.ndarray) -> tuple[float, float, float]:
-    """What a model's forward map says of joints: tip off in mm, yaw and roll off in degrees."""
+    """The errors of a model's forward map: the tip in mm, yaw and roll in degrees."""
     off = model.fk(q) - x
     return 1e3 * np.linalg.norm(off[:3]), *np.rad2deg(off[3:5])
 

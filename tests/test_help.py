@@ -25,7 +25,7 @@ def functions(m) -> list[str]:
 
 
 def fresh(code: str) -> str:
-    """What code prints in an interpreter of its own."""
+    """The output of code in a separate interpreter."""
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -92,7 +92,7 @@ HEAD = re.compile(r"^(\w+) : ([^,]+)(?:, shape \(\.\.\.(.*)\))?$", re.M)
 
 
 def sections(text: str) -> dict[str, str]:
-    """The sections of a docstring, by their titles; what stands before them under an empty one."""
+    """The sections of a docstring by title; the text before the first has an empty title."""
     parts = re.split(r"\n\n(\w+)\n(-+)\n", "\n\n" + text)
     assert all(len(a) == len(b) for a, b in zip(parts[1::3], parts[2::3], strict=True))
     return {"": parts[0]} | dict(zip(parts[1::3], parts[3::3], strict=True))
@@ -148,7 +148,7 @@ def test_inverses_tell_units_statuses_and_branches(robot: str) -> None:
 
 
 def test_a_docstring_as_it_is_read() -> None:
-    """The whole of one, for a person to judge."""
+    """A complete docstring, for a person to judge."""
     assert inspect.getdoc(module("numpy", "scara").fk) == DOCSTRING
 
 

@@ -1,4 +1,4 @@
-"""Texts and names that would break the printed code, or enter it, in every place for them."""
+"""Texts and names that could break or enter the printed code, in every place that takes them."""
 
 import ast
 import builtins
@@ -34,7 +34,7 @@ HEADER = Path(__file__).parents[1] / "closedform" / "runtime" / "c" / "closedfor
 
 
 def slider(text: Strings = lambda field: field, name: Strings = lambda field: field) -> Derivation:
-    """A slide and a turn, with every text and every name for the caller to choose."""
+    """A slide and a turn, with every text and name chosen by the caller."""
     paper = Paper(name("key"), text("paper"), (text("author"), "B."), text("reference"))
     d = Derivation(name("robot"), text("title"), paper, text("mechanism"), task=[name("task"), "b"])
     d.branches = (name("plus"), "minus")
@@ -83,7 +83,7 @@ def slider(text: Strings = lambda field: field, name: Strings = lambda field: fi
 
 
 def printed(d: Derivation, evidence: str = "evidence") -> dict[Path, str]:
-    """All files, of which nothing is proved."""
+    """All files, printed without a proof."""
     claims = [ClaimResult(c.label, c.where, c.printed, "refuted", evidence, "") for c in d.claims]
     proof = Proof(d.name, d.paper.key, (), 0, (), tuple(claims))
     own = pages(d, proof)
@@ -138,7 +138,7 @@ def c_tokens(code: str) -> list[str]:
 
 
 def python_tokens(code: str) -> list[tuple[int, str]]:
-    """Without comments, and with a string for a string."""
+    """The code without comments, and with a placeholder for each string."""
     dropped = (tokenize.COMMENT, tokenize.NL)
     return [
         (t.type, "" if t.type == tokenize.STRING else t.string)
@@ -152,7 +152,7 @@ ESCAPED |= {*r"\&%$#_{}", "mathrm", "textquotedbl", "pm", "operatorname"}
 
 
 def tex_commands(code: str) -> list[str]:
-    """Commands that do something, the ends of comments, and how braces are nested at the end."""
+    """Commands with an effect, the ends of comments, and the depth of braces at the end."""
     commands = re.findall(r"\\([A-Za-z]+|.)", code)
     kept = sorted({c for c in commands if c not in ESCAPED and not re.fullmatch(r"x\d*", c)})
     plain = re.sub(r"\\.", "", code)
@@ -195,7 +195,7 @@ def words(text: str) -> str:
 
 @pytest.mark.parametrize("text", HOSTILE)
 def test_a_text_changes_nothing_but_itself(text: str, harmless: dict[Path, Any]) -> None:
-    """In all fields at once: the code is that of harmless texts, and says the text as it is."""
+    """In all fields at once: the code is that of harmless texts, and repeats the text exactly."""
     files = printed(slider(text=lambda _: text), evidence=text)
     found = tokens(files)
     assert found.keys() == harmless.keys()
@@ -305,7 +305,7 @@ def test_a_bad_name_is_refused(field: str) -> None:
 
 @pytest.mark.parametrize("field", FIELDS)
 def test_a_name_is_refused_or_works(field: str, tmp_path: Path) -> None:
-    """What is not refused where it is declared compiles, and computes what it does elsewhere."""
+    """A name that is not refused where it is declared compiles, and changes no result."""
     sources, refused = [], set()
     target = np.array([3.0, 4.0])
     for k, value in enumerate(NAMES):

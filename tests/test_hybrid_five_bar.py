@@ -51,7 +51,7 @@ def bars(arm, q, lengths):
 
 
 def closure(arm, q, p, lengths) -> np.ndarray:
-    """How far bars and plane are from fitting, in lengths."""
+    """By how much bars and plane fail to fit, in lengths."""
     C, D = bars(arm, q, lengths)
     normal = np.stack([np.sin(q[..., 0]), 0 * q[..., 0], np.cos(q[..., 0])], axis=-1)
     return np.stack(
@@ -144,7 +144,7 @@ def test_jacobians_by_differences(arm) -> None:
 
 
 def test_singular_factors(arm) -> None:
-    """Each factor vanishes where its bars are in line, and nowhere near else."""
+    """Each factor vanishes if its bars are in line, and is far from zero elsewhere."""
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (500, 3))
     t4, t5 = np.moveaxis(arm.passive_angles(q), -1, 0)
     rho = 8 * np.sin(q[:, 1:2]) + 5 * np.sin(t4)
@@ -413,7 +413,7 @@ def test_volume_is_continuous_and_falls(arm) -> None:
 @pytest.mark.parametrize("kappa", [1.0, 1.5, 4.0])
 @pytest.mark.parametrize("mirrored", [1, -1])
 def test_loci_hold_the_postures_they_describe(arm, kappa: float, mirrored: int) -> None:
-    """Postures with a given angle between CP and DP, built bar by bar, lie on the polynomial."""
+    """Postures with a given angle between CP and DP, built bar by bar, satisfy the polynomial."""
     k = sp.nsimplify(kappa)
     found = design.locus(k**2 - 1, 2 * k * mirrored, k**2 + 1)
     assert found.degree == 6

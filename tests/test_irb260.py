@@ -45,7 +45,7 @@ def twist_matrix(w, p) -> np.ndarray:
 
 
 def by_exponentials(q: np.ndarray, lengths=L) -> np.ndarray:
-    """Eq. (12) as it stands, with numbers."""
+    """Eq. (12) as printed, with numbers."""
     l1, l2, l3, l4, l5, l6 = lengths
     up, across = (0, 0, 1), (-1, 0, 0)
     points = [
@@ -170,7 +170,7 @@ def by_links(q: np.ndarray, lengths=L) -> np.ndarray:
 
 @pytest.mark.parametrize("params", [L, EQUAL, (2.0, 0.1, 0.3, 0.9, 0.4, 1.5)])
 def test_newton_finds_no_other_solution(robot, params) -> None:
-    """From many starts, on the arm put together link by link."""
+    """Newton's method from many starts, on the arm built link by link."""
 
     def gap(q: np.ndarray) -> np.ndarray:
         miss = by_links(q, params) - x
@@ -368,7 +368,7 @@ def test_workspace(robot) -> None:
 
 @pytest.mark.parametrize("params", [L, EQUAL, (0.0, 0.5, 0.7, 0.6, 0.0, 0.0)])
 def test_workspace_contains_what_the_inverse_reaches(robot, params) -> None:
-    """Also a hair inside and outside of every boundary, in front of the axis and behind it."""
+    """Also just inside and outside of every boundary, in front of the axis and behind it."""
     l1, l2, l3, l4, l5, l6 = params
     direction, bearing = np.random.default_rng(7).uniform(-np.pi, np.pi, (2, 300))
     reached = 0

@@ -1,4 +1,4 @@
-"""Lowered programs: what they cost, what they share, and that they mean what the source means."""
+"""Lowered programs: their cost, what they share, and that they mean the same as the source."""
 
 import importlib
 import math
@@ -102,7 +102,7 @@ coordinates = st.sampled_from([0.0, 1e-9, 0.5, 1.0]) | st.floats(1e-30, 3) | st.
 @settings(deadline=None)
 @given(st.tuples(coordinates, coordinates, coordinates))
 def test_angles_by_one_root_are_those_of_two(point: tuple[float, float, float]) -> None:
-    """Where both roots vanish too, and where the angle is 0, a right angle or half a turn."""
+    """Also if both roots vanish, and if the angle is 0, a right angle or half a turn."""
     a, b = abs(point[0]), math.hypot(*point[1:])
     size = 1 + point[2] ** 2
     exprs = [
@@ -119,7 +119,7 @@ def test_angles_by_one_root_are_those_of_two(point: tuple[float, float, float]) 
 
 
 def test_only_flags_are_rare() -> None:
-    """A sign that was computed is as often one as the other, be flags among what it rests on."""
+    """Either value of a computed sign is equally likely, even if the sign depends on flags."""
     p = Program()
     flag = p.vanishes("flag", y**2, x**2, "y is zero")
     turned = p.let("turned", choose(flag, 0, z / y))
@@ -132,7 +132,7 @@ def test_only_flags_are_rare() -> None:
 
 @pytest.mark.parametrize("signs", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
 def test_a_shared_pair_keeps_its_sign(signs: tuple[int, int]) -> None:
-    """The pair y, z stands in three sums, with all signs, and never first."""
+    """The pair y, z is in three sums, with all signs, and never first."""
     b, c = signs
     exprs = [x + b * y + c * z, x - b * y - c * z, 2 * x + b * y + c * z]
     values = {"x": 0.3, "y": 1.7, "z": -0.4}
@@ -195,7 +195,7 @@ def test_long_products_stay_linear() -> None:
 
 
 def jacobian_of_general_twists(n: int) -> Function:
-    """The spatial Jacobian of n joints whose axes are anything, frame by frame."""
+    """The spatial Jacobian of n joints with arbitrary axes, frame by frame."""
     program = Program()
     q, dimensions, columns, T = [], [], [], sp.eye(4)
     for i in range(n):
@@ -224,7 +224,7 @@ def test_long_chains_stay_linear() -> None:
 
 
 def test_an_angle_behind_a_name_is_wrapped() -> None:
-    """What is added to an arctangent that has a name needs the wrap as much as the name's value."""
+    """A sum with a named arctangent needs the wrap, just as one with the arctangent itself."""
     d = Derivation("test", "", Paper("", "", ()), "")
     p = Program()
     a, b = p.let("a", sp.atan2(y, x)), p.let("b", sp.atan2(z, x))

@@ -1,4 +1,4 @@
-"""From a table of joints to an import: the skeleton, as it is written, is proved and runs."""
+"""From a table of joints to an import: the unedited skeleton is proved and runs."""
 
 import importlib
 import sys
@@ -117,7 +117,7 @@ def test_the_joint_of_a_row_may_be_named(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_lengths_may_be_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They count in the size of the arm, by which it is decided what is out of reach."""
+    """They count in the size of the arm, which decides what is out of reach."""
     table = "a, alpha, d, theta\n0, pi/2, 0.4, theta1\n0.5, 0, 0, theta2\n0.45, 0, 0, theta3\n"
     arm = derived(tmp_path, "plain", "dh", table, monkeypatch)
     q = np.random.default_rng(0).uniform(-3, 3, (1000, 3))
@@ -140,7 +140,7 @@ def test_screws(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_forearm_without_extent_and_a_negative_link(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The angle between a3 and d4 has a convention where both vanish; lengths may be negative."""
+    """The angle between a3 and d4 has a convention if both vanish; lengths may be negative."""
     table = tmp_path / "t.csv"
     table.write_text(
         "# a2 = -0.4 m: upper arm\n# a3 = 0.03 m: offset\n# d4 = 0.42 m: forearm\n"
@@ -214,7 +214,7 @@ L2, 0, 0, t2
 
 
 def quick(folder: Path, name: str, kind: str, text: str, monkeypatch: pytest.MonkeyPatch):
-    """As ``derived``, NumPy alone and without the cross-check."""
+    """Like ``derived``, but with NumPy only and without the cross-check."""
     table = folder / f"{name}.table"
     table.write_text(text, "utf-8")
     assert main(["new", name, "--from", kind, str(table), "-o", str(folder)]) == 0
@@ -258,7 +258,7 @@ def test_angles_without_square_roots_become_parameters(
 ) -> None:
     arm = quick(tmp_path, "named", "dh", NAMED, monkeypatch)
     said = capsys.readouterr().err
-    assert "line 4, column theta: the cosine of pi/18 has no form in square roots" in said
+    assert "line 4, column theta: the cosine of pi/18 cannot be written with square roots" in said
     assert "the parameter angle2 = 0.17453292519943295769 rad" in said
     assert "# named.table, line 4, column theta: the cosine of pi/18" in (
         tmp_path / "named.py"
@@ -293,7 +293,7 @@ def test_directions_in_decimals_are_made_exact(
     arm = quick(tmp_path, "rounded", "screws", ROUNDED, monkeypatch)
     said = capsys.readouterr().err
     assert "axis 1: the direction (0, 0.7071, 0.7071) is rounded; the unit vector " in said
-    assert "(0, sqrt(2)/2, sqrt(2)/2) is taken for it" in said
+    assert "(0, sqrt(2)/2, sqrt(2)/2) is used instead" in said
     assert "[home]: the rotation is rounded; the rows (1, 0, 0), " in said
     tilt = turned(0, -np.pi / 4)
     elbow = np.eye(4)

@@ -64,7 +64,7 @@ def test_an_arm_in_numbers_is_proved(table: str, branches: int, tmp_path: Path) 
 
 
 def test_nearer_to_the_axis_than_an_offset_there_is_no_answer(tmp_path: Path) -> None:
-    """Where the coefficients of a sine and a cosine vanish, the number beside them does not."""
+    """If the coefficients of a sine and a cosine vanish, the number beside them does not."""
     arm = printed(tmp_path, derivation(tmp_path, HEADER + ELBOW))
     q, status = arm.ik([[0.0, 0.0, 0.6], [1e-13, 0.0, 0.6], [0.05, 0.0, 0.6]])
     assert (status == UNREACHABLE).all() and np.isnan(q).all()
@@ -93,7 +93,7 @@ def test_the_point_of_an_axis_may_be_any_on_it(tmp_path: Path) -> None:
 def findings(
     folder: Path, table: str, functions: tuple[str, ...], printed_from: str = ""
 ) -> list[str]:
-    """What the cross-check says of functions of an arm, printed from another table if wanted."""
+    """The cross-check of functions of an arm, which may be printed from a different table."""
     d = derivation(folder, table)
     other = folder / "other"
     other.mkdir()
@@ -117,9 +117,9 @@ def test_a_number_that_is_off_by_a_little_is_found(tmp_path: Path) -> None:
 def test_a_posture_at_two_limits_at_once_is_not_lost(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """At the limit of the shoulder an ulp turns it by 1e-8; near a singular wrist that turns all.
+    """At the limit of the shoulder an ulp turns it by 1e-8, and with it a nearly singular wrist.
 
-    The limit is where it takes more than an ulp of the target to make a difference.
+    The check allows for an ulp of the target, but still finds a missing answer elsewhere.
     """
     d = derivation(tmp_path, HEADER + STANFORD)
     quarter, e = np.pi / 2, 1e-9

@@ -1,4 +1,4 @@
-"""What is shipped: an sdist that is complete, and a wheel that needs NumPy alone."""
+"""The sdist is complete, and the wheel needs only NumPy."""
 
 import os
 import shutil
@@ -54,7 +54,7 @@ def run(*arguments: str | Path, **variables: str) -> str:
 
 
 def alone(target: Path, code: str) -> str:
-    """Run code that sees the standard library, NumPy and the wheel, and nothing of the checkout."""
+    """Run code that sees the standard library, NumPy and the wheel, but not the checkout."""
     paths = [str(target), str(Path(numpy.__file__).parents[1])]
     return run("-I", "-S", "-c", f"import sys\nsys.path[:0] = {paths}\n{code}")
 
@@ -132,7 +132,7 @@ for command in (["derive", "-o", "nowhere"], ["check"], ["show", "planar_2r"]):
 
 
 def test_the_wheel_derives_with_the_extra(installed: Path, tmp_path: Path) -> None:
-    """With SymPy to import, but in no checkout: the printed files are the shipped ones."""
+    """With SymPy but outside of a checkout, the printed files are the shipped ones."""
     site = str(Path(sysconfig.get_path("purelib")))
     alone(
         installed,

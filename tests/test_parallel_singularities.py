@@ -1,4 +1,4 @@
-"""What rounded joints determine near a parallel singularity: circles, intersected to 50 digits."""
+"""What rounded joints determine near a parallel singularity: circles intersected to 50 digits."""
 
 import importlib
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ def load(backend: str, robot: str):
 
 
 def circles(centres, radii, start) -> float:
-    """How far two circles meet from ``start``, by Newton's method."""
+    """The distance from ``start`` to where two circles meet, by Newton's method."""
     x, y = map(mpf, start)
     for _ in range(60):
         rows = [(x - cx, y - cy) for cx, cy in centres]
@@ -43,9 +43,9 @@ def circles(centres, radii, start) -> float:
 
 
 def missed(q, p, lengths) -> float:
-    """How far from p the bars of the five-bar linkage meet, in the sum of the lengths.
+    """The distance from p to where the bars of the five-bar linkage meet, over the sum of lengths.
 
-    In the plane that theta1 turns, from the point of that plane which is nearest to p.
+    It is taken in the plane that theta1 turns, from the point of this plane nearest to p.
     """
     L0, L1, L2 = map(mpf, lengths)
     t1, t2, t3 = map(mpf, map(float, q))
@@ -70,7 +70,7 @@ def with_angle(lengths, psi: float, phi: np.ndarray) -> tuple[np.ndarray, np.nda
 
 @pytest.mark.parametrize("lengths", [(7, 8, 5), (1, 1, 2), (0.5, 3, 1)])
 def test_five_bar_at_all_distances(backend: str, lengths) -> None:
-    """The branch of a posture is OK where its bars cross at more than the least sine."""
+    """The branch of a posture is OK if the sine between its bars exceeds the limit."""
     arm, rng, told = (
         load(backend, "hybrid_five_bar"),
         np.random.default_rng(0),
@@ -96,7 +96,7 @@ def test_five_bar_at_all_distances(backend: str, lengths) -> None:
 
 
 def test_five_bar_where_c_is_d(backend: str) -> None:
-    """All P around C = D: no branch that puts C on D is OK, whose joints would fit any of them."""
+    """All P around C = D: a branch with C on D is not OK, because its joints fit any such P."""
     arm, corner = load(backend, "hybrid_five_bar"), 3.5 + 1j * np.sqrt(64 - 3.5**2)
     P = corner + 5 * np.exp(1j * np.linspace(-3, 3, 50))
     P = P[(P.imag > 0.1) & (np.abs(P) > 3.1) & (np.abs(P - 7) > 3.1)]
@@ -155,7 +155,7 @@ def test_rpr_where_the_legs_hold_nothing(backend: str) -> None:
 
 @pytest.mark.parametrize("robot", ["h6ar", "h6ar_loop_closed"])
 def test_wrist_links_that_are_nearly_stretched(backend: str, robot: str) -> None:
-    """The length of the wrist goes with a root; an answer that is OK still gives the tip."""
+    """The length of the wrist varies with a root; an OK answer still gives the tip."""
     arm, rng = load(backend, robot), np.random.default_rng(3)
     q = rng.uniform(-1, 1, (4000, 6)) * [3, 0.3, 0.3, 0.3, 0.3, 1] + [0, 0.6, -0.4, 0.6, -0.4, 0]
     exists = np.isfinite(arm.fk(q)).all(axis=-1)

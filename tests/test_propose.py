@@ -112,7 +112,7 @@ def test_the_proof_accepts_the_proposal(structure: str) -> None:
 
 @pytest.mark.parametrize("robot", ["scara", "ur_arm"])
 def test_the_inverses_of_the_examples_are_proposed(robot: str) -> None:
-    """From the axes of the example alone the same lemmas follow, for the same joints."""
+    """The axes alone lead to the lemmas of the example, for the same joints."""
     import importlib
 
     module = importlib.import_module(f"closedform.derivations.{robot}")
@@ -208,7 +208,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
     ],
 )
 def test_it_says_plainly_when_it_knows_no_chain(joints: str, rows: Callable, why: str) -> None:
-    """What stands in the way is said as a fact of this arm, what is needed apart from it."""
+    """The obstacle is stated as a fact of this arm, separate from what is needed."""
     with pytest.raises(NoChainError, match=f"no chain of lemmas is known.* because .*{why}") as e:
         propose(arm(joints, rows)[1])
     assert why.replace("\\", "") in e.value.found and e.value.needed.endswith(".")

@@ -205,7 +205,7 @@ def test_wrist_on_the_base_axis(robot) -> None:
 
 
 def test_inside_the_cylinder_and_on_it(robot) -> None:
-    """Nearer to the base axis than d3 nothing can be reached; on the cylinder shoulders merge."""
+    """Within d3 of the base axis nothing can be reached; on this cylinder the shoulders merge."""
     T = by_table(near("shoulder", 0.0, P))
     solutions = robot.ik(T)
     np.testing.assert_allclose(solutions.q[:, :4, 0], solutions.q[:, 4:, 0], atol=1e-7)
@@ -218,7 +218,7 @@ def test_inside_the_cylinder_and_on_it(robot) -> None:
 
 @pytest.mark.parametrize("kind", ["stretched", "folded"])
 def test_branches_merge_at_the_elbow(robot, kind: str) -> None:
-    """Stretched exactly, or a little farther than that: both elbows, equal."""
+    """Stretched exactly, or slightly beyond: both elbows are returned, and are equal."""
     q = near(kind, 0.0, P)
     T = by_table(q)
     T[:, :3, :3] = np.eye(3)

@@ -1,4 +1,4 @@
-"""Ranges of angles: how much of a wrap an answer needs, and that it then is in (-pi, pi]."""
+"""Ranges of angles: how much wrapping an answer needs to be in (-pi, pi]."""
 
 import importlib
 import math
@@ -62,7 +62,7 @@ def test_no_range_is_made_up(unknown: sp.Expr) -> None:
 
 @pytest.mark.parametrize("name", [n for n in ANGLES if n != "beside zero"])
 def test_values_lie_in_the_range(name: str) -> None:
-    """At random points and where coordinates are zeros of either sign."""
+    """At random points, and with coordinates that are zeros of either sign."""
     angle, _ = ANGLES[name]
     found = Ranges(["length"]).of(lowered(angle)[1])
     assert found is not None

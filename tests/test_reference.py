@@ -1,4 +1,4 @@
-"""Ball evaluation, against mpmath and at the places where floating point breaks."""
+"""Ball evaluation, compared with mpmath, and at points where floating point fails."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ x, y, t = sp.symbols("x y t", real=True)
 
 @pytest.fixture(autouse=True, scope="module")
 def precise_comparisons() -> Iterator[None]:
-    """The balls are tighter than Arb's default 53 bits; so must be the arithmetic on them."""
+    """The balls are tighter than Arb's default of 53 bits; arithmetic on them must be so too."""
     with flint.ctx.workprec(300):
         yield
 

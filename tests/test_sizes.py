@@ -38,9 +38,9 @@ def entries(result: object) -> list[np.ndarray]:
 @pytest.mark.parametrize("language", ["numpy", "c"])
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_mechanism_of_any_size(robot: str, language: str) -> None:
-    """Angles and statuses stay, a length is multiplied as all lengths are, an area twice.
+    """Angles and statuses stay the same; lengths scale once, areas twice.
 
-    In C a posture of another size is computed by itself, also in a batch.
+    In C a posture of another size is computed alone, even in a batch.
     """
     source = importlib.import_module(f"closedform.generated.numpy.{robot}")
     module = importlib.import_module(f"closedform.generated.{language}.{robot}")
@@ -98,7 +98,7 @@ def test_a_mechanism_of_any_size(robot: str, language: str) -> None:
 
 
 def translations(array: object, robot: str) -> list[int]:
-    """Of a task that is a pose, called by another name, and of nothing else."""
+    """The places of the translation in a pose, whatever its name; none in other arrays."""
     pose = array.shape == (4, 4)  # type: ignore[attr-defined]
     return [3, 7, 11] if pose else []
 
@@ -111,7 +111,7 @@ def test_links_of_very_different_sizes(language: str) -> None:
     np.testing.assert_allclose(q, arm.ik((1, 1), arm.Parameters(1, 0.8)).q, rtol=1e-14)
     far = [(1e200, 1), (1e308, 1e308), (-1e155, 0)]
     np.testing.assert_array_equal(arm.ik(far, arm.Parameters(1, 1)).status, arm.Status.UNREACHABLE)
-    # A link that is nothing beside the other, and an arm of the smallest numbers there are.
+    # A link that is tiny compared with the other, and an arm of the smallest numbers.
     for short in (1e-300, 5e-324):
         for links in ((short, 1), (1, short)):
             q, status = arm.ik((0, 1), arm.Parameters(*links))
@@ -143,7 +143,7 @@ def test_degrees_of_a_program() -> None:
     assert found.lengths == {"x", "length"}
     assert found.results == ((1, 3), (0,))
     assert found.highest == 3
-    # A constant among the lengths: nothing is known of a mechanism of twice the size.
+    # A constant among the lengths: there is no counterpart of twice the size.
     assert degrees([[graph.node("add", root, graph.const(2))]], {}, ["length"]) == degrees(
         [[graph.node("add", root, graph.const(2))]], {"length": 0}, []
     )

@@ -1,4 +1,4 @@
-"""An inverse in stages: a wrong formula in any of them, or between them, is found."""
+"""An inverse in stages: a wrong formula in a stage, or between stages, is found."""
 
 import dataclasses
 import importlib

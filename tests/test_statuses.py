@@ -1,4 +1,4 @@
-"""NumPy, a call of the C and a batch of it give every branch the same status, at thresholds too."""
+"""NumPy, a single C call and a C batch give every branch the same status, even at thresholds."""
 
 import importlib
 from collections.abc import Callable
@@ -69,11 +69,11 @@ LIMITS = {
     ("hybrid_five_bar", "ik"): ((3, 3, 3), (-3, -3, -3)),
     ("rpr_planar", "fk"): ((3, 3), (0, 0)),
 }
-"""Functions, and between which values an argument crosses a limit of what they reach."""
+"""Functions, and the values between which an argument crosses a limit of their reach."""
 
 
 def at_limit(function: Callable[..., Any], a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Between each two arguments of different statuses the last one whose status is that of a."""
+    """Between each a and b with different statuses, the last argument with the status of a."""
     status = function(a).status
     crosses = (status != function(b).status).any(axis=1)
     a, b, status = a[crosses], b[crosses], status[crosses]
@@ -86,7 +86,7 @@ def at_limit(function: Callable[..., Any], a: np.ndarray, b: np.ndarray) -> np.n
 
 @pytest.mark.parametrize(("robot", "name"), LIMITS)
 def test_statuses_at_limits(robot: str, name: str) -> None:
-    """Straight arms, stretched wrists, and what else bounds a workspace: on it and close by."""
+    """On and near each boundary of a workspace: straight arms, stretched wrists and others."""
     source = getattr(importlib.import_module(f"closedform.generated.numpy.{robot}"), name)
     compiled = getattr(importlib.import_module(f"closedform.generated.c.{robot}"), name)
     random = np.random.default_rng(0)

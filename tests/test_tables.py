@@ -1,4 +1,4 @@
-"""Tables of joints that hold a mistake: one line says where it is and what to write instead."""
+"""Tables of joints with a mistake: one line says where it is and what to write instead."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ HOME = '[home]\nposition = ["L", 0, 0]\n'
 
 
 def complaint(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[str]) -> str:
-    """What the command says of a table: one line, and no script."""
+    """The command's complaint about a table: one line, and no script."""
     table = folder / "table"
     table.write_text(text, "utf-8")
     assert main(["new", "arm", "--from", kind, str(table), "-o", str(folder)]) == 1
@@ -72,7 +72,7 @@ def test_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, mes
 
 
 def axis(**given: str) -> str:
-    """A file whose one axis has these entries instead of sound ones."""
+    """A file whose only axis has these entries instead of valid ones."""
     entries = {"joint": '"t1"', "direction": "[0, 0, 1]"} | given
     return "[[axes]]\n" + "".join(f"{k} = {v}\n" for k, v in entries.items() if v) + HOME
 
@@ -89,7 +89,7 @@ def axis(**given: str) -> str:
         ("[parameters]\nL = nan\n" + axis(), "the value of L is 'nan'; it must be a number"),
         ("[parameters]\nL = [1]\n" + axis(), "the value of L is a list; it must be a number"),
         ("[parameters]\nL = 1e-400\n" + axis(), "the value of L is '1e-400'"),
-        ("[parameters]\nL = { units = 1 }\n" + axis(), "there are value, unit, meaning"),
+        ("[parameters]\nL = { units = 1 }\n" + axis(), "the keys are value, unit, meaning"),
         ("[parameters]\nL = { unit = 1 }\n" + axis(), "the unit of L must be a text, not 1"),
         (
             '[parameters]\nL = { meaning = "a\\nb" }\n' + axis(),
@@ -98,7 +98,7 @@ def axis(**given: str) -> str:
         ("[parameters]\nL = 1\nK = 1\n" + axis(), "the parameter K is not used"),
         (axis(direction=""), "axis 1: direction is missing"),
         (axis(joint=""), "axis 1: joint is missing"),
-        (axis(joint="3"), 'axis 1: a joint has a name, such as "theta1", not 3'),
+        (axis(joint="3"), 'axis 1: joint must be a name, such as "theta1", not 3'),
         ("[parameters]\nL = 1\n" + axis(joint='"L"'), "L is a joint and a parameter"),
         (axis(joint='"my joint"'), "'my joint' is not a name"),
         (axis(joint='"while"'), "while is a word of Python and C and JavaScript"),

@@ -1,4 +1,4 @@
-"""The vocabulary on mechanisms it was not written for: prismatic, coupled and closed-loop ones.
+"""The vocabulary on mechanisms that it was not written for: prismatic, coupled, closed-loop.
 
 Each small derivation goes the whole way: proved, printed, compiled, and compared with Arb.
 """
@@ -276,7 +276,8 @@ def test_mistakes_in_a_script_are_named() -> None:
 
 
 def test_tolerances_are_honoured() -> None:
-    """The inverse of the 2R arm at just inside and just outside of each tolerance."""
+    """The inverse of the 2R arm just inside and just outside of each tolerance."""
+
     assert DOUBLE.feasibility < DOUBLE.round_trip
     d = Derivation("arm", "Arm", PAPER, "")
     p = Program()

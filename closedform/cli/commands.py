@@ -102,39 +102,48 @@ def parser() -> argparse.ArgumentParser:
 
     command("list", list_command)
     show = command("show", show_command)
-    show.add_argument("name", metavar="NAME")
-    show.add_argument("--format", choices=("text", "latex"), default="text")
+    show.add_argument("name", metavar="NAME", help="a derivation or the path of a script")
+    show.add_argument("--format", choices=("text", "latex"), default="text", help="default: text")
     derive = command("derive", derive_command)
-    derive.add_argument("names", metavar="NAME", nargs="*", help="all if none is given")
-    derive.add_argument("-o", "--output", metavar="DIR", type=Path)
+    derive.add_argument("names", metavar="NAME", nargs="*", help="default: all derivations")
     derive.add_argument(
-        "--backend", action="append", choices=pipeline.BACKENDS, help="can be repeated; default all"
+        "-o", "--output", metavar="DIR", type=Path, help="folder to write; default: generated/"
+    )
+    derive.add_argument(
+        "--backend",
+        action="append",
+        choices=pipeline.BACKENDS,
+        help="can be repeated; default: all",
     )
     derive.add_argument(
         "--no-crosscheck",
         action="store_true",
-        help="with -o: do not compare the printed code with the symbolic source",
+        help="with -o, do not compare the printed code with the symbolic source",
     )
     check = command("check", check_command)
     for added in (derive, check):
-        added.add_argument("-j", "--jobs", type=_positive, metavar="N", help="processes to use")
-        added.add_argument("--fresh", action="store_true", help="prove everything again")
+        added.add_argument("-j", "--jobs", type=_positive, metavar="N", help="number of processes")
+        added.add_argument("--fresh", action="store_true", help="ignore stored proofs")
     new = command("new", new_command)
-    new.add_argument("name", metavar="NAME")
+    new.add_argument("name", metavar="NAME", help="name of the mechanism and of the script")
     new.add_argument(
         "--from",
         dest="table",
         nargs=2,
         required=True,
         metavar=("KIND", "FILE"),
-        help="dh TABLE.csv, or screws FILE.toml",
+        help="dh TABLE.csv or screws FILE.toml",
     )
-    new.add_argument("--modified", action="store_true", help="the dh table is Craig's (proximal)")
+    new.add_argument(
+        "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
+    )
     new.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="default: current folder"
     )
     errata = command("errata", errata_command)
-    errata.add_argument("paper", metavar="PAPER", nargs="?", help="the key of one paper")
+    errata.add_argument(
+        "paper", metavar="PAPER", nargs="?", help="the key of a paper; default: all papers"
+    )
     return top
 
 
@@ -282,7 +291,8 @@ def new_command(options: argparse.Namespace) -> None:
 
 
 def errata_command(options: argparse.Namespace) -> None:
-    """Print every claim of all papers, or of one, that is not simply proved."""
+    """Print every claim that is not simply proved, of all papers or of one."""
+
     console.write(_errata_of(options) if options.paper else _errata())
 
 

@@ -232,8 +232,8 @@ class _Maker:
         total = sum(joints)
         # the last link is at the angle of the yaw, up to a constant
         ahead = sp.Symbol("yaw") + sp.simplify(total - yaw)
-        carried = rotation("z", ahead) * sp.Matrix([*vectors[2], 0])
-        x, y = self._less_by(self.arm.lead[:2, 3] + carried[:2, 0])
+        last_link = rotation("z", ahead) * sp.Matrix([*vectors[2], 0])
+        x, y = self._less_by(self.arm.lead[:2, 3] + last_link[:2, 0])
         self._two_links(joints[:2], vectors[:2], x, y, alone=x == "x")
         for i in slides:
             symbol = _symbol(self.arm, rows, i)
@@ -458,13 +458,13 @@ class _Maker:
             "axes 4, 5 and 6 do not meet in a point",
             "The known chains have a spherical wrist, or parallel axes 2, 3 and 4 (UR).",
         )
-        carried = groups[:-3]
-        last = carried[-1].rows[-1]
-        extra = carried[-1].end * sp.Matrix(first.rows[0].shift)
+        before = groups[:-3]
+        last = before[-1].rows[-1]
+        extra = before[-1].end * sp.Matrix(first.rows[0].shift)
         moved = tuple(sp.Matrix(last.shift) + extra)
         arm = [
-            *carried[:-1],
-            Group((*carried[-1].rows[:-1], last._replace(shift=moved)), carried[-1].end),
+            *before[:-1],
+            Group((*before[-1].rows[:-1], last._replace(shift=moved)), before[-1].end),
         ]
         structure, pairs = self._position(arm)
         self.add(f"M = {_times(self.arm.lead[:3, :3].T, 'ik.R')}")

@@ -17,7 +17,7 @@ class _Source(StrPrinter):  # type: ignore[misc]
 
     def _print_Symbol(self, expr: Any) -> str:
         if not NAME.fullmatch(expr.name):
-            raise ValueError(f"{expr.name!r} cannot be written as a name in Python")
+            raise ValueError(f"{expr.name!r} is not a name in Python")
         return str(expr.name)
 
     def _print_Rational(self, expr: Any) -> str:

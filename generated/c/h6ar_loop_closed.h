@@ -247,10 +247,10 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  * q : real_t[48], shape (8, 6)
  *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].
  * status : uint8_t[8]
- *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
- *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
- *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
- *     the status is UNREACHABLE or INVALID.
+ *     A CLOSEDFORM_ status of each branch: OK (0) if q is a solution, UNREACHABLE (1) if there
+ *     is no solution, SINGULAR (2) if q is one of infinitely many solutions or poorly
+ *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. q
+ *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----

@@ -57,10 +57,10 @@ typedef struct {
  * p : real_t[6], shape (2, 3)
  *     x, y, z in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) where p is a solution, UNREACHABLE (1) where
- *     there is none, SINGULAR (2) where p is one of infinitely many or hardly determined (see
- *     the notes), and INVALID (3) where an input is not finite or impossible. p is NaN where
- *     the status is UNREACHABLE or INVALID.
+ *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
+ *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
+ *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
@@ -266,10 +266,10 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
  * q : real_t[24], shape (8, 3)
  *     theta1, theta2, theta3 in rad, in (-pi, pi].
  * status : uint8_t[8]
- *     A CLOSEDFORM_ status of each branch: OK (0) where q is a solution, UNREACHABLE (1) where
- *     there is none, SINGULAR (2) where q is one of infinitely many or hardly determined (see
- *     the notes), and INVALID (3) where an input is not finite or impossible. q is NaN where
- *     the status is UNREACHABLE or INVALID.
+ *     A CLOSEDFORM_ status of each branch: OK (0) if q is a solution, UNREACHABLE (1) if there
+ *     is no solution, SINGULAR (2) if q is one of infinitely many solutions or poorly
+ *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. q
+ *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----

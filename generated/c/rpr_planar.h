@@ -46,10 +46,10 @@ typedef struct {
  * p : real_t[4], shape (2, 2)
  *     x, y in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) where p is a solution, UNREACHABLE (1) where
- *     there is none, SINGULAR (2) where p is one of infinitely many or hardly determined (see
- *     the notes), and INVALID (3) where an input is not finite or impossible. p is NaN where
- *     the status is UNREACHABLE or INVALID.
+ *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
+ *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
+ *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
@@ -169,10 +169,10 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
  * q : real_t[2], shape (1, 2)
  *     rho1, rho2 in the unit of the parameters.
  * status : uint8_t[1]
- *     A CLOSEDFORM_ status: OK (0) where q is a solution, UNREACHABLE (1) where there is none,
- *     SINGULAR (2) where q is one of infinitely many or hardly determined (see the notes), and
- *     INVALID (3) where an input is not finite or impossible. q is NaN where the status is
- *     UNREACHABLE or INVALID.
+ *     A CLOSEDFORM_ status: OK (0) if q is a solution, UNREACHABLE (1) if there is no solution,
+ *     SINGULAR (2) if q is one of infinitely many solutions or poorly determined (see the
+ *     notes), and INVALID (3) if an input is not finite or not possible. q is NaN if the status
+ *     is UNREACHABLE or INVALID.
  *
  * Notes
  * -----

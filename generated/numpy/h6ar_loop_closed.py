@@ -321,7 +321,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> A
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -595,7 +595,7 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -669,7 +669,7 @@ def arm_tips(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_ARM_TIPS, (q,), params, out)
     return result
@@ -748,7 +748,7 @@ def invariant_point(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_INVARIANT_POINT, (q,), params, out)
     return result
@@ -1155,7 +1155,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -1387,7 +1387,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -1625,7 +1625,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -3324,17 +3324,17 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     q : ndarray of float64, shape (..., 8, 6)
         theta1, theta2R, theta3R, theta2L, theta3L, theta in rad, in (-pi, pi].
     status : ndarray of uint8, shape (..., 8)
-        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
-        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
-        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
-        status is UNREACHABLE or INVALID.
+        A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no
+        solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined
+        (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN
+        if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -3414,7 +3414,7 @@ def wrist_length(psi: "ArrayLike", phi: "ArrayLike", params: "Parameters" = _DEF
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_WRIST_LENGTH, (psi, phi), params, out)
     return result
@@ -3468,7 +3468,7 @@ def minimum_link_length(psi_max: "ArrayLike", phi_max: "ArrayLike", beta_min: "A
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_MINIMUM_LINK_LENGTH, (psi_max, phi_max, beta_min), params, out)
     return result
@@ -3528,7 +3528,7 @@ def largest_yaw(phi: "ArrayLike", beta_min: "ArrayLike", params: "Parameters" = 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_LARGEST_YAW, (phi, beta_min), params, out)
     return result
@@ -3585,7 +3585,7 @@ def largest_angle(beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_LARGEST_ANGLE, (beta_min,), params, out)
     return result

@@ -173,17 +173,17 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 2, 3)
         x, y, z in the unit of the parameters.
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) where `p` is a solution, UNREACHABLE (1) where there
-        is none, SINGULAR (2) where `p` is one of infinitely many or hardly determined (see the
-        notes), and INVALID (3) where an input is not finite or impossible. `p` is NaN where the
-        status is UNREACHABLE or INVALID.
+        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
+        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
+        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
+        if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -285,7 +285,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -405,7 +405,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -506,7 +506,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -636,7 +636,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -742,7 +742,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -850,7 +850,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -929,7 +929,7 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -1130,17 +1130,17 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     q : ndarray of float64, shape (..., 8, 3)
         theta1, theta2, theta3 in rad, in (-pi, pi].
     status : ndarray of uint8, shape (..., 8)
-        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
-        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
-        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
-        status is UNREACHABLE or INVALID.
+        A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no
+        solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined
+        (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN
+        if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -1225,7 +1225,7 @@ def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_WORKSPACE_CONTAINS, (p,), params, out)
     return result
@@ -1306,7 +1306,7 @@ def workspace_volume(params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----

@@ -141,7 +141,7 @@ def joint4(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JOINT4, (q,), params, out)
     return result
@@ -188,7 +188,7 @@ def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT, *, 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -238,7 +238,7 @@ def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -297,7 +297,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> A
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -370,7 +370,7 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -441,7 +441,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -520,7 +520,7 @@ def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_SPACE, (q,), params, out)
     return result
@@ -597,7 +597,7 @@ def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_BODY, (q,), params, out)
     return result
@@ -665,7 +665,7 @@ def jacobian_motors(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_JACOBIAN_MOTORS, (q,), params, out)
     return result
@@ -713,7 +713,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -760,7 +760,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -825,7 +825,7 @@ def point_velocity(q: "ArrayLike", qdot: "ArrayLike", params: "Parameters" = _DE
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POINT_VELOCITY, (q, qdot), params, out)
     return result
@@ -1006,17 +1006,17 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     q : ndarray of float64, shape (..., 4, 4)
         theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
     status : ndarray of uint8, shape (..., 4)
-        A `Status` of each branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there
-        is none, SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the
-        notes), and INVALID (3) where an input is not finite or impossible. `q` is NaN where the
-        status is UNREACHABLE or INVALID.
+        A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no
+        solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined
+        (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN
+        if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -1073,7 +1073,7 @@ def workspace_section(params: "Parameters" = _DEFAULT, *, out: Any = None) -> An
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -1139,7 +1139,7 @@ def workspace_margin(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_WORKSPACE_MARGIN, (p,), params, out)
     return result
@@ -1210,7 +1210,7 @@ def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----

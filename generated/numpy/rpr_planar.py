@@ -137,17 +137,17 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 2, 2)
         x, y in the unit of the parameters.
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) where `p` is a solution, UNREACHABLE (1) where there
-        is none, SINGULAR (2) where `p` is one of infinitely many or hardly determined (see the
-        notes), and INVALID (3) where an input is not finite or impossible. `p` is NaN where the
-        status is UNREACHABLE or INVALID.
+        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
+        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
+        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
+        if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -232,7 +232,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -323,7 +323,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -397,7 +397,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -477,7 +477,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----
@@ -533,17 +533,17 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     q : ndarray of float64, shape (..., 1, 2)
         rho1, rho2 in the unit of the parameters.
     status : ndarray of uint8, shape (..., 1)
-        A `Status`: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none,
-        SINGULAR (2) where `q` is one of infinitely many or hardly determined (see the notes),
-        and INVALID (3) where an input is not finite or impossible. `q` is NaN where the status
-        is UNREACHABLE or INVALID.
+        A `Status`: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no solution,
+        SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined (see the
+        notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN if the
+        status is UNREACHABLE or INVALID.
 
     Raises
     ------
     TypeError
         If an argument does not hold real numbers.
     ValueError
-        If an argument has another shape, or leading axes do not broadcast.
+        If an argument has the wrong shape, or leading axes do not broadcast.
 
     Notes
     -----

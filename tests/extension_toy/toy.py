@@ -1,4 +1,4 @@
-"""The toy of toy.c in plain NumPy, and the many ways in which an array can lie in memory."""
+"""The toy of toy.c in plain NumPy, and the many layouts of an array in memory."""
 
 from __future__ import annotations
 

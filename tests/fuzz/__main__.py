@@ -1,7 +1,7 @@
-"""Attack the project with random input for a bounded time, and print what was tried.
+"""Attack the project with random input for a limited time, and print what was tried.
 
-What fails is printed and saved to ``tests/fuzz/cases``; ``make test`` tries every saved case again.
-The exit code is 1 where anything failed.
+Failures are printed and saved in ``tests/fuzz/cases``; ``make test`` tries every saved case again.
+The exit code is 1 if anything failed.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from . import ATTACKS
 from .outcome import CASES, Outcome
 
 SAVED = 40
-"""Failures that one run saves at most: the first tell enough."""
+"""The most failures that one run saves; more would say nothing new."""
 START, END = "<!-- what was tried -->\n", "<!-- end -->\n"
 
 

@@ -1,7 +1,7 @@
-"""Arguments of every kind, put into the NumPy modules and the extension: both answer alike.
+"""Arguments of every kind for the NumPy modules and the extension, which must answer alike.
 
-The calls run in a process of their own, so that a crash is a finding and not the end.  An argument
-is described by data, from which it can be made again.
+The calls run in a process of their own, so that a crash is a finding and does not end the attack.
+An argument is described by data, from which it can be made again.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .outcome import Failure, Outcome
 NAME = "arguments"
 CALLS = 1500
 PATIENCE = 120
-"""Seconds after which a round is taken to hang."""
+"""Seconds after which a round counts as hanging."""
 
 AWKWARD = (0.0, -0.0, 1.0, -1.0, 0.5, np.pi, 1e-300, -1e-12, 5e-324, 1e22, -1e308, np.inf, -np.inf)
 AWKWARD += (np.nan, 18.0, 2.0)
@@ -62,7 +62,7 @@ def replay(case: Mapping[str, Any]) -> list[str]:
 def _in_process(
     plan: list[dict[str, Any]],
 ) -> tuple[list[tuple[int, str]], tuple[int, str] | None]:
-    """Problems by place in the plan, and where the process died, if it did."""
+    """The problems by their place in the plan, and where the process died, if it did."""
     command = [sys.executable, "-m", "fuzz.arguments"]
     try:
         done = subprocess.run(

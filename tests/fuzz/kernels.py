@@ -44,7 +44,7 @@ def replay(case: Mapping[str, Any]) -> list[str]:
 
 
 def _run(seed: int, calls: int, only: int | None = None) -> tuple[str, int]:
-    """What the driver died of, and in which call; the message is empty where it did not."""
+    """Why the driver died, and in which call; the message is empty if it did not."""
     command = [driver(), str(seed), str(calls), *([str(only)] if only is not None else [])]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode == 0:

@@ -1,4 +1,4 @@
-"""Dimensions and postures at which generated code breaks: unlike lengths, zeros, singular sets."""
+"""Dimensions and postures that may break generated code: unlike lengths, zeros, singular sets."""
 
 from __future__ import annotations
 

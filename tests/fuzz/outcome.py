@@ -15,7 +15,7 @@ CASES = Path(__file__).parent / "cases"
 
 @dataclass(frozen=True)
 class Failure:
-    """A failing case: what went wrong, and all that is needed to try it again."""
+    """A failing case: what went wrong, and everything needed to try it again."""
 
     attack: str
     problem: str

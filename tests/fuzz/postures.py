@@ -1,4 +1,4 @@
-"""Postures of the forward map, put into the inverse: none may be lost, no answer may be wrong."""
+"""Images of postures, put into the inverse: no posture may be lost, no answer may be wrong."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SIZE = 2000
 KEPT = 2
 """Failures of one kind that a round keeps for one mechanism."""
 GENERIC = 1e-3
-"""A posture whose factors are all larger, as a part of their median, must come back itself."""
+"""A posture must be returned if each of its factors is more than this share of its median."""
 
 Array = NDArray[Any]
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
@@ -61,7 +61,7 @@ def replay(case: Mapping[str, Any]) -> list[str]:
 def _rescaled(
     rng: np.random.Generator, subject: Robot, lengths: Array, q: Array
 ) -> tuple[Array, Array]:
-    """The same in other units: all lengths times a power of two."""
+    """The same postures in other units: all lengths are multiplied by a power of two."""
     power = 2.0 ** float(rng.integers(-900, 900))
     return lengths * power, np.where(subject.slides, q * power, q)
 
@@ -116,7 +116,7 @@ def _reached(
 
 
 def _again(subject: Robot, module: Any, lengths: Array, q: Array, reached: Array) -> Array:
-    """How far each answer misses its target: an error a branch, in units of the lengths."""
+    """How far the answer of each branch misses its target, in units of the lengths."""
     n, branches = q.shape[:2]
     params = tuple(np.repeat(lengths, branches, axis=0).T)
     image = module.fk(q.reshape(n * branches, -1), params)

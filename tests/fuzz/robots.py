@@ -13,12 +13,12 @@ from closedform.pipeline import run as pipeline
 
 BACKENDS = ("numpy", "c")
 NEEDED = {"h6ar": ("L1", "L2", "d"), "h6ar_loop_closed": ("L1", "L2", "d")}
-"""Lengths without which there is no such mechanism: its inverse says INVALID where one is zero."""
+"""Lengths that the mechanism needs: its inverse says INVALID if one of them is zero."""
 
 
 @dataclass(frozen=True)
 class Robot:
-    """Names, kinds of joints, and the joints that stay close to another, by their places."""
+    """Names, kinds of joints, and the indices of the joints that stay close to another."""
 
     name: str
     fields: tuple[str, ...]

@@ -1,7 +1,7 @@
 """Tables of joints with mistakes and attacks in them: refused with a reason, or read as data.
 
-Each is read in a process of its own kind of caution: whatever it does to the machine is a finding,
-and so is an exception of another kind than the one that is promised, and a long silence.
+Each table is read under guard.  Any effect on the machine is a finding, and so are an exception
+other than the documented one and a long silence.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ FORBIDDEN = ("os.system", "os.exec", "os.posix_spawn", "subprocess.Popen", "sock
 
 
 class AttackSucceededError(BaseException):
-    """A table made the reader do what no reader of data does."""
+    """A table made the reader do more than read data."""
 
 
 _watched = False

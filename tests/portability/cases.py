@@ -1,7 +1,7 @@
-"""Ordinary postures and what the NumPy modules answer there: a measure for every other build.
+"""Ordinary postures and the answers of the NumPy modules, to compare every other build with.
 
-Where an input moved by a few units in its last place would change an answer by much, or a status,
-rounding decides; such postures are left out.
+Postures at which rounding decides are left out: there a change of a few units in the last place of
+an input changes a status, or an answer by much.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .driver import (
 )
 
 POSTURES = 12
-TOLERANCE = {False: 1e-10, True: 2e-3}  # of a value of size 1, for double and for float
+TOLERANCE = {False: 1e-10, True: 2e-3}  # for a value of size 1, in double and in float
 NUDGE = {False: 1e-15, True: 1e-7}
 
 
@@ -55,7 +55,7 @@ def _rounded(values: Array, single: bool) -> Array:
 
 
 def _header(single: bool) -> Case:
-    """By libm in double."""
+    """The values of libm in double precision."""
     rng = np.random.default_rng(0)
     rows = _rounded(rng.uniform(-9, 9, (40, 2)), single)
     x, y = rows.T
@@ -106,7 +106,7 @@ def _joined(parts: list[Array]) -> Array:
 
 
 def agree(values: Array, expected: Array, n_real: int, tolerance: float) -> np.ndarray:
-    """Numbers may differ by whole turns where they are about pi."""
+    """The difference, modulo whole turns for values near pi."""
     with np.errstate(invalid="ignore"):
         gap = np.abs(values - expected)
         turned = np.abs(gap - 2 * np.pi)
@@ -119,7 +119,7 @@ def agree(values: Array, expected: Array, n_real: int, tolerance: float) -> np.n
 
 
 def mismatches(program: Program, wanted: Sequence[Case], *, single: bool) -> Iterator[str]:
-    """A line for each function that answers otherwise, by single calls or in a batch."""
+    """A line for each function whose answers differ, in single calls or in a batch."""
     answers = program.ask([case.request for case in wanted])
     for case, answer in zip(wanted, answers, strict=True):
         for form, values in _forms(answer):

@@ -1,7 +1,7 @@
-"""The generated C as a program for any compiler and any processor: built, and asked for values.
+"""The generated C as a program for any compiler and any processor.
 
-What cannot be loaded into this process (32 bits, another processor, code that traps) can still be
-run, if need be under an emulator.
+Code that cannot be loaded into this process (32 bits, another processor, code that traps) can still
+run as a program, under an emulator if necessary.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def numpy_values(robot: str, function: Function, rows: Array, parameters: Sequen
 
 @dataclass(frozen=True)
 class Signature:
-    """How many numbers a function takes and gives; ``kinds`` and ``sizes`` are of its outputs."""
+    """The numbers that a function takes and returns; ``kinds`` and ``sizes`` describe outputs."""
 
     inputs: tuple[int, ...]
     sizes: tuple[int, ...]
@@ -161,7 +161,7 @@ class Program:
     runner: tuple[str, ...] = ()
 
     def ask(self, requests: Sequence[Request], *arguments: str) -> list[Answer]:
-        """What a program does that is stopped by a trap is not an answer: it raises."""
+        """Return the outputs; raise if the program was stopped by a trap."""
         places = {name: k for k, name in enumerate(functions(self.robots))}
         lines = []
         for r in requests:

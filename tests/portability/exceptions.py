@@ -1,4 +1,4 @@
-"""Where floating-point exceptions are looked for: at ordinary postures, and where it is hard."""
+"""Inputs to check for floating-point exceptions: ordinary postures and difficult ones."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from closedform.check.samples import Sample, inverse_postures, joint_samples, pe
 
 from .driver import Request, derivation, numpy_values
 
-HUGE = "huge"  # sines of angles beyond 1e11 are by libm, but after polynomials that overflow
+HUGE = "huge"  # beyond 1e11 libm computes the sines, but only after polynomials that overflow
 
 
 def requests(robot: str, *, single: bool) -> Iterator[Request]:

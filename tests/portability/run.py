@@ -1,10 +1,10 @@
-"""Tries the generated C and the extension on whatever compilers, processors and Pythons are here.
+"""Tries the generated C and the extension with every compiler, processor and Python that is here.
 
     python tests/portability/run.py [--all]
 
-Each attempt prints a line: right, skipped and why, or what is wrong; only the last fails.
-Nothing is timed. Without --all two robots stand for the rest, and no environment of Python is made.
-Further interpreters are named in PYTHONS.
+Each attempt prints a line: right, skipped with the reason, or what is wrong, which fails the run.
+Nothing is timed. Without --all only two robots are tried, and no Python environment is made.
+PYTHONS lists the other interpreters to try.
 """
 
 from __future__ import annotations

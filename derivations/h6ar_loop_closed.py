@@ -496,7 +496,7 @@ d.inverses.append(
             lemmas,
             joints,
             sp.diag(MID_PLANE_ROWS, sp.Matrix.vstack(closure, turned_line * difference)),
-            kept_of=2,
+            solutions_per_branch=2,
             because="the virtual arm is bent to the same side as the right arm",
         ),
     )

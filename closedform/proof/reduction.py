@@ -53,7 +53,7 @@ def prove_reduction(
             )
     count = math.prod(lemma.branches for lemma in reduction.lemmas)
     branches = len(function.branches) if function.branches else 1
-    if count != branches * reduction.kept_of:
+    if count != branches * reduction.solutions_per_branch:
         raise ProofError(f"{where}: the lemmas give {count} solutions, not {branches}")
     names = tuple(dict.fromkeys(lemma.name for lemma in reduction.lemmas))
     method = "lemma by lemma" + (f"; {reduction.because}" if reduction.because else "")

@@ -2107,7 +2107,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_fk_in, 1, h6ar_fk_out,
@@ -2140,7 +2140,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_pose_in, 1, h6ar_pose_out,
@@ -2174,7 +2174,7 @@ const cf_function cf_functions[] = {
       1, h6ar_arm_tips_in, 1, h6ar_arm_tips_out,
       h6ar_arm_tips_one, h6ar_arm_tips_many },
     { "h6ar.invariant_point",
-      "The invariant point, by the averages of the angles.\n"
+      "The invariant point, computed from the averages of the angles.\n"
       "\n"
       "Source: eq. (7).\n"
       "\n"
@@ -2229,8 +2229,8 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
-      "- Unbounded where the wrist links are stretched: there l_W turns over.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
+      "- Unbounded near stretched wrist links: the slope of l_W is infinite there.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_jacobian_in, 1, h6ar_jacobian_out,
@@ -2260,7 +2260,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_determinant_in, 1, h6ar_determinant_out,
@@ -2280,9 +2280,10 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "factors : ndarray of float64, shape (..., 6)\n"
-      "    One factor for each singular set: the tip is above or below the waist axis; virtual arm\n"
-      "    with the wrist straight or folded; virtual arm straight or folded; upper arms half a\n"
-      "    turn apart; fore-arms half a turn apart; wrist links stretched along the base line.\n"
+      "    One factor for each singular set: tip in the plane of the waist axis and the shoulders;\n"
+      "    virtual arm with the wrist straight or folded; virtual arm straight or folded; upper\n"
+      "    arms half a turn apart; fore-arms half a turn apart; wrist links stretched along the\n"
+      "    base line.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -2293,7 +2294,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span.\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_singularities_in, 1, h6ar_singularities_out,
@@ -2334,21 +2335,22 @@ const cf_function cf_functions[] = {
       "- Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, rear_elbow_up,\n"
       "  rear_elbow_down.\n"
       "- UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist\n"
-      "  axis than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.\n"
-      "- SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm\n"
-      "  with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm\n"
-      "  straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),\n"
-      "  or their difference where it is folded, is determined by yaw and roll, alpha and beta\n"
-      "  being half the differences of the arms' angles; sines of equal size are returned.\n"
-      "- SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al):\n"
-      "  rounded joints do not hold the tip to 1e-12 there.\n"
+      "  axis than L_theta, the virtual arm cannot reach the tip, or the tips of the arms cannot be\n"
+      "  so far apart.\n"
+      "- SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned); the tip of the virtual arm\n"
+      "  with the wrist is on its shoulder (a horizontal upper arm is returned); or the virtual arm\n"
+      "  without the wrist is straight or folded. In the last case yaw and roll determine only the\n"
+      "  sum of L1 sin(alpha) and f sin(beta) (straight) or their difference (folded); alpha and\n"
+      "  beta are half the differences of the arms' angles, and sines of equal size are returned.\n"
+      "- SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded\n"
+      "  joints do not determine the tip to 1e-12 there.\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
       ,
       9, h6ar_values, h6ar_fields,
       1, h6ar_ik_in, 2, h6ar_ik_out,
       h6ar_ik_one, h6ar_ik_many },
     { "h6ar.wrist_length",
-      "The variable length l_W of the wrist; NaN where the links are too short.\n"
+      "The variable length l_W of the wrist; NaN if the links are too short.\n"
       "\n"
       "Source: eq. (8).\n"
       "\n"
@@ -2409,7 +2411,7 @@ const cf_function cf_functions[] = {
       3, h6ar_minimum_link_length_in, 1, h6ar_minimum_link_length_out,
       h6ar_minimum_link_length_one, h6ar_minimum_link_length_many },
     { "h6ar.largest_yaw",
-      "The largest yaw at a roll that keeps the separation angle; NaN where there is none.\n"
+      "The largest yaw at a roll that keeps the separation angle; NaN if there is none.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2438,7 +2440,7 @@ const cf_function cf_functions[] = {
       2, h6ar_largest_yaw_in, 1, h6ar_largest_yaw_out,
       h6ar_largest_yaw_one, h6ar_largest_yaw_many },
     { "h6ar.largest_angle",
-      "The largest angle that yaw and roll may both have; NaN where there is none.\n"
+      "The largest angle that yaw and roll may both have; NaN if there is none.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2492,10 +2494,10 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_fk_in, 1, h6ar_loop_closed_fk_out,
@@ -2528,10 +2530,10 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_pose_in, 1, h6ar_loop_closed_pose_out,
@@ -2620,17 +2622,17 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
-      "- Unbounded where the wrist links are stretched: there l_W turns over.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
+      "- Unbounded near stretched wrist links: the slope of l_W is infinite there.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_jacobian_in, 1, h6ar_loop_closed_jacobian_out,
       h6ar_loop_closed_jacobian_one, h6ar_loop_closed_jacobian_many },
     { "h6ar_loop_closed.determinant",
-      "Determinant of the Jacobian; it has a pole where the virtual arm is straight.\n"
+      "Determinant of the Jacobian; it has a pole if the virtual arm is straight or folded.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2654,10 +2656,10 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_determinant_in, 1, h6ar_loop_closed_determinant_out,
@@ -2677,10 +2679,10 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "factors : ndarray of float64, shape (..., 6)\n"
-      "    One factor for each singular set: the tip is above or below the waist axis; virtual arm\n"
-      "    with the wrist straight or folded; right arm straight or folded; left arm straight or\n"
-      "    folded; virtual arm straight or folded (a pole of the determinant); wrist links\n"
-      "    stretched along the base line.\n"
+      "    One factor for each singular set: tip in the plane of the waist axis and the shoulders;\n"
+      "    virtual arm with the wrist straight or folded; right arm straight or folded; left arm\n"
+      "    straight or folded; virtual arm straight or folded (a pole of the determinant); wrist\n"
+      "    links stretched along the base line.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -2691,19 +2693,19 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN where the tips are farther apart than the wrist links can span, or where the virtual\n"
-      "  arm cannot reach their middle.\n"
-      "- Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of\n"
-      "  yaw and roll.\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_singularities_in, 1, h6ar_loop_closed_singularities_out,
       h6ar_loop_closed_singularities_one, h6ar_loop_closed_singularities_many },
     { "h6ar_loop_closed.ik",
-      "All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other\n"
-      "side.\n"
+      "All postures of the mechanism that reach a tip; in a mixed one the elbows are on opposite\n"
+      "sides.\n"
       "\n"
-      "Source: eqs. (11), (13) and (14), then each arm by itself.\n"
+      "Source: eqs. (11), (13) and (14), then each arm separately.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2737,22 +2739,22 @@ const cf_function cf_functions[] = {
       "  front_elbow_down_alike, front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed,\n"
       "  rear_elbow_down_alike, rear_elbow_down_mixed.\n"
       "- UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the\n"
-      "  waist axis than L_theta, or an arm is out of reach.\n"
-      "- SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its\n"
-      "  upper arm is returned beside that of the virtual arm).\n"
-      "- SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a\n"
+      "  waist axis than L_theta, or an arm cannot reach its tip.\n"
+      "- SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on its\n"
+      "  own shoulder (its upper arm is returned parallel to that of the virtual arm).\n"
+      "- SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a\n"
       "  folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the\n"
-      "  distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and stretched\n"
-      "  wrist links (l_W is less than 2^-10 al).\n"
+      "  distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near\n"
+      "  stretched wrist links (l_W is less than 2^-10 al).\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
       "- A straight right arm is returned bent by a few units in the last place, so that fk can\n"
-      "  read the side.\n"
+      "  tell the side.\n"
       ,
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_ik_in, 2, h6ar_loop_closed_ik_out,
       h6ar_loop_closed_ik_one, h6ar_loop_closed_ik_many },
     { "h6ar_loop_closed.wrist_length",
-      "The variable length l_W of the wrist; NaN where the links are too short.\n"
+      "The variable length l_W of the wrist; NaN if the links are too short.\n"
       "\n"
       "Source: eq. (8).\n"
       "\n"
@@ -2814,7 +2816,7 @@ const cf_function cf_functions[] = {
       3, h6ar_loop_closed_minimum_link_length_in, 1, h6ar_loop_closed_minimum_link_length_out,
       h6ar_loop_closed_minimum_link_length_one, h6ar_loop_closed_minimum_link_length_many },
     { "h6ar_loop_closed.largest_yaw",
-      "The largest yaw at a roll that keeps the separation angle; NaN where there is none.\n"
+      "The largest yaw at a roll that keeps the separation angle; NaN if there is none.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2843,7 +2845,7 @@ const cf_function cf_functions[] = {
       2, h6ar_loop_closed_largest_yaw_in, 1, h6ar_loop_closed_largest_yaw_out,
       h6ar_loop_closed_largest_yaw_one, h6ar_loop_closed_largest_yaw_many },
     { "h6ar_loop_closed.largest_angle",
-      "The largest angle that yaw and roll may both have; NaN where there is none.\n"
+      "The largest angle that yaw and roll may both have; NaN if there is none.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -2903,7 +2905,7 @@ const cf_function cf_functions[] = {
       "Notes\n"
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.\n"
-      "- UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.\n"
+      "- UNREACHABLE: C and D are more than 2*L2 apart, so the loop cannot close.\n"
       "- SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point\n"
       "  at theta4 = theta5 = +90 or -90 degrees is returned.\n"
       "- Ill-conditioned near the parallel singularities, where both modes meet or P is free.\n"
@@ -2939,7 +2941,7 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.\n"
       "- NaN for an assembly mode that does not exist.\n"
-      "- Free, but equal, where C and D coincide: +90 and -90 degrees are returned.\n"
+      "- If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_passive_angles_in, 1, hybrid_five_bar_passive_angles_out,
@@ -3004,7 +3006,7 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.\n"
       "- NaN for an assembly mode that does not exist.\n"
-      "- Its signs tell the working modes apart, in the order of BRANCHES.\n"
+      "- Its signs distinguish the working modes; BRANCHES lists them in the same order.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_jacobian_serial_in, 1, hybrid_five_bar_jacobian_serial_out,
@@ -3076,7 +3078,7 @@ const cf_function cf_functions[] = {
       hybrid_five_bar_determinant_one, hybrid_five_bar_determinant_many },
     { "hybrid_five_bar.singularities",
       "Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and\n"
-      "L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.\n"
+      "L1*L2*sin(theta5 - theta3) (serial), and L2^2*sin(theta5 - theta4) (parallel).\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3135,8 +3137,8 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.\n"
       "- NaN for an assembly mode that does not exist.\n"
-      "- Infinite at a parallel singularity; it does not depend on theta1, and both modes have the\n"
-      "  same.\n"
+      "- Infinite at a parallel singularity. It does not depend on theta1 and is the same for both\n"
+      "  modes.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_condition_number_in, 1, hybrid_five_bar_condition_number_out,
@@ -3178,13 +3180,15 @@ const cf_function cf_functions[] = {
       "  plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.\n"
       "- BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly\n"
       "  modes.\n"
-      "- UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.\n"
-      "- SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is\n"
-      "  free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.\n"
-      "- SINGULAR as well near a parallel singularity, where the sine of the angle between CP and\n"
-      "  DP is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than\n"
-      "  1e-12 of the lengths. If L0 = 0, equal signs of the last two entries put C on D.\n"
-      "- Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,\n"
+      "- UNREACHABLE: the distance of P from A or from B is more than L1 + L2 or less than |L1 -\n"
+      "  L2|.\n"
+      "- SINGULAR: theta1 is free if P is on the axis; theta2 or theta3 is free if L1 = L2 and P is\n"
+      "  at A or at B; both are free if L1 = 0. 0 is returned for theta1, and for the others unless\n"
+      "  L1 = 0.\n"
+      "- SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is\n"
+      "  less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of\n"
+      "  the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.\n"
+      "- Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but\n"
       "  the loop still closes.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
@@ -3243,7 +3247,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- NaN for a length that is negative or not finite.\n"
+      "- NaN if a length is negative or not finite.\n"
       ,
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       0, NULL, 1, hybrid_five_bar_workspace_volume_out,
@@ -3278,7 +3282,7 @@ const cf_function cf_functions[] = {
       1, irb260_joint4_in, 1, irb260_joint4_out,
       irb260_joint4_one, irb260_joint4_many },
     { "irb260.joints_from_motors",
-      "Joint angles of motor angles: theta3 = m3 - m2.\n"
+      "Joint angles from motor angles: theta3 = m3 - m2.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3303,13 +3307,13 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- The map is linear and counts turns: its angles are not reduced to (-pi, pi].\n"
+      "- The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_joints_from_motors_in, 1, irb260_joints_from_motors_out,
       irb260_joints_from_motors_one, irb260_joints_from_motors_many },
     { "irb260.motors_from_joints",
-      "Motor angles of joint angles: m3 = theta2 + theta3.\n"
+      "Motor angles from joint angles: m3 = theta2 + theta3.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3333,7 +3337,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- The map is linear and counts turns: its angles are not reduced to (-pi, pi].\n"
+      "- The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_motors_from_joints_in, 1, irb260_motors_from_joints_out,
@@ -3430,7 +3434,7 @@ const cf_function cf_functions[] = {
       1, irb260_jacobian_in, 1, irb260_jacobian_out,
       irb260_jacobian_one, irb260_jacobian_many },
     { "irb260.jacobian_space",
-      "Twist (v; omega) of the hand in the base frame per joint rate.\n"
+      "Twist (v; omega) of the hand in the base frame, per joint rate.\n"
       "\n"
       "Source: eq. (18).\n"
       "\n"
@@ -3459,7 +3463,7 @@ const cf_function cf_functions[] = {
       1, irb260_jacobian_space_in, 1, irb260_jacobian_space_out,
       irb260_jacobian_space_one, irb260_jacobian_space_many },
     { "irb260.jacobian_body",
-      "Twist (v; omega) of the hand in its own frame per joint rate.\n"
+      "Twist (v; omega) of the hand in its own frame, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3596,9 +3600,9 @@ const cf_function cf_functions[] = {
       2, irb260_point_velocity_in, 1, irb260_point_velocity_out,
       irb260_point_velocity_one, irb260_point_velocity_many },
     { "irb260.ik",
-      "All four configurations of a position and a yaw.\n"
+      "All four configurations for a position and a yaw.\n"
       "\n"
-      "Source: solved from eq. (13); the paper leaves the inverse out.\n"
+      "Source: solved from eq. (13); the paper does not give the inverse.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3631,13 +3635,14 @@ const cf_function cf_functions[] = {
       "- Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,\n"
       "  back_elbow_down.\n"
       "- front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,\n"
-      "  where rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;\n"
+      "  with rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;\n"
       "  elbow_down: cos(theta3) <= 0.\n"
-      "- SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0\n"
-      "  is returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is\n"
-      "  returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.\n"
-      "- Ill-conditioned where the arm is straight or folded: the angles lose half the digits\n"
-      "  there, the position does not.\n"
+      "- SINGULAR: if the hand is on the base axis, theta1 is free (theta1 + theta5 is determined)\n"
+      "  and 0 is returned; if equal arms are folded with the wrist on the shoulder, theta2 is free\n"
+      "  and 0 is returned; if an arm has no length, its angle is free and theta3 = -pi/2 is\n"
+      "  returned.\n"
+      "- Ill-conditioned if the arm is straight or folded: the angles lose half their digits, the\n"
+      "  position does not.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_ik_in, 2, irb260_ik_out,
@@ -3697,7 +3702,7 @@ const cf_function cf_functions[] = {
       1, irb260_workspace_margin_in, 1, irb260_workspace_margin_out,
       irb260_workspace_margin_one, irb260_workspace_margin_many },
     { "irb260.workspace_contains",
-      "Whether some configuration reaches a position, whatever the yaw.\n"
+      "Whether any configuration reaches a position; the yaw does not matter.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3721,7 +3726,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- True exactly where ik has a branch that is OK or SINGULAR.\n"
+      "- True if and only if ik has a branch that is OK or SINGULAR.\n"
       ,
       6, irb260_values, irb260_fields,
       1, irb260_workspace_contains_in, 1, irb260_workspace_contains_out,
@@ -3869,7 +3874,7 @@ const cf_function cf_functions[] = {
       1, planar_2r_determinant_in, 1, planar_2r_determinant_out,
       planar_2r_determinant_one, planar_2r_determinant_many },
     { "planar_2r.manipulability",
-      "Yoshikawa's manipulability of the position, the modulus of the determinant.\n"
+      "Yoshikawa's manipulability of the position: the absolute value of the determinant.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3895,7 +3900,7 @@ const cf_function cf_functions[] = {
       1, planar_2r_manipulability_in, 1, planar_2r_manipulability_out,
       planar_2r_manipulability_one, planar_2r_manipulability_many },
     { "planar_2r.singularities",
-      "The factor that vanishes exactly where the arm is stretched or folded.\n"
+      "The factor that vanishes exactly if the arm is stretched or folded.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -3922,7 +3927,7 @@ const cf_function cf_functions[] = {
       1, planar_2r_singularities_in, 1, planar_2r_singularities_out,
       planar_2r_singularities_one, planar_2r_singularities_many },
     { "planar_2r.ik",
-      "Both elbow configurations that reach a position.\n"
+      "Both elbow configurations for a position.\n"
       "\n"
       "Source: eqs. (3) and (4), by arctangents.\n"
       "\n"
@@ -3955,16 +3960,16 @@ const cf_function cf_functions[] = {
       "Notes\n"
       "-----\n"
       "- Branches in this order, `BRANCHES`: elbow_down, elbow_up.\n"
-      "- SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a\n"
-      "  link without length, whose angle is free.\n"
-      "- Ill-conditioned near full stretch and full fold: the angles lose half the digits there,\n"
+      "- SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned;\n"
+      "  if a link has no length, its angle is free.\n"
+      "- Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,\n"
       "  the position does not.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_ik_in, 2, planar_2r_ik_out,
       planar_2r_ik_one, planar_2r_ik_many },
     { "planar_2r.ik_pose",
-      "The joint angles of a full pose; there is at most one.\n"
+      "The joint angles for a full pose; there is at most one solution.\n"
       "\n"
       "Source: eq. (10).\n"
       "\n"
@@ -3996,7 +4001,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- UNREACHABLE where the pose is not one of the arm, be it ever so little.\n"
+      "- UNREACHABLE if the arm cannot take the pose exactly.\n"
       ,
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_ik_pose_in, 2, planar_2r_ik_pose_out,
@@ -4297,8 +4302,8 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
       "- UNREACHABLE: the legs do not meet, or a length is negative.\n"
-      "- SINGULAR: the pivots coincide (b = 0); P is free on a circle, the point on the x axis is\n"
-      "  returned.\n"
+      "- SINGULAR: the pivots coincide (b = 0); P is free on a circle, and its point on the x axis\n"
+      "  is returned.\n"
       ,
       1, rpr_planar_values, rpr_planar_fields,
       1, rpr_planar_fk_in, 2, rpr_planar_fk_out,
@@ -4457,10 +4462,10 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Every position can be reached, in one way: lengths are not negative.\n"
-      "- SINGULAR: the sine of the angle between the legs is less than 2^-10, on and near the line\n"
-      "  of the pivots, at a distance of more than some 1000 b, and everywhere if b = 0. The\n"
-      "  lengths are right, but P moves more for an ulp of them than 1e-12 of b + rho1 + rho2.\n"
+      "- Every position can be reached, in exactly one way: lengths are not negative.\n"
+      "- SINGULAR: the sine of the angle between the legs is less than 2^-10: on and near the line\n"
+      "  of the pivots, at a distance of more than about 1000 b, and everywhere if b = 0. The\n"
+      "  lengths are right, but one ulp of them moves P by more than 1e-12 of b + rho1 + rho2.\n"
       ,
       1, rpr_planar_values, rpr_planar_fields,
       1, rpr_planar_ik_in, 2, rpr_planar_ik_out,
@@ -4658,7 +4663,7 @@ const cf_function cf_functions[] = {
       1, scara_jacobian_body_in, 1, scara_jacobian_body_out,
       scara_jacobian_body_one, scara_jacobian_body_many },
     { "scara.ik",
-      "Both elbows of a position and a yaw.\n"
+      "Both elbow configurations for a position and a yaw.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -4835,7 +4840,7 @@ const cf_function cf_functions[] = {
       1, spherical_wrist_determinant_in, 1, spherical_wrist_determinant_out,
       spherical_wrist_determinant_one, spherical_wrist_determinant_many },
     { "spherical_wrist.singularities",
-      "The factor that vanishes exactly where the axes 4 and 6 coincide.\n"
+      "The factor that vanishes exactly if the axes 4 and 6 coincide.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -4862,7 +4867,7 @@ const cf_function cf_functions[] = {
       1, spherical_wrist_singularities_in, 1, spherical_wrist_singularities_out,
       spherical_wrist_singularities_one, spherical_wrist_singularities_many },
     { "spherical_wrist.ik",
-      "Both wrist configurations of a rotation.\n"
+      "Both wrist configurations for a rotation.\n"
       "\n"
       "Source: eqs. (13) and (16), with theta6 from the remaining rotation.\n"
       "\n"
@@ -4895,11 +4900,11 @@ const cf_function cf_functions[] = {
       "Notes\n"
       "-----\n"
       "- Branches in this order, `BRANCHES`: theta5_positive, theta5_negative.\n"
-      "- SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, theta4\n"
-      "  = 0 is returned.\n"
-      "- INVALID: a matrix that is no proper rotation, a mirrored one included.\n"
-      "- Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or\n"
-      "  difference.\n"
+      "- SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and\n"
+      "  theta4 = 0 is returned.\n"
+      "- INVALID: the matrix is not a proper rotation, for example a reflection.\n"
+      "- Near theta5 = 0 and pi, theta4 and theta6 are ill-conditioned; their sum or difference is\n"
+      "  not.\n"
       ,
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_ik_in, 2, spherical_wrist_ik_out,

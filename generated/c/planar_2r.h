@@ -142,7 +142,7 @@ void planar_2r_determinant_batch(size_t n, const planar_2r_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * Yoshikawa's manipulability of the position, the modulus of the determinant.
+ * Yoshikawa's manipulability of the position: the absolute value of the determinant.
  *
  * Inputs
  * ------
@@ -160,7 +160,7 @@ void planar_2r_manipulability_batch(size_t n, const planar_2r_params *params,
     real_t *w, size_t w_stride);
 
 /*
- * The factor that vanishes exactly where the arm is stretched or folded.
+ * The factor that vanishes exactly if the arm is stretched or folded.
  *
  * Inputs
  * ------
@@ -179,7 +179,7 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
     real_t *factors, size_t factors_stride);
 
 /*
- * Both elbow configurations that reach a position.
+ * Both elbow configurations for a position.
  *
  * Source: eqs. (3) and (4), by arctangents.
  *
@@ -201,10 +201,10 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
  * Notes
  * -----
  * - Branches in this order: elbow_down, elbow_up.
- * - SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a
- *   link without length, whose angle is free.
- * - Ill-conditioned near full stretch and full fold: the angles lose half the digits there, the
- *   position does not.
+ * - SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned; if
+ *   a link has no length, its angle is free.
+ * - Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,
+ *   the position does not.
  */
 void planar_2r_ik(const planar_2r_params *params, const real_t x[2],
     real_t q[4], uint8_t status[2]);
@@ -214,7 +214,7 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * The joint angles of a full pose; there is at most one.
+ * The joint angles for a full pose; there is at most one solution.
  *
  * Source: eq. (10).
  *
@@ -235,7 +235,7 @@ void planar_2r_ik_batch(size_t n, const planar_2r_params *params,
  *
  * Notes
  * -----
- * - UNREACHABLE where the pose is not one of the arm, be it ever so little.
+ * - UNREACHABLE if the arm cannot take the pose exactly.
  */
 void planar_2r_ik_pose(const planar_2r_params *params, const real_t T[16],
     real_t q[2], uint8_t status[1]);

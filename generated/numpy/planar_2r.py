@@ -15,8 +15,9 @@
 #   workspace_radii: 1 compare and select, 2 add
 """Planar 2R arm.
 
-Two links of lengths l1 and l2 move in the plane of x and y.  theta1 turns the first link
-against the x axis, theta2 the second against the first, both counter-clockwise.
+Two links of lengths l1 and l2 move in the plane of x and y.  theta1 is the angle of the first
+link against the x axis, theta2 that of the second link against the first; both are counter-
+clockwise.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from S. Baswanth Kumar Reddy, K. Rajesh Babu: Kinematic Attitudes of a Planar Robot and a Spherical Wrist.
@@ -359,7 +360,7 @@ _MANIPULABILITY = _runtime.Kernel(
 
 
 def manipulability(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Yoshikawa's manipulability of the position, the modulus of the determinant.
+    """Yoshikawa's manipulability of the position: the absolute value of the determinant.
 
     Parameters
     ----------
@@ -403,7 +404,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factor that vanishes exactly where the arm is stretched or folded.
+    """The factor that vanishes exactly if the arm is stretched or folded.
 
     Parameters
     ----------
@@ -494,7 +495,7 @@ _IK = _runtime.Kernel(
 
 
 def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
-    """Both elbow configurations that reach a position.
+    """Both elbow configurations for a position.
 
     Source: eqs. (3) and (4), by arctangents.
 
@@ -527,9 +528,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     Notes
     -----
     - Branches in this order, `BRANCHES`: elbow_down, elbow_up.
-    - SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a
-      link without length, whose angle is free.
-    - Ill-conditioned near full stretch and full fold: the angles lose half the digits there,
+    - SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned;
+      if a link has no length, its angle is free.
+    - Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,
       the position does not.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
@@ -600,7 +601,7 @@ _IK_POSE = _runtime.Kernel(
 
 
 def ik_pose(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
-    """The joint angles of a full pose; there is at most one.
+    """The joint angles for a full pose; there is at most one solution.
 
     Source: eq. (10).
 
@@ -632,7 +633,7 @@ def ik_pose(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None)
 
     Notes
     -----
-    - UNREACHABLE where the pose is not one of the arm, be it ever so little.
+    - UNREACHABLE if the arm cannot take the pose exactly.
     """
     result = _runtime.evaluate(_IK_POSE, (T,), params, out)
     return Solutions(*result)

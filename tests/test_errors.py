@@ -198,7 +198,7 @@ def test_a_lemma_on_an_equation_of_another_shape() -> None:
     lemma = sine_cosine(Program(), THETA1, x, y, x, real("sigma"))
     for equation, message in (
         (sp.sin(THETA1) ** 2 - y, r"linear in sin\(theta1\), cos\(theta1\).* has the term sin\(th"),
-        (THETA1 - y, "the unknown stands elsewhere"),
+        (THETA1 - y, "the unknown occurs elsewhere"),
         (x - y, "does not hold theta1 at all"),
         (sp.sin(2 * THETA1) - y, r"has the term 2\*sin\(theta1\)\*cos\(theta1\)"),
     ):

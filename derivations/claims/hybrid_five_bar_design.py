@@ -119,8 +119,8 @@ def by_design(d: Derivation, bar: FiveBar) -> None:
         "$L_0$, we eliminate a parallel singularity type, C and D coinciding",
         Refuted(
             Holds({**default.closed(), "2 L1 > L0": sp.sympify(16 > 7)}),
-            "for (7, 8, 5), 16 > 7, C and D coincide at 7/2 along AB: the circles of C and D meet "
-            "because of the condition",
+            "for (7, 8, 5), 16 > 7, C and D coincide at 7/2 along AB: the condition makes the "
+            "circles of C and D meet",
             r"L_0 > 2 L_1",
             stay_apart,
         ),
@@ -343,8 +343,8 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
         r"$\kappa(\mathbf A)$ tends to infinity when $\theta_3-\theta_4 = k\pi$",
         Refuted(
             Holds({"kappa is 1": Eq(bar.kappa.subs(aligned), 1)}),
-            "theta3 is printed instead of theta5: at theta3 = 0, theta4 = pi, theta5 = pi/2 kappa "
-            "is 1",
+            "theta3 is printed instead of theta5; kappa is 1 at theta3 = 0, theta4 = pi, "
+            "theta5 = pi/2",
             r"\theta_5-\theta_4 = k\pi",
             Identity(bar.det_A, L2**3 * sin(t5 - t4)),
         ),

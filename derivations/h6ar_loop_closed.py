@@ -105,7 +105,8 @@ wrist_line = base * rotation("z", phi) * rotation("x", psi) * sp.Matrix([0, 1, 0
 d.step(
     "Base line in fore-arm axes",
     "The line from the middle of the tips to the right tip is half the base line.  Here it is "
-    "given in the axes of the virtual fore-arm: x (upwards at home), y (to the right) and z (along it).",
+    "given in the axes of the virtual fore-arm: x (upwards at home), y (to the right) and z (along "
+    "it).",
     {r"R_{03}^T (p_R - p_I)": line},
     published=("(3)", "(4)", "(5)", "(6)"),
     equal=[(forearm.T * sp.Matrix([ahead, -m.d, higher]), line)],

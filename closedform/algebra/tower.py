@@ -297,7 +297,7 @@ class Tower:
     # Square roots
 
     def _sqrt(self, a: Fraction) -> Fraction:
-        """A root: square factors leave it, factors of known sign get one each, the rest share one."""
+        """A root: square factors leave it, factors of known sign get one each, the rest one."""
         if a.num.is_zero():
             return self.zero
         constant, powers = self._factored(a)

@@ -285,8 +285,8 @@ class Page:
         )
         given = [rf"{e} \ge 0" for e in assumed]
         how = {
-            "generic": "a Groebner basis over the field of parameters and targets",
-            "specialised": "Groebner bases, the same at several rational points",
+            "generic": "by a Groebner basis over the field of parameters and targets",
+            "specialised": "by Groebner bases, with the same result at several rational points",
         }
         return {
             "where": f", where {formulas(given)}" if given else "",

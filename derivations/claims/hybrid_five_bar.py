@@ -261,8 +261,8 @@ def serial_singularities(d: Derivation, bar: FiveBar) -> None:
         "CP are aligned",
         Refuted(
             on_the_axis(),
-            "det(B) also vanishes on the axis AB inside the workspace, for example for (7, 8, 5) at "
-            "AP = BP = 7/2",
+            "det(B) also vanishes on the axis AB inside the workspace, for example for (7, 8, 5) "
+            "at AP = BP = 7/2",
             "on AB, or at the boundary with BD and DP or AC and CP aligned",
             serial(bar),
         ),

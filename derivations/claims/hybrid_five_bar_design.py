@@ -332,8 +332,8 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
         r"$\kappa(\mathbf A)$ attains its minimum of 1 when $|\theta_3-\theta_4| = \pi/2$",
         Refuted(
             Holds({"kappa is not 1": Ne(bar.kappa.subs(right_angle), 1)}),
-            "theta3 is printed instead of theta5, as in eq. (8): at theta3 = pi/6, theta4 = "
-            "2*pi/3, theta5 = 0 kappa is sqrt(3)",
+            "theta3 is printed instead of theta5, as in eq. (8); kappa is sqrt(3) at "
+            "theta3 = pi/6, theta4 = 2*pi/3, theta5 = 0",
             r"|\theta_5-\theta_4| = \pi/2",
             Identity(bar.kappa.subs(t4, t5 + pi / 2), sp.S.One),
         ),

@@ -1,7 +1,6 @@
-"""What is said of a function, after numpydoc's conventions, for Python and for C.
+"""The documentation of a function for Python and C, by the conventions of numpydoc.
 
-Names, shapes and statuses follow from the function; what is special about it stands in its summary
-and its notes.
+Names, shapes and statuses follow from the function; its summary and notes say what is special.
 """
 
 from __future__ import annotations
@@ -196,7 +195,7 @@ def _output_text(derivation: Derivation, function: Function, array: Array) -> st
 
 
 def _matrix_text(derivation: Derivation, entries: Sequence[sp.Expr], shape: Sequence[int]) -> str:
-    """What a matrix is: what an inverse requires of one of its shape, or its columns."""
+    """A sentence about a matrix: the requirement of an inverse for this shape, or its columns."""
     for function in derivation.functions:
         for statement in function.body:
             if isinstance(statement, Require) and any(
@@ -214,7 +213,7 @@ def _matrix_text(derivation: Derivation, entries: Sequence[sp.Expr], shape: Sequ
 def _listed(
     names: Sequence[str], units: Mapping[str, str], shape: Sequence[int], angle: str
 ) -> str:
-    """Coordinates with their units, neighbours of one unit together."""
+    """Coordinates with their units; neighbours with the same unit are joined."""
     parts = []
     for unit, group in groupby(names, lambda name: units.get(name, "")):
         shown = angle if unit == ANGLE else unit
@@ -230,7 +229,7 @@ def _listed(
 
 
 def _span(names: Sequence[str]) -> str:
-    """Names in words; theta1 to theta6 where they are numbered through."""
+    """Names in words; "theta1 to theta6" if they are numbered consecutively."""
     numbered = [re.fullmatch(r"(\D+)(\d+)", name) for name in names]
     if len(names) > 3 and all(numbered):
         found = [(m[1], int(m[2])) for m in numbered if m]
@@ -240,7 +239,7 @@ def _span(names: Sequence[str]) -> str:
 
 
 def _units(derivation: Derivation) -> dict[str, str]:
-    """The units of joints, of the task and of other angles, as far as they are known."""
+    """The known units of joints, task coordinates and other angles."""
     units: dict[str, str] = {}
     angles = {str(s) for i in derivation.inverses for s in i.angles}
     for function in derivation.functions:

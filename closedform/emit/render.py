@@ -1,4 +1,4 @@
-"""The one Jinja environment, and the list of files that derivations turn into."""
+"""The Jinja environment, and the list of files that are printed for derivations."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def render(template: str, context: Mapping[str, Any]) -> str:
 
 @dataclass(frozen=True)
 class Share:
-    """What one mechanism adds to the files that all share: plain strings, cheap to hand on."""
+    """The part of one mechanism in the shared files: plain strings that are cheap to pass on."""
 
     c: Mapping[str, Any] | None = None
     errata: Part | None = None
@@ -49,7 +49,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Pages:
-    """The files of one mechanism, by their path below ``generated/``, and its share of others."""
+    """The files of one mechanism, by path below ``generated/``, and its part of shared files."""
 
     files: dict[Path, str]
     share: Share
@@ -83,7 +83,7 @@ def pages(derivation: Derivation, proof: Proof, backends: Sequence[str] = BACKEN
 
 
 def shared_files(shares: Sequence[Share], backends: Sequence[str] = BACKENDS) -> dict[Path, str]:
-    """The files that all mechanisms share, from what each of them reported."""
+    """The files that all mechanisms share, from the part of each mechanism."""
     printed: dict[Path, str] = {}
     if "numpy" in backends:
         context = numpy.runtime()

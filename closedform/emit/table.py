@@ -1,4 +1,4 @@
-"""Prints a table of a derivation as comma-separated values: the nearest doubles."""
+"""Prints a table of a derivation as comma-separated values, rounded to doubles."""
 
 from __future__ import annotations
 
